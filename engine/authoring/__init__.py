@@ -1,4 +1,4 @@
-"""Behaviors in Python: typed functions that make the same frozen documents as YAML.
+"""Behaviors in Python: typed functions that build the same frozen documents as YAML.
 
     from engine.authoring import Timeout, behavior, machine, parameter, state
     from states.flow.wait import Wait
@@ -13,7 +13,7 @@
         ),
     )
 
-What comes out is an `engine.document.Behavior`: check it, plan it, run it, write it with `to_yaml`.
+The result is an `engine.document.Behavior`: check it, plan it, run it, write it with `to_yaml`.
 """
 
 from engine.authoring.behavior_builder import behavior

@@ -1,4 +1,4 @@
-"""Makes a behavior out of steps: the same frozen models that a YAML document is read into."""
+"""Builds a behavior from steps, as the same frozen models as from a YAML document."""
 
 from __future__ import annotations
 
@@ -36,22 +36,22 @@ def behavior(
     view: Mapping[str, tuple[float, float]] | None = None,
     file: str | None = None,
 ) -> Behavior:
-    """Make a behavior that can be checked, run, referred to and written as YAML.
+    """Build a behavior that can be checked, run, referred to and written as YAML.
 
     Args:
-        name: What people call it.
-        outcomes: How it can end.
+        name: Display name.
+        outcomes: Possible outcomes.
         root: The outermost step.
         success: The outcomes that mean success.
-        parameters: What a run may be given.
+        parameters: Parameters of a run.
         userdata: Initial values of the root scope.
-        cell: The cell it runs in, relative to the document.
-        description: What it does.
+        cell: Path of the default cell, relative to the document.
+        description: Description of the behavior.
         view: Canvas positions by node path.
-        file: Where its document belongs, relative to this Python file; after its name where not given.
+        file: Path of its document, relative to this Python file; by default derived from its name.
 
     Raises:
-        DocumentError: it is no valid behavior; `where` is the place in Python of the step it is about.
+        DocumentError: the behavior is invalid; `where` is the position of the step in the Python file.
     """
     where = calling_position()
     given: dict[str, object] = {
@@ -74,14 +74,14 @@ def _by_name(parameters: Iterable[Param[Any]]) -> dict[str, object]:
     found: dict[str, object] = {}
     for parameter in parameters:
         if parameter.name in found:
-            hint = "give each a name of its own"
+            hint = "use unique names"
             raise DocumentError(f"two parameters are named `{parameter.name}`", where=parameter.place, hint=hint)
         found[parameter.name] = parameter
     return found
 
 
 def _read(source: DocumentSource, lowering: Lowering) -> Behavior:
-    """Do with plain data what the loader does with that of a file, so that both mean the same."""
+    """Process plain data like the loader processes a file, so that both have the same semantics."""
     document = decode_document(source, BehaviorDocument)
     draft = Behavior(document=document, file=lowering.file, meaning="", source=source)
     require_structural_rules(draft)
@@ -92,7 +92,7 @@ def _read(source: DocumentSource, lowering: Lowering) -> Behavior:
 
 
 def _loaded_classes(draft: Behavior) -> dict[str, type]:
-    """Return the classes of this process that nodes name: whoever makes a behavior here has imported them."""
+    """Return the classes that nodes name; the caller has imported them in this process."""
     names = (name for _, node in draft.nodes() for name in (node.state, node.behaviour) if name and ":" in name)
     return {name: found for name in names if (found := loaded_class(name)) is not None}
 

@@ -1,4 +1,4 @@
-"""Steps with steps inside: machines, priority, concurrency, rounds and trees."""
+"""Steps that contain steps: machines, priority, concurrency, foreach and trees."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from engine.authoring.steps import Step, StepKeys, TreePart, given_keys, new_ste
 from engine.document.concurrency_condition import PREEMPT, WHEN
 
 Rule = tuple[str, Mapping[str, str | int]]
-"""`("finished", {"left": "reached", "right": "reached"})`: the outcome, and what it takes; with `at_least`, so many."""
+"""`("finished", {"left": "reached", "right": "reached"})`: outcome and required outcomes, at least `at_least`."""
 
 
 @dataclass(frozen=True)
 class Preempt:
-    """A condition that preempts some of the steps side by side, while the others go on.
+    """A condition that preempts some of the concurrent steps, while the others continue.
 
     Args:
-        steps: Their names.
-        when: What it takes, as in a rule.
+        steps: Names of the preempted steps.
+        when: Required outcomes, as in a rule.
     """
 
     steps: Sequence[str]
@@ -40,8 +40,8 @@ def machine(
     Args:
         initial: The step that runs first.
         states: The steps by name, in order.
-        userdata: Initial values of its own scope.
-        **keys: What every step may be given.
+        userdata: Initial values of the scope of the container.
+        **keys: Common keys of steps.
     """
     return new_step("machine", _sequential(initial, states, userdata), **keys)
 
@@ -53,7 +53,7 @@ def priority(
     userdata: Mapping[str, object] | None = None,
     **keys: Unpack[StepKeys],
 ) -> Step:
-    """Run like a machine, while every branch beside it is held."""
+    """Run like a machine, while all concurrent branches are held."""
     return new_step("priority", _sequential(initial, states, userdata), **keys)
 
 
@@ -66,16 +66,16 @@ def concurrency(
     shared: Sequence[str] | None = None,
     **keys: Unpack[StepKeys],
 ) -> Step:
-    """Run steps side by side until a condition holds.
+    """Run steps concurrently until a condition holds.
 
     Args:
         states: The steps by name, in order.
-        conditions: `(outcome, {step: its outcome})` in order of precedence; all of one must hold,
-            or so many of it as a number under `at_least` says. `Preempt(steps, when)` among them decides nothing.
+        conditions: `(outcome, {step: its outcome})` in order of precedence; all entries must hold,
+            or the number of entries under `at_least`. A `Preempt(steps, when)` decides no outcome.
         otherwise: The outcome when all have ended and no condition holds.
-        userdata: Initial values of its own scope.
-        shared: Keys of this scope, or of one around it, that the steps see each other write.
-        **keys: What every step may be given.
+        userdata: Initial values of the scope of the container.
+        shared: Keys of this or an enclosing scope whose writes are immediately visible to all steps.
+        **keys: Common keys of steps.
     """
     rules = [_entry(condition) for condition in conditions]
     what = given_keys(
@@ -98,7 +98,7 @@ def foreach(
     times: int | str | None = None,
     item: str | None = None,
     index: str | None = None,
-    next: Sequence[str] | None = None,  # noqa: A002 - the word of documents
+    next: Sequence[str] | None = None,  # noqa: A002 - the document key
     collect: Mapping[str, str] | None = None,
     userdata: Mapping[str, object] | None = None,
     **keys: Unpack[StepKeys],
@@ -107,14 +107,14 @@ def foreach(
 
     Args:
         child: The step.
-        items: A list, or an expression that gives one.
-        times: How often instead, a number or an expression.
-        item: The userdata key that has the item of the round; `item` where not given.
-        index: The userdata key that has the number of the round, from 0.
-        next: Outcomes after which the next round begins; those that mean success where not given.
-        collect: Keys written in a round to the keys of lists outside that they are appended to.
+        items: A list, or an expression whose value is a list.
+        times: Number of rounds instead of items, a number or an expression.
+        item: The userdata key of the item of the round; `item` by default.
+        index: The userdata key of the number of the round, from 0.
+        next: Outcomes after which the next round begins; the success outcomes by default.
+        collect: Maps keys written in a round to the keys of outer lists that they are appended to.
         userdata: Initial values of the scope of each round.
-        **keys: What every step may be given.
+        **keys: Common keys of steps.
     """
     place = calling_position()
     shown = to_plain_data(items, what="`items`", where=place)

@@ -1,4 +1,4 @@
-"""Expressions and parameters as values that the type checker accepts in the place of what they stand for."""
+"""Expressions and parameters as values that type checkers accept in place of their results."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Param(Generic[T]):
-    """A parameter: `.value` stands for it where a `T` is wanted, `f"{param}"` in the midst of text."""
+    """A parameter: use `.value` where a `T` is expected, `f"{param}"` inside text."""
 
     name: str
     keys: Mapping[str, object] = field(repr=False)
-    """Its declaration under the keys of documents."""
+    """Its declaration with document keys."""
     place: Position = field(repr=False)
 
     @property
     def value(self) -> T:
-        """What a run gives for it; in the document the expression `${name}`."""
+        """The value in a run; in the document the expression `${name}`."""
         return cast("T", str(self))
 
     def __str__(self) -> str:
@@ -32,14 +32,14 @@ class Param(Generic[T]):
 
 
 def expr(text: str) -> Any:
-    """Return the expression `${text}` over parameters and userdata, for any place that takes a value.
+    """Return the expression `${text}` over parameters and userdata, for any place that accepts a value.
 
     Raises:
-        ExpressionError: it is not well formed; `where` is the place of this call.
+        ExpressionError: it is malformed; `where` is the position of this call.
     """
     where = calling_position()
     if "${" in text:
-        raise ExpressionError(f"`{text}` has its own `${{`", where=where, hint="write what stands between the braces")
+        raise ExpressionError(f"`{text}` contains `${{`", where=where, hint="write only the text between the braces")
     try:
         compile_expression(text)
     except ExpressionError as error:

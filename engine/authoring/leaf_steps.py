@@ -1,4 +1,4 @@
-"""Steps that do something: states, and other behaviors."""
+"""Leaf steps: states, and references to other behaviors."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ def state(
     """Run a state.
 
     Args:
-        what: An instance, whose fields are the parameters; or a class or its name, with `parameters`.
-        parameters: Values by name. Text in them is text of the document: `${…}` is an expression.
-        inputs: Input keys of the state to the userdata keys that they are read from.
-        outputs: Output keys of the state to the userdata keys that they are written to.
-        **keys: What every step may be given.
+        what: An instance whose fields are the parameters; or a class or its name, with `parameters`.
+        parameters: Values by name. Text in them is document text: `${…}` is an expression.
+        inputs: Maps input keys of the state to the userdata keys that they are read from.
+        outputs: Maps output keys of the state to the userdata keys that they are written to.
+        **keys: Common keys of steps.
 
     Raises:
-        DocumentError: the class cannot be named in a document, or the parameters do not fit it.
+        DocumentError: the class cannot be named in a document, or the parameters are invalid.
     """
     place = calling_position()
     if isinstance(what, State):
@@ -76,14 +76,14 @@ def reference(
     outputs: Mapping[str, str] = _NO_KEYS,
     **keys: Unpack[StepKeys],
 ) -> Step:
-    """Run another behavior: one made in Python or loaded, or a file relative to the document.
+    """Run another behavior: one built in Python or loaded, or a file relative to the document.
 
     Args:
         target: The behavior.
         parameters: Values of its parameters by name.
-        inputs: Its userdata keys to those here that they start with.
-        outputs: Its userdata keys to those here that they are copied to at the end.
-        **keys: What every step may be given.
+        inputs: Maps its userdata keys to the keys here with their initial values.
+        outputs: Maps its userdata keys to the keys here that they are copied to at the end.
+        **keys: Common keys of steps.
     """
     plain = to_plain_data(parameters, what="the parameters", where=calling_position())
     step = new_step("behavior", target, **keys)
@@ -91,26 +91,26 @@ def reference(
 
 
 def behaviour(what: str, *, parameters: Mapping[str, object] = _NOTHING, **keys: Unpack[PartKeys]) -> TreePart:
-    """Put a `Behaviour` of py_trees into a tree, named as `module:Class`; `parameters` go to its constructor."""
+    """Add a py_trees `Behaviour` to a tree, named as `module:Class`; `parameters` go to its constructor."""
     plain = to_plain_data(parameters, what=f"the parameters of {what}", where=calling_position())
     part = new_part("behaviour", what, **keys)
     return TreePart(keys={**part.keys, **({"with": plain} if plain else {})}, place=part.place)
 
 
 def _parameters_of(what: State, place: Position) -> Mapping[str, object]:
-    """Return what a state was made with, having made sure that a document says the same."""
+    """Return the parameters of a state instance, after checking that a document represents them equally."""
     kind = type(what)
     plain = cast("dict[str, object]", to_plain_data(what, what=f"a parameter of {kind.__name__}", where=place))
     if not has_expression(plain):
         try:
             msgspec.convert(plain, kind)
         except msgspec.ValidationError as error:
-            raise DocumentError(f"the parameters of {kind.__name__} do not fit: {error}", where=place) from error
+            raise DocumentError(f"the parameters of {kind.__name__} are invalid: {error}", where=place) from error
     return plain
 
 
 def _name_of(kind: type[State], place: Position) -> str:
-    """Return how a document names a class."""
+    """Return the name of a class in documents."""
     name = read_signature(kind).name
     if ":" in name and ("<locals>" in name or name.startswith("__main__:")):
         raise DocumentError(

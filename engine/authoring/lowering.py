@@ -1,4 +1,4 @@
-"""Lowers steps made in Python to the plain data of a document, keeping where each of them was made."""
+"""Lowers steps built in Python to the plain data of a document, with the source location of each."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from engine.errors import DocumentError, Position
 
 @dataclass
 class Lowering:
-    """One document under construction; `file` is where it would be written."""
+    """One document under construction; `file` is its path."""
 
     file: Path
     references: dict[str, Behavior] = field(default_factory=dict[str, Behavior])
     """The behaviors referred to as objects, by the path written for each."""
 
     def lower(self, value: object, place: PositionTree, depth: int = 0) -> object:
-        """Return plain data for a value with steps in it; their places are added inside `place`."""
+        """Return plain data for a value that contains steps; their positions are added inside `place`."""
         match value:
             case TreePart():
                 _move(place, value.place)
@@ -48,7 +48,7 @@ class Lowering:
         return {key: self._inside(item, place, key, depth) for key, item in keys.items()}
 
     def _inside(self, value: object, place: PositionTree, key: str | int, depth: int) -> object:
-        """Lower a value inside another; only what stands elsewhere than around it has a place of its own."""
+        """Lower a nested value; it gets its own position only if that differs from the outer one."""
         inner = PositionTree(place.key_line, place.key_column, place.line, place.column, file=place.file)
         lowered = self.lower(value, inner, depth + 1)
         if isinstance(value, TreePart | Param) or inner.children is not None:
@@ -58,20 +58,20 @@ class Lowering:
         return lowered
 
     def _written(self, target: Behavior, place: PositionTree) -> str:
-        """Return the path of another behavior as this document writes it."""
+        """Return the path of another behavior relative to this document."""
         written = Path(os.path.relpath(target.file.resolve(), self.file.resolve().parent)).as_posix()
         known = self.references.setdefault(written, target)
         if known.meaning != target.meaning:
             raise DocumentError(
                 f"two different behaviors would both be written as `{written}`",
                 where=_position_of(place),
-                hint="give one of them another `name` or `file`",
+                hint="set another `name` or `file` for one of them",
             )
         return written
 
 
 def new_source_location(where: Position) -> PositionTree:
-    """Return the place of a value, itself and its key, at a position."""
+    """Return a position tree with value and key at a position."""
     line, column = where.line - 1, where.column - 1
     return PositionTree(line, column, line, column, file=where.file)
 
@@ -87,7 +87,7 @@ def _move(place: PositionTree, where: Position) -> None:
 
 
 def _require_depth(depth: int, where: Position) -> None:
-    # The strict reader has the same limit; deeper steps could be run and never be saved.
+    # The strict reader has the same limit; deeper steps could run but not be saved.
     if depth >= MAX_DEPTH:
         message = f"nested deeper than {MAX_DEPTH} levels"
-        raise DocumentError(message, where=where, hint="put the inner part into a behavior of its own")
+        raise DocumentError(message, where=where, hint="move the inner part into a separate behavior")

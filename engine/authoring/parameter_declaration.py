@@ -14,7 +14,7 @@ from engine.authoring.source_location import calling_position
 from engine.errors import DocumentError
 from engine.messages import Pose
 
-# One of these and nothing between: else a default of another type would only widen the kind.
+# Exactly one of these types: otherwise a default of another type would widen `T`.
 T = TypeVar("T", bool, int, float, str, Pose, tuple[float, ...], list[object], dict[str, object])
 
 _TYPES: Mapping[object, str] = {
@@ -41,21 +41,21 @@ def parameter(
     label: str = "",
     description: str = "",
 ) -> Param[T]:
-    """Declare what a run may be given; without a default it must be given.
+    """Declare a parameter of a run; without a default each run must set it.
 
     Args:
-        name: What documents and `-p name=value` call it.
+        name: Name in documents and in `-p name=value`.
         kind: `float`, `int`, `str`, `bool`, `Pose`, `tuple[float, ...]` for joint angles, `list` or `dict`.
-        default: Its value where a run gives none.
+        default: Value for runs that set none.
         minimum: Smallest number allowed.
-        maximum: Greatest number allowed.
-        unit: SI unit, shown beside the value.
-        choices: All values allowed; any where none are given.
-        label: What the form calls it; the name when empty.
-        description: What it is for.
+        maximum: Largest number allowed.
+        unit: SI unit, shown after the value.
+        choices: Allowed values; by default any.
+        label: Label in the form; the name if empty.
+        description: Purpose of the parameter.
 
     Raises:
-        DocumentError: a parameter cannot be of this kind, or the default cannot stand in a document.
+        DocumentError: the type is not supported, or the default cannot be written in a document.
     """
     place = calling_position()
     written = _TYPES.get(typing.get_origin(kind) or kind)

@@ -1,4 +1,4 @@
-"""Python values as the plain data of documents: frozen structs become mappings without their defaults."""
+"""Converts Python values to plain document data: frozen structs become mappings without defaults."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ def to_plain_data(value: object, *, what: str, where: Position) -> object:
     """Return a value as lists, mappings, text, numbers, booleans and None.
 
     Args:
-        value: Any value made of these, of structs, or of what msgspec can write.
-        what: What the value is, for the message.
-        where: What to name as the place of an error.
+        value: Any value made of these, of structs, or of types that msgspec encodes.
+        what: Name of the value in messages.
+        where: Position for errors.
 
     Raises:
-        DocumentError: no document can hold it.
+        DocumentError: a document cannot contain it.
     """
     return _Conversion(what, where).convert(value)
 
 
 def has_expression(value: object) -> bool:
-    """Tell whether there is a `${…}` in plain data."""
+    """Return whether plain data contains a `${…}`."""
     if isinstance(value, str):
         return "${" in value
     if isinstance(value, dict):
@@ -72,7 +72,7 @@ class _Conversion:
         for found in _fields_of(type(value)):
             given = getattr(value, found.name)
             default = _default(found)
-            # 1, 1.0 and True are equal and mean different things to a parameter of any type.
+            # 1, 1.0 and True are equal, but differ for a parameter of any type.
             if given is msgspec.UNSET or (type(given) is type(default) and given == default):
                 continue
             yield found.encode_name, self.convert(given)
@@ -81,7 +81,7 @@ class _Conversion:
         try:
             return self.convert(msgspec.to_builtins(value, str_keys=True))
         except (TypeError, RecursionError) as error:
-            raise self._refused(f"a {type(value).__name__} cannot stand in a document") from error
+            raise self._refused(f"a document cannot contain a {type(value).__name__}") from error
 
     def _text(self, text: str) -> str:
         try:

@@ -1,4 +1,4 @@
-"""Finds a behavior that a Python file makes, named as `FILE.py` or `FILE.py:NAME`."""
+"""Loads a behavior built in a Python file, named as `FILE.py` or `FILE.py:NAME`."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from engine.type_preparation import prepare_types
 
 
 def load_python_behavior(name: str) -> Behavior:
-    """Run a Python file and return the behavior under a name at its top level.
+    """Run a Python file and return the behavior with a name at its top level.
 
     The file runs as a module named after it, with its folder importable, so that behaviors can
-    name state classes that stand in it.
+    name state classes defined in it.
 
     Args:
-        name: `FILE.py:NAME`; without `:NAME` the only behavior that the file makes.
+        name: `FILE.py:NAME`; without `:NAME` the only behavior in the file.
 
     Raises:
         DocumentError: the file cannot be run, or has no such behavior; names the line.
@@ -39,10 +39,11 @@ def load_python_behavior(name: str) -> Behavior:
         return found[wanted]
     if wanted:
         hint = did_you_mean(wanted, found)
-        raise DocumentError(f"this file makes no behavior named `{wanted}`", where=start, hint=hint)
+        raise DocumentError(f"this file has no behavior named `{wanted}`", where=start, hint=hint)
     if len(found) != 1:
-        names = ", ".join(found) or "none"
-        raise DocumentError(f"this file makes {names}", where=start, hint=f"name one: {file.name}:NAME")
+        message = f"this file has several behaviors: {', '.join(found)}" if found else "this file has no behavior"
+        hint = f"select one: {file.name}:NAME" if found else "assign one to a name at the top level"
+        raise DocumentError(message, where=start, hint=hint)
     return next(iter(found.values()))
 
 
@@ -53,7 +54,7 @@ def _module(file: Path, start: Position) -> ModuleType:
             return known
         hint = "rename the file"
         raise DocumentError(f"another module named `{file.stem}` is loaded already", where=start, hint=hint)
-    # A loader of its own keeps the path as given in the positions of nodes.
+    # A separate loader keeps the given path in the positions of nodes.
     loader = SourceFileLoader(file.stem, str(file))
     module = ModuleType(file.stem)
     module.__file__ = str(file)
@@ -70,7 +71,7 @@ def _module(file: Path, start: Position) -> ModuleType:
             where = error.where if isinstance(error.where, Position) else _raised_at(error, file)
             raise DocumentError(error.message, where=where, hint=error.hint) from error
         except (Exception, SystemExit) as error:
-            # The user's file may raise anything; what matters is which of its lines did.
+            # The user's file may raise anything; the error reports the line.
             del sys.modules[file.stem]
             raise DocumentError(describe_cause(cause_of(error)), where=_raised_at(error, file)) from error
     return module

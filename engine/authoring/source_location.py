@@ -1,4 +1,4 @@
-"""Where in the user's Python file a node was made: the position that errors, findings and logs name."""
+"""Source location of a node in the user's Python file, for errors, findings and logs."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _PACKAGE = __name__.rpartition(".")[0]
 
 
 def calling_position() -> Position:
-    """Return where the nearest caller outside this package stands."""
+    """Return the position of the nearest caller outside this package."""
     frame = inspect.currentframe()
     while frame is not None and _is_ours(frame):
         frame = frame.f_back
     if frame is None:
         return Position(file="<python>", line=1, column=1)
-    # Only the instruction table knows the column, and the first line of a call over several lines.
+    # Only the instruction table has the column, and the first line of a multi-line call.
     line, column = _instructions(frame.f_code)[frame.f_lasti // 2]
     return Position(file=frame.f_code.co_filename, line=line or frame.f_lineno, column=(column or 0) + 1)
 

@@ -1,4 +1,4 @@
-"""What the functions of this package make: nodes as plain data with the place in Python that made them."""
+"""Steps: nodes as plain data with their source location in Python."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from engine.errors import Position
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TreePart:
-    """A node of a behavior tree; composites and decorators stand nowhere else."""
+    """A node of a behavior tree; composites and decorators are allowed only there."""
 
     keys: Mapping[str, object] = field(repr=False)
-    """Document keys to plain data, in which nodes stand as objects of this class."""
+    """Plain data by document key; nested nodes are objects of this class."""
     place: Position
 
 
 class Step(TreePart):
-    """A node that can stand anywhere: in a machine, side by side with others, in a tree, at the root."""
+    """A node that is allowed anywhere: in a machine, a concurrency container, a tree, or at the root."""
 
 
 class NameKeys(TypedDict, total=False):
-    """What a guard of a tree may be given beside its own."""
+    """Additional keys of a guard in a tree."""
 
     name: str
     description: str
@@ -35,13 +35,13 @@ class NameKeys(TypedDict, total=False):
 
 
 class PartKeys(NameKeys, total=False):
-    """What every other part of a tree may be given."""
+    """Keys of every other part of a tree."""
 
     guard: GuardSpec
 
 
 class StepKeys(PartKeys, total=False):
-    """What every step may be given, named as in documents."""
+    """Common keys of steps, named as in documents."""
 
     transitions: Mapping[str, str]
     timeout: TimeoutSpec
@@ -54,24 +54,24 @@ class StepKeys(PartKeys, total=False):
 
 
 def new_step(kind: NodeKind, what: object, **keys: Unpack[StepKeys]) -> Step:
-    """Make a step of a kind from the value under its key."""
+    """Return a step of a kind from the value of its key."""
     place = calling_position()
     return Step(keys={kind: what, **_plain_keys(keys, place)}, place=place)
 
 
 def new_part(kind: NodeKind, what: object, **keys: Unpack[PartKeys]) -> TreePart:
-    """Make a composite or decorator from the value under its key."""
+    """Return a composite or decorator from the value of its key."""
     place = calling_position()
     return TreePart(keys={kind: what, **_plain_keys(keys, place)}, place=place)
 
 
 def with_keys(step: Step, keys: Mapping[str, object]) -> Step:
-    """Return the step with more document keys, those with empty values left out."""
+    """Return the step with more document keys; keys with empty values are omitted."""
     return Step(keys={**step.keys, **{key: value for key, value in keys.items() if value}}, place=step.place)
 
 
 def given_keys(**keys: object) -> dict[str, object]:
-    """Return the keys that were given a value; what is None keeps the default of documents."""
+    """Return the keys with a value; None keeps the document default."""
     return {key: value for key, value in keys.items() if value is not None}
 
 

@@ -1,4 +1,4 @@
-"""Parts of behavior trees: composites, and decorators of one child. Keys are those of documents."""
+"""Parts of behavior trees: composites, and decorators with one child. Keys are those of documents."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from engine.document.node_spec import SLOTS, NodeKind, Status
 
 
 def sequence(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
-    """Run children in order until one fails; with `memory` one that has succeeded is not asked again."""
+    """Run children in order until one fails; with `memory` a succeeded child is not ticked again."""
     return _group("sequence", children, memory, keys)
 
 
 def selector(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
-    """Run children in order until one succeeds; with `memory` one that has failed is not asked again."""
+    """Run children in order until one succeeds; with `memory` a failed child is not ticked again."""
     return _group("selector", children, memory, keys)
 
 
@@ -27,7 +27,7 @@ def parallel(
     failure_count: int | None = None,
     **keys: Unpack[PartKeys],
 ) -> TreePart:
-    """Run children together; `policy` says whose success is its own (all, one, or those named), or the counts do."""
+    """Tick children together; success by `policy` (all, one, or named children) or by counts."""
     named = policy if isinstance(policy, str) or policy is None else list(policy)
     more = given_keys(policy=named, synchronise=synchronise, success_count=success_count, failure_count=failure_count)
     if not more:
@@ -43,7 +43,7 @@ def inverter(child: TreePart, **keys: Unpack[PartKeys]) -> TreePart:
 def one_shot(
     child: TreePart, *, policy: Literal["completion", "success"] | None = None, **keys: Unpack[PartKeys]
 ) -> TreePart:
-    """Run the child to its end, or to success, once in a run of the tree, and remember how that was."""
+    """Run the child to completion, or to success, once in a run of the tree, and keep its status."""
     return new_part("one_shot", given_keys(child=child, policy=policy), **keys)
 
 
@@ -53,7 +53,7 @@ def repeat(child: TreePart, *, times: int, **keys: Unpack[PartKeys]) -> TreePart
 
 
 def cooldown(child: TreePart, *, after: float | str, **keys: Unpack[PartKeys]) -> TreePart:
-    """Fail without asking the child until `after` has passed since it last ended."""
+    """Fail without ticking the child until `after` has passed since it last ended."""
     return new_part("cooldown", {"child": child, "after": after}, **keys)
 
 
@@ -65,19 +65,19 @@ def remap(
     running: Status | None = None,
     **keys: Unpack[PartKeys],
 ) -> TreePart:
-    """Show another status than the child has."""
+    """Map the status of the child to another status."""
     return new_part("remap", given_keys(child=child, success=success, failure=failure, running=running), **keys)
 
 
 def condition(child: TreePart, *, status: Status, **keys: Unpack[PartKeys]) -> TreePart:
-    """Succeed when the child has this status, run until then."""
+    """Return SUCCESS when the child has this status, RUNNING until then."""
     return new_part("condition", {"child": child, "status": status}, **keys)
 
 
 def if_then_else(
     condition: TreePart, then: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
 ) -> TreePart:
-    """Ask the condition once, then run `then` where it has succeeded, else `otherwise`; fail where there is none."""
+    """Run the condition once, then `then` after success, else `otherwise`; fail without `otherwise`."""
     slots = zip(SLOTS["if_then_else"], (condition, then, otherwise), strict=True)
     return new_part("if_then_else", given_keys(**dict(slots)), **keys)
 
@@ -85,13 +85,13 @@ def if_then_else(
 def while_do_else(
     condition: TreePart, body: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
 ) -> TreePart:
-    """Run `body` while the condition succeeds, `otherwise` while it fails; fail where there is none."""
+    """Run `body` while the condition succeeds, `otherwise` while it fails; fail without `otherwise`."""
     slots = zip(SLOTS["while_do_else"], (condition, body, otherwise), strict=True)
     return new_part("while_do_else", given_keys(**dict(slots)), **keys)
 
 
 def retry(child: TreePart, *, times: int, backoff: float | str | None = None, **keys: Unpack[PartKeys]) -> TreePart:
-    """Run the child again after failure, up to `times` more; for the key of a step see `Retry`."""
+    """Retry the child after failure, up to `times` times; for the key of a step see `Retry`."""
     return new_part("retry", given_keys(child=child, times=times, backoff=backoff), **keys)
 
 
@@ -107,7 +107,7 @@ def guard(
     to: Literal["success", "failure", "skipped"] | None = None,
     **keys: Unpack[NameKeys],
 ) -> TreePart:
-    """Run the child while the expression is true, else fail, or end as `to` says; for the key of a step see `Guard`."""
+    """Run the child while the expression is true, else fail, or end with `to`; for the key of a step see `Guard`."""
     return new_part("guard", given_keys(child=child, when=when, to=to), **keys)
 
 

@@ -1,4 +1,4 @@
-"""Writes behaviors as YAML: readable, without defaults, the same bytes each time."""
+"""Writes behaviors as YAML: readable, without defaults, deterministic."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _FIRST = ("name", "description")
 
 
 def to_yaml(behavior: Behavior) -> str:
-    """Return the YAML document of a behavior, made in Python or read from a file; comments are not kept."""
+    """Return the YAML document of a behavior, built in Python or read from a file; comments are not kept."""
     data = cast("dict[str, object]", msgspec.to_builtins(behavior.document))
     _order(behavior.root, cast("dict[str, object]", data["root"]))
     return write_yaml(data)
 
 
 def write_behavior(behavior: Behavior, file: Path) -> tuple[Path, ...]:
-    """Write a behavior, and those made in Python that it refers to, and return the files written.
+    """Write a behavior and the Python-built behaviors that it refers to; return the files written.
 
     Raises:
-        DocumentError: what was written would not read back as the same behavior, usually because
-            a file that it refers to is not where the document looks for it; nothing replaces `file`.
+        DocumentError: the document would not read back as the same behavior, usually because a
+            referenced file is missing at its path; `file` is not replaced.
     """
     file.parent.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -38,25 +38,27 @@ def write_behavior(behavior: Behavior, file: Path) -> tuple[Path, ...]:
             continue
         if not is_made_in_python(target) or not _is_below(place, file.parent):
             raise DocumentError(
-                f"{file.name} refers to `{path}`, which is not there",
+                f"{file.name} refers to `{path}`, which does not exist",
                 where=place,
-                hint=f"write it beside {behavior.file.name} in {behavior.file.parent}, or write that behavior first",
+                hint=f"write {file.name} in {behavior.file.parent}, or write that behavior first",
             )
         written += write_behavior(target, place)
     text = to_yaml(behavior)
     if parse_behavior(text, file=file).meaning != behavior.meaning:
-        raise DocumentError("the document would not mean the same", where=file, hint="this is a fault of flexcell")
+        raise DocumentError(
+            "the document would not have the same semantics", where=file, hint="this is a bug in flexcell; report it"
+        )
     _replace(file, text)
     return (*written, file)
 
 
 def is_made_in_python(behavior: Behavior) -> bool:
-    """Tell a behavior made in Python from one that was read from a document."""
+    """Return whether a behavior was built in Python, not read from a document."""
     return Path(behavior.source.file) != behavior.file
 
 
 def _order(node: NodeSpec, data: dict[str, object]) -> None:
-    """Put name and description of a node before what may be long, here and in all nodes inside."""
+    """Order name and description of a node and of all nodes inside before long values."""
     for name, child in node.children.items():
         _order(child, _value_at(data, node.child_keys(name)))
     rest = dict(data)
@@ -73,11 +75,11 @@ def _value_at(data: dict[str, object], keys: tuple[str | int, ...]) -> dict[str,
 
 
 def _holds(file: Path, target: Behavior) -> bool:
-    """Tell whether a file already says the same."""
+    """Return whether a file already contains the same behavior."""
     try:
         return file.is_file() and load_behavior(file).meaning == target.meaning
     except DocumentError:
-        return False  # whatever stands there is to be replaced
+        return False  # the existing content is replaced
 
 
 def _is_below(file: Path, folder: Path) -> bool:
@@ -85,7 +87,7 @@ def _is_below(file: Path, folder: Path) -> bool:
 
 
 def _replace(file: Path, text: str) -> None:
-    """Write a file so that a reader sees the old or the new one, never a part."""
+    """Write a file atomically: a reader sees the old or the new content."""
     part = file.with_name(f"{file.name}.part")
     part.write_text(text, encoding="utf-8", newline="\n")
     part.replace(file)

@@ -1,4 +1,4 @@
-"""One behavior under check: its nodes, the signatures of its states, and how each node can end."""
+"""One behavior under check: its nodes, the signatures of its states, and the outcomes of each node."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ class NodeAt:
     parent: str | None
     container: NodeSpec | None
     in_tree: bool
-    """Whether it is a part of a tree: directly inside `tree`, a composite or a decorator."""
+    """Whether the node is a direct child of `tree`, a composite or a decorator."""
 
     @property
     def is_part(self) -> bool:
-        """True for composites, decorators and py_trees behaviours, which stand only in trees."""
+        """True for composites, decorators and py_trees behaviours, which occur only in trees."""
         return self.kind in _PARTS
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnalyzedBehavior:
-    """A behavior with what the checks need to know about it, worked out once.
+    """A behavior with the derived data that the checks share.
 
     `base` is the path of its root in the run: `root`, or that of the reference that uses it.
     """
@@ -55,25 +55,25 @@ class AnalyzedBehavior:
     signatures: Mapping[str, StateSignature]
     """By state name; states that are unknown are absent."""
     unknown: Mapping[str, FlexcellError]
-    """What is wrong with the states that are absent, by state name."""
+    """The errors of the absent states, by state name."""
     catalogue: Catalogue
-    """What a document may name."""
+    """The states and behaviours that documents may name."""
     references: Mapping[str, AnalyzedBehavior]
     """The behaviors referred to, by the path as written."""
     gaps: DocumentGaps
-    """What could not be read of it."""
+    """Its unreadable parts."""
     given: Mapping[str, GivenValues]
-    """The values under `with`, compiled, by path and name; nodes without are absent."""
+    """The compiled values under `with`, by path and name; nodes without values are absent."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
     nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
-    """The outcomes of each node that mean that nothing went wrong, by path."""
+    """The nominal outcomes of each node, by path."""
     statuses: Mapping[str, Statuses] = field(default_factory=dict[str, Statuses])
-    """How each part and leaf of a tree can end, by path."""
+    """The possible statuses of each part and leaf of a tree, by path."""
 
     @property
     def incomplete(self) -> bool:
-        """True when a state or a reference is missing, so that nobody knows which keys it writes."""
+        """True when a state or a reference is missing, so that its written keys are unknown."""
         refers = (placed.node.behavior for placed in self.nodes.values())
         return (
             bool(self.unknown)
@@ -89,29 +89,29 @@ class AnalyzedBehavior:
     def finding(
         self, code: str, message: str, path: str, *keys: str | int, hint: str = "", at_key: bool = False
     ) -> Finding:
-        """Make a finding about the node at `path`, or about the value (or key) at `keys` inside it."""
+        """Return a finding about the node at `path`, or about the value (or key) at `keys` inside it."""
         locate = self.behavior.key_position if at_key else self.behavior.position
         return new_finding(code, message, path=self.run_path(path), position=locate(path, *keys), hint=hint)
 
     def run_path(self, path: str) -> str:
-        """Return the path in a run of the node at `path` of this document."""
+        """Return the path in the run of the node at `path` of this document."""
         return self.base + path.removeprefix("root")
 
     def signature(self, node: NodeSpec) -> StateSignature | None:
-        """Return what the class of a state node declares, None for other nodes and unknown states."""
+        """Return the signature of a state node; None for other nodes and unknown states."""
         return self.signatures.get(node.state) if node.state is not None else None
 
     def referred(self, node: NodeSpec) -> AnalyzedBehavior | None:
-        """Return the behavior that a node refers to, None for other nodes and references left open."""
+        """Return the behavior that a node refers to; None for other nodes and unresolved references."""
         return self.references.get(node.behavior) if node.behavior is not None else None
 
     def possible(self, placed: NodeAt) -> tuple[str, ...] | None:
-        """Return the outcomes that a node can end with; of a tree it may be known that one never occurs."""
+        """Return the possible outcomes of a node, without outcomes of a tree that never occur."""
         outcomes = self.outcomes.get(placed.path)
         if placed.node.tree is None or outcomes is None:
             return outcomes
         ends = self.statuses[self.inside[placed.path][0].path]
-        # A tree whose root is skipped has nothing to do, and succeeds.
+        # A tree whose root is skipped succeeds.
         seen = {"success" if end == "skipped" else end for end in ends}
         return tuple(outcome for outcome in outcomes if outcome not in TREE_OUTCOMES or outcome in seen)
 
@@ -120,12 +120,12 @@ class AnalyzedBehavior:
         return self.inside.get(placed.path, ())
 
     def given_to(self, placed: NodeAt) -> GivenValues:
-        """Return the values under `with` of a node, compiled."""
+        """Return the compiled values under `with` of a node."""
         return self.given.get(placed.path, _NOTHING_GIVEN)
 
 
 def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[AnalyzedBehavior, ...]:
-    """Return the behavior and those it refers to, each once, in the order in which they are first referred to."""
+    """Return the behavior and its references, each once, in the order of their first reference."""
     bases: dict[int, str] = {}
     order: list[Behavior] = []
     due = [(behavior, "root")]
@@ -143,7 +143,7 @@ def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[Analyze
 
 
 def targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
-    """Return where a node in a machine can lead, by the keys inside the node that say so."""
+    """Return the targets of a node in a machine, by the keys inside the node that name them."""
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
     if node.guard is not None or node.timeout is not None or node.on_error is not None:
         found.update(diversions(node))
@@ -151,7 +151,7 @@ def targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
 
 
 def diversions(node: NodeSpec) -> dict[tuple[str, ...], str]:
-    """Return where guard, timeout and on_error of a node lead, by the keys inside the node that say so."""
+    """Return the targets of guard, timeout and on_error of a node, by their keys inside the node."""
     found: dict[tuple[str, ...], str] = {}
     if node.guard is not None and node.guard.to is not None:
         found["guard", "to"] = node.guard.to
@@ -163,11 +163,11 @@ def diversions(node: NodeSpec) -> dict[tuple[str, ...], str]:
 
 
 def template(value: object) -> Template | ExpressionError:
-    """Compile a value of a document, or return what is wrong with it."""
+    """Compile a value of a document, or return its error."""
     try:
         return compile_template(value)
     except ExpressionError as error:
-        # Without its traceback, whose frames would keep all that is being looked at.
+        # Without its traceback, whose frames would keep the checked objects alive.
         return ExpressionError(error.message, where=error.where, hint=error.hint)
 
 
@@ -207,7 +207,7 @@ def _make(
         nominal=nominal,
         statuses=statuses,
     )
-    # Children before containers: how a container can end follows from those inside it.
+    # Children before containers: the outcomes of a container follow from its children.
     for placed in subject.postorder:
         path = placed.path
         own = _own_outcomes(placed, subject)
@@ -259,7 +259,7 @@ def _signatures(
 def _seen_outside(placed: NodeAt, own: tuple[str, ...]) -> tuple[str, ...]:
     if not _sees_diversions(placed.container):
         return own
-    # In a concurrency or foreach container a guard, timeout or error gives the child an outcome that it sees.
+    # In a concurrency or foreach container a guard, timeout or error gives the child an outcome.
     leading = diversions(placed.node).values()
     return tuple(dict.fromkeys((*own, *leading))) if leading else own
 
@@ -290,7 +290,7 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
 
 
 def _nominal(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
-    """Return what the engine takes for a good end of a node: what a class or document calls success, or follows."""
+    """Return the nominal outcomes of a node: declared as success by its class or document, or derived."""
     node = placed.node
     if node.state is not None:
         signature = subject.signatures.get(node.state)

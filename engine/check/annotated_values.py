@@ -1,4 +1,4 @@
-"""Walks a value of a document along its declared type, with what the annotations say of each part of it."""
+"""Walks a value of a document along its declared type, with the annotations of each part."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any, cast
 import msgspec.inspect as inspect
 
 Annotations = Mapping[str, object]
-"""What `extra_json_schema` says: unit, kind of entry, kind of name in the cell."""
+"""The content of `extra_json_schema`: unit, kind of entry, kind of name in the cell."""
 _NOTHING: Annotations = {}
 _DEEPEST = 12
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnnotatedValue:
-    """A text, number or other plain value inside a value, the keys that lead to it, and what is said of it."""
+    """A plain value inside a value, the keys that lead to it, and its annotations."""
 
     steps: tuple[str | int, ...]
     value: object
@@ -26,11 +26,11 @@ class AnnotatedValue:
 
 
 def annotated_values(annotation: Any, value: object) -> Iterator[AnnotatedValue]:
-    """Go through the plain values inside `value` of which annotations say something, in document order.
+    """Yield the annotated plain values inside `value`, in document order.
 
     Args:
-        annotation: The type that the value should be of; what does not fit it is left out.
-        value: Plain data. Where a container is due and something else stands, such as an expression, that counts.
+        annotation: The declared type; parts that do not match it are skipped.
+        value: Plain data. A non-container in the place of a container, such as an expression, is yielded.
     """
     info = _info(annotation)
     if info is not None:
@@ -38,12 +38,12 @@ def annotated_values(annotation: Any, value: object) -> Iterator[AnnotatedValue]
 
 
 def is_annotated(annotation: Any) -> bool:
-    """Tell whether anything is said of some part of a type; it is asked before a value is worked out."""
+    """Return whether some part of a type has annotations; callers test this before they compute a value."""
     return _info(annotation) is not None
 
 
 def annotated_lists(annotation: Any, value: object) -> Iterator[tuple[tuple[str | int, ...], list[AnnotatedValue]]]:
-    """Go through the same values with those of one list together, by the keys that lead to the list or to the value."""
+    """Yield the same values grouped by list, with the keys that lead to the list or value."""
     for steps, group in groupby(annotated_values(annotation, value), key=_list_of):
         yield steps, list(group)
 
@@ -54,15 +54,15 @@ def _list_of(part: AnnotatedValue) -> tuple[str | int, ...]:
 
 @lru_cache(maxsize=4096)
 def _info(annotation: Any) -> inspect.Type | None:
-    """Return the type, None where nothing is said anywhere inside it."""
+    """Return the type; None if no part of it has annotations."""
     found = inspect.type_info(annotation)
-    return found if _is_said(found, 0) else None
+    return found if _has_annotations(found, 0) else None
 
 
-def _is_said(here: inspect.Type, depth: int) -> bool:
+def _has_annotations(here: inspect.Type, depth: int) -> bool:
     if depth > _DEEPEST:
         return False
-    return bool(_said(here)) or any(_is_said(inner, depth + 1) for inner in _inside(here))
+    return bool(_annotations_of(here)) or any(_has_annotations(inner, depth + 1) for inner in _inside(here))
 
 
 def _inside(here: inspect.Type) -> Iterator[inspect.Type]:
@@ -80,7 +80,7 @@ def _inside(here: inspect.Type) -> Iterator[inspect.Type]:
         yield from here.item_types
 
 
-def _said(here: inspect.Type) -> Annotations:
+def _annotations_of(here: inspect.Type) -> Annotations:
     if not isinstance(here, inspect.Metadata):
         return _NOTHING
     extra = cast("Annotations | None", here.extra_json_schema)  # pyright: ignore[reportUnknownMemberType]
@@ -94,30 +94,30 @@ def _parts(
     if isinstance(value, dict):
         mapping = cast("dict[str, object]", value)
         for key, inner in mapping.items():
-            for option, said in options:
+            for option, merged in options:
                 within = _of_key(option, mapping, key)
                 if within is not None:
                     of_field = isinstance(option, inspect.StructType)
-                    yield from _parts(within, inner, (*steps, key), _NOTHING if of_field else said)
+                    yield from _parts(within, inner, (*steps, key), _NOTHING if of_field else merged)
                     break
     elif isinstance(value, list | tuple):
         items = cast("list[object]", value)
         for index, inner in enumerate(items):
-            for option, said in options:
+            for option, merged in options:
                 within = _of_index(option, index)
                 if within is not None:
-                    yield from _parts(within, inner, (*steps, index), said)
+                    yield from _parts(within, inner, (*steps, index), merged)
                     break
     else:
-        said = {key: found for _, each in reversed(options) for key, found in each.items()}
-        if said:
-            yield AnnotatedValue(steps=steps, value=value, says=said)
+        merged = {key: found for _, each in reversed(options) for key, found in each.items()}
+        if merged:
+            yield AnnotatedValue(steps=steps, value=value, says=merged)
 
 
 def _options(here: inspect.Type, says: Annotations) -> Iterator[tuple[inspect.Type, Annotations]]:
-    """Return what a type may be, each with what is said of it; what stands farther inside counts before the rest."""
+    """Return the alternatives of a type with their annotations; inner annotations take precedence."""
     if isinstance(here, inspect.Metadata):
-        yield from _options(here.type, {**says, **_said(here)})
+        yield from _options(here.type, {**says, **_annotations_of(here)})
     elif isinstance(here, inspect.UnionType):
         for option in here.types:
             yield from _options(option, says)

@@ -1,7 +1,7 @@
-"""Checks that arms can be where a behavior takes them: in reach, and free in their cell as it is drawn.
+"""Checks that arm targets of a behavior are reachable and collision-free in the cell document.
 
-Parts are left out, as they are there to be touched; what arms hold is not known. Entries count with the values that the
-store is seeded with, but for those that the behavior itself writes.
+Parts are ignored because contact with them is intended; held objects are unknown. Entries have their seed values,
+except for those that the behavior itself writes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _CODES = {"unreachable": "unreachable-target", "collision": "target-in-collision
 
 @dataclass(frozen=True, kw_only=True)
 class _Seeded:
-    """The entries of a seed; `written` are those that only a run knows, as kind and name."""
+    """The entries of a seed; `written` are those known only in a run, as kind and name."""
 
     document: EntriesDocument | None
     written: Collection[tuple[str, str]]
@@ -63,13 +63,13 @@ class _Named:
 def check_targets(
     behavior: Behavior, catalogue: Catalogue, *, cell: Cell | CellContext | None = None
 ) -> tuple[Finding, ...]:
-    """Return the targets in a behavior, and in those it refers to, that an arm of its cell cannot be at.
+    """Return findings for targets that an arm cannot reach or at which it collides, references included.
 
     Args:
         behavior: The behavior as loaded.
         catalogue: The states by name.
-        cell: The cell that it is to run in, also as it was read before; by default the one that it names. Without any,
-            nothing is looked at.
+        cell: The cell that it runs in, or its context; by default the cell that it names. Without a cell, the
+            result is empty.
     """
     context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
     if context.cell is None or (models := robot_models()) is None:
@@ -92,8 +92,10 @@ def check_targets(
 
 def _targets(subjects: tuple[AnalyzedBehavior, ...], stored: _Seeded) -> Iterator[_Named]:
     known = default_values(subjects[0])
-    found = [(subject, path, each) for subject in subjects for path, each in _asked(subject, subjects, stored, known)]
-    # Poses of an arm whose tool is put elsewhere mean a place that only the run knows.
+    found = [
+        (subject, path, each) for subject in subjects for path, each in _declared(subject, subjects, stored, known)
+    ]
+    # The poses of an arm whose tool frame changes are known only in a run.
     changed = {each.robot for _, _, each in found if isinstance(each, ToolChange)}
     for subject, path, each in found:
         if (
@@ -104,10 +106,10 @@ def _targets(subjects: tuple[AnalyzedBehavior, ...], stored: _Seeded) -> Iterato
             yield _Named(subject=subject, path=path, target=each)
 
 
-def _asked(
+def _declared(
     subject: AnalyzedBehavior, subjects: tuple[AnalyzedBehavior, ...], stored: _Seeded, known: Mapping[str, object]
 ) -> Iterator[tuple[str, ArmTarget | ToolChange]]:
-    # A behavior that is referred to is given its parameters by each reference: only constants are known.
+    # Each reference sets the parameters of a referred behavior: only its constants are known.
     given = known if subject is subjects[0] else dict.fromkeys(subject.behavior.parameters, UNKNOWN_PLACEHOLDER)
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
@@ -119,7 +121,7 @@ def _asked(
         try:
             yield from [(placed.path, each) for each in state.arm_targets(stored)]
         except Exception:
-            # With stand-ins for unknown values it may fail in any way: then nothing is known of it.
+            # With placeholders for unknown values it may raise anything: its targets are then unknown.
             continue
 
 

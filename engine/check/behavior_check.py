@@ -37,7 +37,7 @@ from engine.errors import DocumentError
 from engine.host.gc_pause import pause_gc
 
 MAX_CHECK_STEPS = 200 * MAX_STEPS
-"""What the constant expressions of a behavior may cost in a check together: 2 s."""
+"""Maximum total cost of the constant expressions of a behavior in one check: 2 s."""
 
 
 @pause_gc
@@ -49,15 +49,15 @@ def check_behavior(
     cell: Cell | CellContext | None = None,
     parameters: Mapping[str, object] | None = None,
 ) -> tuple[Finding, ...]:
-    """Return everything that is wrong with a behavior and those it refers to, in document order.
+    """Return the findings of a behavior and those it refers to, in document order.
 
     Args:
         behavior: The behavior as loaded.
-        catalogue: The states by name, and what the project allows; nothing is imported.
-        entries: Names, by kind, of the entries that the store will have; by default those that the
-            cell is seeded with. They are left unchecked where it names no cell.
-        cell: The cell that it is to run in, also as it was read before; by default the one that it names.
-        parameters: What a run gives it, by which names are looked for in the cell; the rest has its defaults.
+        catalogue: The states by name, and the modules that the project allows; nothing is imported.
+        entries: Names, by kind, of the entries that the store will have; by default the seed of the
+            cell. Without a cell they are not checked.
+        cell: The cell that it runs in, or its context; by default the cell that it names.
+        parameters: The parameters of a run, for checks of names in the cell; others have their defaults.
     """
     context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
     findings = [_invalid_cell(behavior, context.mistake)] if context.mistake is not None else []
@@ -82,13 +82,13 @@ def check_behavior(
 def check_given(
     behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]
 ) -> tuple[Finding, ...]:
-    """Return the names that the cell of a run does not offer, with the parameters that the run is given.
+    """Return findings for names that are not in the cell of a run, with the parameters of the run.
 
     Args:
-        behavior: What is to run.
+        behavior: The behavior to run.
         catalogue: The states by name.
-        cell: Where.
-        parameters: By name; the rest have their defaults.
+        cell: The cell of the run.
+        parameters: Values by name; others have their defaults.
     """
     subjects = analyze_behaviors(behavior, catalogue)
     use = CellNameCheck(cell_names(cell), subjects, parameters)
@@ -99,7 +99,7 @@ def check_given(
 def check_file(
     path: Path | str, catalogue: Catalogue, entries: Entries | None = None, *, cell: Cell | None = None
 ) -> tuple[Finding, ...]:
-    """Return everything that is wrong with the behavior in a file: each mistake, and what is found around it."""
+    """Return the findings of the behavior in a file: its document errors, and the findings in the rest."""
     return check_survey(survey_behavior(path), path, catalogue, entries, cell=cell)
 
 
@@ -111,7 +111,7 @@ def check_survey(
     *,
     cell: Cell | CellContext | None = None,
 ) -> tuple[Finding, ...]:
-    """Return the mistakes of a document as it was read, and everything that is wrong with it around them."""
+    """Return the document errors of a survey and the findings in the rest of the document."""
     read = [invalid_document_finding(error, path) for error in survey.mistakes]
     read += [_circular(circle) for circle in survey.circles]
     if survey.behavior is None:
@@ -150,7 +150,7 @@ def _check_one(
     if subject.behavior.gaps:
         findings = [each for each in findings if not gaps.follows(each, "root" + each.path.removeprefix(subject.base))]
     elif not any(finding.severity == "error" for finding in findings):
-        # With a mistyped name, say, nobody knows what else would be used.
+        # A mistyped name, for example, hides which parameters are used.
         findings += check_unused(subject, {each.key for each in read})
     mismatched = {finding.position for finding in findings if finding.code == "type-mismatch"}
     findings = [f for f in findings if f.code != "bad-parameter" or f.position not in mismatched]
@@ -158,7 +158,7 @@ def _check_one(
 
 
 def _passed_on(subjects: Sequence[AnalyzedBehavior]) -> dict[int, set[str]]:
-    """Return the keys of each behavior that a reference to it reads when it has ended."""
+    """Return the keys of each behavior that its references read at its end."""
     found: dict[int, set[str]] = {}
     for subject in subjects:
         for placed in subject.nodes.values() if subject.references else ():
@@ -169,7 +169,7 @@ def _passed_on(subjects: Sequence[AnalyzedBehavior]) -> dict[int, set[str]]:
 
 
 def read_beside(behavior: Behavior) -> tuple[Path, ...]:
-    """Return the files that a check of a behavior reads beside it: its own cell, and the entries of that."""
+    """Return the additional files that a check of a behavior reads: its cell and the seed entries."""
     if behavior.cell_file is None:
         return ()
     try:

@@ -1,4 +1,4 @@
-"""Checks cell and entries documents: models and drivers that exist, names that fit together, units that are meant."""
+"""Checks cell and entries documents: existing models and drivers, consistent names, plausible units."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from engine.registry import DRIVERS, registered_names
 from engine.suggestions import did_you_mean
 
 _PART_FRAME = "part"
-"""The frame of whatever part a pose is used for."""
+"""The frame of the part that a pose is used for."""
 
 
 def check_cell(cell: Cell) -> tuple[Finding, ...]:
-    """Return everything that is wrong with a cell and the entries that it is seeded with; nothing is connected."""
+    """Return the findings of a cell and of its seed entries, without connecting to a device."""
     names = cell_names(cell)
     models = robot_models()
     findings = list(_suspect(cell.source, CellDocument))
@@ -38,12 +38,12 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
 
 
 def check_entries_document(entries: Entries, names: CellNames | None = None) -> tuple[Finding, ...]:
-    """Return what is wrong with entries: numbers in another unit and, with the names of a cell, frames it has not."""
+    """Return the findings of entries: suspect units and, with the names of a cell, unknown frames."""
     findings = list(_suspect(entries.source, EntriesDocument))
     for name, pose in entries.document.poses.items():
         suspicion = unit_suspicion("xyz", pose.xyz, "m", steps=("poses", name, "xyz"))
         findings += [_suspected(entries.source, suspicion)] if suspicion is not None else []
-        # An arm takes its base, a state that handles parts any body that the cell shows.
+        # Arms accept their base as a frame, states that handle parts any body of the cell.
         if names is not None and pose.frame != _PART_FRAME:
             findings += _missing(names, "frame", pose.frame, entries.source.position(("poses", name, "frame")))
     return tuple(sorted(findings, key=finding_sort_key))
@@ -53,9 +53,9 @@ def _check_driver(cell: Cell, robot: str, entry: RobotSpec) -> Iterator[Finding]
     known = registered_names(DRIVERS)
     if not entry.simulated and entry.driver_kind not in known:
         position = cell.source.position(("robots", robot, "driver", "kind"))
-        hint = did_you_mean(entry.driver_kind, known) if known else "none is installed; `driver: sim` simulates it"
+        hint = did_you_mean(entry.driver_kind, known) if known else "none is installed; use `driver: sim`"
         yield new_finding(
-            "unknown-driver", f"no driver is called {entry.driver_kind}", path="", position=position, hint=hint
+            "unknown-driver", f"there is no driver `{entry.driver_kind}`", path="", position=position, hint=hint
         )
 
 
@@ -68,7 +68,7 @@ def _check_models(cell: Cell, robot: str, entry: RobotSpec, models: RobotModels)
         named.append(("gripper", entry.gripper.model, (*here, "gripper", "model"), models.tools()))
     unknown = [each for each in named if not _is_folder(each[1]) and each[1] not in each[3]]
     for what, model, path, known in unknown:
-        message, hint = f"no {what} model is called {model}", did_you_mean(model, known)
+        message, hint = f"there is no {what} model `{model}`", did_you_mean(model, known)
         yield new_finding("unknown-model", message, path="", position=cell.source.position(path), hint=hint)
     if unknown:
         return

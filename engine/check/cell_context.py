@@ -1,4 +1,4 @@
-"""The cell that a behavior is checked in, read once for all checks that look at it."""
+"""The cell that a behavior is checked in, read once for all checks."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from engine.errors import DocumentError
 
 @dataclass(frozen=True, kw_only=True)
 class CellContext:
-    """A cell, the names that it offers, and the entries that its store is seeded with; each None where it is not known.
+    """A cell, the names in it, and the seed entries of its store; each None if unknown.
 
-    `mistake` says why something of a cell that was given is not known.
+    `mistake` is the reason why a part of a given cell is unknown.
     """
 
     cell: Cell | None = None
@@ -25,7 +25,7 @@ class CellContext:
 
 
 def cell_context(behavior: Behavior, cell: Cell | None = None) -> CellContext:
-    """Read the cell in which a behavior is to run: the one given, else the one that it names."""
+    """Read the cell of a behavior: the given one, else the one that it names."""
     if cell is None and behavior.cell_file is None:
         return CellContext()
     seed: Entries | None = None

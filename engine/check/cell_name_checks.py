@@ -1,4 +1,4 @@
-"""Checks that robots, tools, parts, frames and whatever else of its cell a behavior names are in that cell."""
+"""Checks that the names of robots, tools, parts, frames and other items in a behavior are in its cell."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from engine.errors import ExpressionError
 
 @dataclass(frozen=True, kw_only=True)
 class _Use:
-    """A name that a node is given, and the kind of thing in the cell that it is to be the name of.
+    """A name in a node, and the kind of cell item that it refers to.
 
-    With an `owner` the name is below that: a link of a robot. `besides` are names that are always there.
+    With an `owner` the name belongs to that item: a link of a robot. `besides` are names that are always valid.
     """
 
     placed: NodeAt
@@ -33,14 +33,14 @@ class _Use:
     value: object
     kind: CellNameKind
     key: str | None
-    """The parameter or userdata key that the name is, where it is an expression of nothing else."""
+    """The parameter or userdata key, if the name is an expression with only that key."""
     owner: object = None
     besides: Sequence[str] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Due:
-    """The kind of name that a behavior takes as a parameter, by what is done with it inside."""
+    """The kind of name that a behavior expects as a parameter, derived from its uses inside."""
 
     kind: CellNameKind
     besides: Sequence[str]
@@ -48,12 +48,12 @@ class _Due:
 
 @dataclass
 class CellNameCheck:
-    """Compares the names in behaviors with those that a cell offers.
+    """Compares the names in behaviors with those of a cell.
 
     Args:
-        names: Those of the cell.
-        subjects: The behavior under check, and after it those that it refers to.
-        parameters: What a run is given, by name; the rest has its defaults.
+        names: The names of the cell.
+        subjects: The behavior under check, followed by those that it refers to.
+        parameters: The parameters of a run by name; others have their defaults.
     """
 
     names: CellNames
@@ -63,11 +63,11 @@ class CellNameCheck:
     _added: list[frozenset[str] | None] = field(default_factory=list["frozenset[str] | None"])
 
     def check(self, subject: AnalyzedBehavior, resolver: TypeInference | None) -> Iterator[Finding]:
-        """Find names in one of the behaviors that the cell does not offer, and joint angles that its arms cannot have.
+        """Find names in one of the behaviors that are not in the cell, and invalid joint angles.
 
         Args:
             subject: The behavior.
-            resolver: What is known of its userdata; None to leave that out.
+            resolver: The inferred types of its userdata; None to skip userdata.
         """
         top = subject is self.subjects[0]
         known = {**default_values(subject), **self.parameters} if top else {}
@@ -75,7 +75,7 @@ class CellNameCheck:
         for use in self._uses(subject, known):
             if not isinstance(use.value, UnknownValue):
                 yield from self._compared(subject, use, use.value, self._origin(subject, use))
-            # Of a behavior that is referred to, the uses made of it say what its userdata begins as.
+            # The initial userdata of a referred behavior depends on each reference.
             if resolver is not None and top and use.key is not None and use.key not in self.parameters:
                 yield from self._reaching(subject, use, use.key, resolver)
 
@@ -88,7 +88,7 @@ class CellNameCheck:
         more: frozenset[str] | None = frozenset()
         if self.names.may_come(use.kind, name):
             maybe = True
-            more = self._put()
+            more = self._added_names()
             if more is None or name in more:
                 return
         code = "maybe-unknown-in-cell" if maybe else "unknown-in-cell"
@@ -97,25 +97,25 @@ class CellNameCheck:
         yield subject.finding(code, message, use.placed.path, *use.keys, hint=hint, at_key=use.keys == ("with",))
 
     def _reaching(self, subject: AnalyzedBehavior, use: _Use, key: str, resolver: TypeInference) -> Iterator[Finding]:
-        """Compare what a key may be, as far as it stands in the document."""
+        """Compare the possible values of a key, as far as the document contains them."""
         kinds = [kind for _, kind in resolver.before(use.placed.path, key)]
         values = [kind.value for kind in kinds if isinstance(kind, ConstantValue)]
         wrong = [value for value in values if (name := self._name(use, value)) and not self.names.has(use.kind, name)]
         always = len(wrong) == len(kinds)
         for value in wrong:
-            # As a default it is told already.
+            # A wrong default is already reported.
             if value != use.value:
                 origin = f", which `${{{key}}}` {'is' if always else 'may be'}"
                 yield from self._compared(subject, use, value, origin, maybe=not always)
 
     def _name(self, use: _Use, value: object) -> str | None:
-        """Return the name as the cell lists it; None where there is none to look for."""
+        """Return the name as the cell lists it; None if there is no name to check."""
         is_number = use.kind == "output" and isinstance(value, int) and not isinstance(value, bool)
         if not (is_number or isinstance(value, str)) or value == "" or value in use.besides:
             return None
         if use.owner is None:
             return str(value)
-        # Of what does not exist there is nothing to be told, and that it does not is told already.
+        # A missing owner is already reported; its parts are not checked.
         exists = isinstance(use.owner, str) and any(use.owner in names for names in self.names.by_kind.values())
         return f"{use.owner}/{value}" if exists else None
 
@@ -150,7 +150,7 @@ class CellNameCheck:
             yield _Use(placed=placed, keys=keys, value=value, kind=due.kind, key=key, besides=due.besides)
 
     def _parameters(self, subject: AnalyzedBehavior) -> Mapping[str, _Due]:
-        """Return the kinds of names that a behavior takes for its parameters."""
+        """Return the kinds of names that a behavior expects for its parameters."""
         if id(subject) not in self._due:
             found: dict[str, _Due] = {}
             for use in self._uses(subject, {}):
@@ -159,8 +159,8 @@ class CellNameCheck:
             self._due[id(subject)] = found
         return self._due[id(subject)]
 
-    def _put(self) -> frozenset[str] | None:
-        """Return the names that the behaviors add to the cell themselves; None where only a run knows them."""
+    def _added_names(self) -> frozenset[str] | None:
+        """Return the names that the behaviors add to the cell; None if they are known only in a run."""
         if not self._added:
             found = [each for subject in self.subjects for each in _added(subject)]
             self._added.append(
@@ -181,7 +181,7 @@ def _of_state(
         written = {each.steps: each.value for each in _expressions(parameter.type, found)}
         for part in annotated_values(parameter.type, value):
             kind, of = is_kind(part.says.get("cell_name")), part.says.get("of")
-            # What a class says by itself is right for some robot, and may be wrong for that which is given.
+            # A class default suits some robot, not necessarily the one in this node.
             if kind is None or (found is None and of not in given):
                 continue
             source = written.get(part.steps)
@@ -197,13 +197,13 @@ def _of_state(
 
 
 def _expressions(annotation: Any, found: Template | ExpressionError | None) -> Iterator[AnnotatedValue]:
-    """Go through the parts of a value as they are written, where it has expressions in it."""
+    """Yield the parts of a value as written, if it contains expressions."""
     if isinstance(found, Template) and not found.constant:
         yield from annotated_values(annotation, known_part(found, {}))
 
 
 def _added(subject: AnalyzedBehavior) -> Iterator[object]:
-    """Return the names of things that states of a behavior add to the cell."""
+    """Return the names of items that states of a behavior add to the cell."""
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
         for name, parameter in signature.parameters.items() if signature is not None else ():

@@ -18,7 +18,7 @@ _PREEMPTED = ""
 
 
 def check_conditions(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find unknown children and outcomes in conditions, who cannot be preempted, and what no condition covers."""
+    """Find unknown children and outcomes, children that cannot be preempted, and uncovered combinations."""
     for placed in subject.nodes.values():
         if placed.node.concurrency is not None:
             names = list(_check_names(subject, placed))
@@ -51,8 +51,8 @@ def _check_names(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]
                     "unknown-child", f"there is no child `{name}` here", placed.path, *keys, hint=hint
                 )
             elif name in rule.when and rule.needs_all:
-                message = f"`{name}` has ended when this condition holds"
-                hint = "name children that may still be at work; one of those it asks for may be, with `at_least`"
+                message = f"this condition preempts `{name}`, which has already ended when it holds"
+                hint = "name children that may still be active; with `at_least`, a required child may be preempted"
                 yield subject.finding("preempts-itself", message, placed.path, *keys, hint=hint)
 
 
@@ -60,7 +60,7 @@ def _check_coverage(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
     container = placed.node.concurrency
     outcomes = {child.name: subject.possible(child) for child in subject.children(placed)}
     known = {name: found for name, found in outcomes.items() if found is not None}
-    # With a child that never ends, the moment when all have finished never comes, unless it is preempted.
+    # With a child that never ends and is not preempted, the children never all end.
     if container is None or len(known) < len(outcomes):
         return
     preempted = preemptable(container.rules)
@@ -72,7 +72,7 @@ def _check_coverage(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
     for combination in uncovered:
         shown = ", ".join(f"{name}: {outcome or 'preempted'}" for name, outcome in combination.items())
         hint = "add a condition for it, or `otherwise: OUTCOME`"
-        message = f"no condition holds when all children have finished with {shown}"
+        message = f"no condition holds when all children have ended with {shown}"
         yield subject.finding("uncovered-combination", message, *where, hint=hint, at_key=True)
     if search.exhausted and not uncovered:
         message = f"not all combinations were checked: more than {MAX_STEPS} steps"
@@ -80,7 +80,7 @@ def _check_coverage(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
 
 
 class _Open(NamedTuple):
-    """A rule that may hold yet: how many more children must end as it says, of how many that have not ended."""
+    """A rule that may still hold: how many of its undecided children must still end as it requires."""
 
     when: Mapping[str, str]
     needed: int
@@ -89,11 +89,11 @@ class _Open(NamedTuple):
 
 @dataclass
 class _Search:
-    """Looks for combinations of child outcomes that satisfy no condition.
+    """Searches for combinations of child outcomes that satisfy no condition.
 
-    Only outcomes that conditions name can matter, so each child has those, and one other that
-    stands for the rest. Partial combinations that satisfy a condition are not followed further. A child that a
-    condition may preempt can end so as well, with `_PREEMPTED` for an outcome, where that condition holds.
+    Only outcomes that conditions name matter, so the choices of each child are those and one other that
+    represents the rest. Partial combinations that satisfy a condition are pruned. A child that a condition may
+    preempt can also end with the outcome `_PREEMPTED`, where that condition holds.
     """
 
     rules: Sequence[ConcurrencyCondition]
@@ -106,7 +106,7 @@ class _Search:
     )
 
     def uncovered(self) -> Iterator[dict[str, str]]:
-        """Go through uncovered combinations until the search is over or takes too long."""
+        """Yield uncovered combinations until the search ends or exceeds `MAX_STEPS`."""
         named: dict[str, set[str]] = {}
         for rule in (*self.rules, *self.preempting):
             for name, outcome in rule.when.items():
@@ -114,7 +114,7 @@ class _Search:
         for name in [name for rule in self.preempting for name in rule.preempt]:
             named.setdefault(name, set()).add(_PREEMPTED)
         choices = {name: self._distinct(all_of, named.get(name, set())) for name, all_of in self.outcomes.items()}
-        # The children that most conditions name decide most, so they are tried first.
+        # Children named by the most conditions are the most selective: they are tried first.
         order = sorted(named, key=lambda name: -sum(name in rule.when for rule in self.rules))
         open_rules = [_Open(rule.when, rule.needed, len(rule.when)) for rule in self.rules]
         for chosen in self._extend({}, order, choices, open_rules):
@@ -140,9 +140,9 @@ class _Search:
             if self._can_happen(chosen):
                 yield dict(chosen)
             return
-        # What counts children asks only how many have ended so, not which; who is preempted asks how they have.
-        asked = tuple(chosen.items()) if self.preempting else ()
-        left = (len(order), tuple((id(rule.when), rule.needed) for rule in open_rules), asked)
+        # Counting conditions depend only on how many children have ended so; preemption depends on which.
+        decided = tuple(chosen.items()) if self.preempting else ()
+        left = (len(order), tuple((id(rule.when), rule.needed) for rule in open_rules), decided)
         if left in self._covered:
             return
         is_covered = True
@@ -157,7 +157,7 @@ class _Search:
             self._covered.add(left)
 
     def _can_happen(self, chosen: Mapping[str, str]) -> bool:
-        """Tell whether each child that was preempted was so by a condition that holds."""
+        """Return whether a condition that holds preempts each preempted child."""
 
         def ended_so(name: str, due: str) -> bool:
             return chosen.get(name) == due
@@ -170,7 +170,7 @@ class _Search:
 
 
 def _still_open(rules: Sequence[_Open], name: str, outcome: str) -> list[_Open] | None:
-    """Return the rules that can still hold once a child has ended so; None if one holds."""
+    """Return the rules that can still hold after a child has ended with `outcome`; None if one holds."""
     still_open: list[_Open] = []
     for rule in rules:
         wanted = rule.when.get(name)

@@ -13,17 +13,17 @@ _NUMERIC = ("number", "integer")
 
 
 def check_unused(subject: AnalyzedBehavior, used: Collection[str]) -> Iterator[Finding]:
-    """Find parameters that nobody reads; `used` are the names that somebody does."""
+    """Find parameters that are not read; `used` are the names that are."""
     for name in subject.behavior.parameters:
         if name not in used:
             position = subject.behavior.source.position(("parameters", name), of_key=True)
-            message = f"nothing uses the parameter `{name}`"
+            message = f"the parameter `{name}` is not used"
             hint = f"use it as `${{{name}}}`, or remove it"
             yield new_finding("unused-parameter", message, path=subject.base, position=position, hint=hint)
 
 
 def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find contradictions in parameters, `success` and `outcomes`."""
+    """Find inconsistencies in parameters, `success` and `outcomes`."""
     for name, parameter in subject.behavior.parameters.items():
         yield from _check_parameter(subject, name, parameter)
     declared = subject.behavior.outcomes
@@ -41,7 +41,7 @@ def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
         if outcome not in leaving:
             position = subject.behavior.source.position(("outcomes", index))
             message = f"nothing leads to the outcome `{outcome}`"
-            hint = "remove it, or lead a transition to it"
+            hint = "remove it, or add a transition to it"
             yield new_finding("unused-outcome", message, path=subject.base, position=position, hint=hint)
 
 
@@ -57,14 +57,14 @@ def _check_parameter(subject: AnalyzedBehavior, name: str, parameter: ParameterS
         yield found("bad-declaration", f"parameter `{name}` is a {parameter.type} and has limits", key, hint=hint)
     if low is not None and high is not None and low > high:
         message = f"parameter `{name}`: the minimum {low:g} is above the maximum {high:g}"
-        yield found("bad-declaration", message, "minimum", hint="exchange them")
+        yield found("bad-declaration", message, "minimum", hint="swap them")
     for index, choice in enumerate(parameter.choices):
         problem = parameter.problem(choice)
         if problem:
             yield found("bad-declaration", f"choice of parameter `{name}`: {problem}", "choices", index)
     if parameter.required:
-        hint = "give it a `default`"
-        yield found("required-parameter", f"parameter `{name}` must be given for each run", hint=hint)
+        hint = "add a `default`"
+        yield found("required-parameter", f"parameter `{name}` must be set for each run", hint=hint)
         return
     problem = parameter.problem(parameter.default)
     if problem:

@@ -1,4 +1,4 @@
-"""How a part of a behavior tree can end, worked out from how its children can."""
+"""The possible statuses of a part of a behavior tree, derived from those of its children."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NEVER: Statuses = frozenset()
 
 
 def end_statuses(node: NodeSpec, children: Sequence[tuple[str, Statuses]]) -> Statuses:
-    """Return with which statuses a composite or decorator can end; empty when it cannot end at all.
+    """Return the statuses with which a composite or decorator can end; empty if it never ends.
 
     Args:
         node: The composite or decorator.
@@ -47,7 +47,7 @@ def end_statuses(node: NodeSpec, children: Sequence[tuple[str, Statuses]]) -> St
         return child
     if node.guard is not None and node.guard.to is not None:
         return child | closed_statuses(node)
-    # What is left can fail by itself: timeout, guard, cooldown.
+    # The remaining kinds can fail by themselves: timeout, guard, cooldown.
     return child | FAILURE
 
 
@@ -60,7 +60,7 @@ _OPPOSITE: dict[Status, Status] = {"success": "failure", "failure": "success", "
 
 
 def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
-    """A sequence goes on after success, a selector after failure, both after what was skipped."""
+    """A sequence continues after success, a selector after failure, both after a skipped child."""
     found: set[Status] = set()
     for statuses in ends:
         found |= statuses - {onward, "skipped"}
@@ -75,7 +75,7 @@ def _all_skipped(ends: Sequence[Statuses]) -> Statuses:
 
 
 def _branched(ends: Sequence[Statuses]) -> Statuses:
-    """The first says which of the others is run; where there is no third, it fails."""
+    """The first child selects which of the others runs; without a third, the part fails."""
     condition, then, *otherwise = ends
     found: Statuses = then if "success" in condition else NEVER
     return found | ((otherwise[0] if otherwise else FAILURE) if condition - SUCCESS else NEVER)

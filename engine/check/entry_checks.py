@@ -1,4 +1,4 @@
-"""Checks a behavior against the entries that a store really holds."""
+"""Checks a behavior against the actual entries of a store."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from engine.document.behavior import Behavior
 
 
 def check_stored(behavior: Behavior, catalogue: Catalogue, entries: Iterable[tuple[str, str]]) -> tuple[Finding, ...]:
-    """Return the entries that a behavior and those it refers to use, and that neither are among `entries` nor written.
+    """Return findings for entries that a behavior uses, and that are neither in `entries` nor written.
 
     Args:
-        behavior: What is to run.
+        behavior: The behavior to run, with its references.
         catalogue: The states by name.
-        entries: Kind and name of each entry that there is.
+        entries: Kind and name of each existing entry.
     """
     subjects = analyze_behaviors(behavior, catalogue)
     known = add_written_entries(names_by_kind(entries), subjects)

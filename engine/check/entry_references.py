@@ -1,4 +1,4 @@
-"""Checks that named entries which a behavior uses are among those that its store will have."""
+"""Checks that the named entries of a behavior are among those that its store will have."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Steps = tuple[str, ...]
 
 
 def add_written_entries(entries: Entries, subjects: Iterable[AnalyzedBehavior]) -> Entries:
-    """Return the entries with those that states of the behaviors write themselves, as far as their names are known."""
+    """Return the entries and those that states of the behaviors write, as far as their names are known."""
     found = {kind: set(names) for kind, names in entries.items()}
     for kind, name in entries_written(subjects):
         found.setdefault(kind, set()).add(name)
@@ -30,7 +30,7 @@ def add_written_entries(entries: Entries, subjects: Iterable[AnalyzedBehavior]) 
 
 
 def entries_written(subjects: Iterable[AnalyzedBehavior]) -> Iterator[tuple[str, str]]:
-    """Yield kind and name of the entries that states of the behaviors write themselves, as far as they are known."""
+    """Yield kind and name of the entries that states of the behaviors write, as far as they are known."""
     for subject in subjects:
         yield from _written(subject)
 
@@ -49,14 +49,14 @@ def _written(subject: AnalyzedBehavior) -> Iterator[tuple[str, str]]:
 
 
 def check_entries(subject: AnalyzedBehavior, entries: Entries) -> Iterator[Finding]:
-    """Find names of entries that do not exist, or exist as another kind than the state reads."""
+    """Find names of entries that do not exist, or have another kind than the state reads."""
     defaults = default_values(subject)
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
         for name, found in subject.given_to(placed).items():
             known, value = value_by_default(found, defaults)
             if known and isinstance(value, dict | str) and signature is not None and name in signature.parameters:
-                # A field called `entry` that is not marked with a kind may name an entry of any kind.
+                # A field `entry` without a declared kind may name an entry of any kind.
                 kinds = {("entry",): "", **entry_fields(signature.parameters[name].type)}
                 yield from _check_value(subject, placed, name, cast("object", value), kinds, entries)
 
@@ -72,11 +72,11 @@ def _check_value(
             continue
         others = [other for other, names in entries.items() if entry in names]
         message = f"there is no {f'{kind} ' if kind else ''}entry `{entry}`"
-        hint = f"there is a {others[0]} entry of that name" if others else _near(entry, kind, entries)
+        hint = f"the kind of `{entry}` is {others[0]}" if others else _suggestion(entry, kind, entries)
         yield subject.finding("missing-entry", message, placed.path, "with", name, *steps, hint=hint)
 
 
-def _near(entry: str, kind: str, entries: Entries) -> str:
+def _suggestion(entry: str, kind: str, entries: Entries) -> str:
     return did_you_mean(entry, entries.get(kind, ()) if kind else [each for some in entries.values() for each in some])
 
 
@@ -88,7 +88,7 @@ def _inside(value: object, steps: Steps) -> object:
 
 @lru_cache(maxsize=1024)
 def entry_fields(annotation: Any) -> Mapping[Steps, str]:
-    """Return the fields of a type that are marked as names of entries, with their kind, by the way to them."""
+    """Return the kinds of the fields of a type that name entries, by the steps to the field."""
     found: dict[Steps, str] = {}
     due: list[tuple[Steps, inspect.Type]] = [((), inspect.type_info(annotation))]
     while due:

@@ -1,4 +1,4 @@
-"""The pages that explain the kinds of findings: `docs/findings/<code>.md`, in an installed package beside this file."""
+"""Pages about the kinds of findings: `docs/findings/<code>.md`, or next to this file in an installed package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What must not be said of a behavior with gaps: findings that only follow from what could not be read."""
+"""Suppresses findings that only follow from unreadable parts of a behavior."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.document.partial_behavior import ANY_KEY
 _LEADING = ("transitions", "guard", "timeout", "on_error")
 _CONTAINING = (*KINDS, *TREE_KINDS, *WRAPPERS)
 _HARMLESS = frozenset(("in", "with", "autonomy", "resume", "description", "every", "name", "success"))
-"""Keys of a node whose absence changes neither where it leads nor what it writes."""
+"""Keys of a node whose absence changes neither its transitions nor its writes."""
 _DECLARING = ("parameters", "userdata")
 _OF_COURSE = frozenset(("unreachable-node", "no-path-to-outcome", "instant-loop", "unknown-target", "ambiguous-target"))
 _OF_VALUES = frozenset(
@@ -28,7 +28,7 @@ _OF_REFERENCES = frozenset(
 
 
 class DocumentGaps:
-    """The gaps of one behavior, and what they hide."""
+    """The gaps of one behavior, and the findings that they suppress."""
 
     def __init__(self, behavior: Behavior) -> None:
         self._of: Mapping[str, frozenset[str]] = behavior.gaps
@@ -40,27 +40,27 @@ class DocumentGaps:
         self._around = {path.rpartition("/")[0] for path in self._of if path and self.hides_course(path)}
         nodes = [keys for path, keys in self._of.items() if path]
         self.hides_values = self.hides(*_DECLARING) or any(not keys <= _HARMLESS for keys in nodes)
-        """Whether nobody knows which userdata keys are defined where."""
+        """Whether the defined userdata keys are unknown."""
         self._hides_given = any(_has(keys, "with", *_CONTAINING) for keys in nodes)
 
     def hides(self, *keys: str) -> bool:
-        """Tell whether one of these keys of the behavior itself could not be read."""
+        """Return whether one of these keys of the behavior itself is unreadable."""
         return _has(self._of.get("", ()), *keys)
 
     def hides_course(self, path: str) -> bool:
-        """Tell whether nobody knows where a node leads."""
+        """Return whether the transitions of a node are unknown."""
         return _has(self._of.get(path, ()), *_LEADING)
 
     def hides_ends(self, path: str) -> bool:
-        """Tell whether nobody knows how what a node does can end."""
+        """Return whether the outcomes of a node are unknown."""
         return _has(self._of.get(path, ()), *_CONTAINING) or path in self._referred
 
     def hides_inside(self, path: str) -> bool:
-        """Tell whether nobody knows where one of the nodes directly inside a container leads."""
+        """Return whether the transitions of a direct child of a container are unknown."""
         return path in self._around
 
     def follows(self, finding: Finding, path: str) -> bool:
-        """Tell whether a finding at the node `path` may be there only because of a gap."""
+        """Return whether a finding at the node `path` may only be caused by a gap."""
         code, around = finding.code, path.rpartition("/")[0]
         if path in self._of or (path in self._referred and code in _OF_REFERENCES):
             return True

@@ -1,4 +1,4 @@
-"""Strongly connected parts of a graph: the nodes that lie on loops together."""
+"""Strongly connected components of a graph: the nodes that lie on common loops."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ T = TypeVar("T", bound=Hashable)
 
 
 def strong_components(leads: Mapping[T, Sequence[T]]) -> list[list[T]]:
-    """Return the strongly connected parts, those that others lead to first (Tarjan's algorithm without recursion)."""
+    """Return the strongly connected components in reverse topological order (Tarjan, without recursion)."""
     number: dict[T, int] = {}
     low: dict[T, int] = {}
     stack: list[T] = []

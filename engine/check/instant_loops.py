@@ -1,8 +1,8 @@
-"""Checks for loops in which no time passes and nothing happens that could end them.
+"""Checks for loops in which no time passes and nothing changes that could end them.
 
-A state says of itself that it is `instant`. A container ends at once where a way through instant
-states leads to that end. A loop of such ways is an error when nothing in it writes what it decides
-on: it goes round for ever. A loop that counts is left alone; a run has a bound for it.
+A state class declares that it is `instant`. A container is instant for an outcome that a path through instant
+states reaches. A loop of such paths is an error when no state in it writes a value that the loop decides on: it
+never ends. A loop that counts is not reported; a run limits it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SHOWN = 6
 
 
 def check_loops(subject: AnalyzedBehavior, read: Iterable[KeyRead]) -> Iterator[Finding]:
-    """Find loops of a machine through states that end at once, which nothing can end."""
+    """Find endless loops of a machine through instant states."""
     instant = InstantOutcomes(subject)
     if not instant.any:
         return
@@ -33,7 +33,7 @@ def check_loops(subject: AnalyzedBehavior, read: Iterable[KeyRead]) -> Iterator[
 
 
 class InstantOutcomes:
-    """With which outcomes each node can end in the instant in which it was entered."""
+    """The outcomes with which each node can end in the instant in which it is entered."""
 
     def __init__(self, subject: AnalyzedBehavior, others: dict[int, InstantOutcomes] | None = None) -> None:
         self._subject = subject
@@ -44,8 +44,8 @@ class InstantOutcomes:
             found = self.ends[placed.path] = self._own(placed)
             self.any = self.any or bool(found) or placed.node.guard is not None
 
-    def ways(self, placed: NodeAt) -> tuple[str, ...]:
-        """Return where a child of a machine can lead at once."""
+    def instant_targets(self, placed: NodeAt) -> tuple[str, ...]:
+        """Return the targets that a child of a machine can reach in the same instant."""
         node = placed.node
         found = [to for outcome, to in node.transitions.items() if outcome in self.ends[placed.path]]
         if node.guard is not None and node.guard.to is not None:
@@ -88,7 +88,7 @@ class InstantOutcomes:
             name = due.pop()
             if name not in reached:
                 reached.add(name)
-                due += self.ways(by_name[name]) if name in by_name else ()
+                due += self.instant_targets(by_name[name]) if name in by_name else ()
         return frozenset(reached - set(by_name))
 
     def _of_branches(self, container: ConcurrencySpec, children: Sequence[NodeAt]) -> frozenset[str]:
@@ -103,7 +103,7 @@ class InstantOutcomes:
         return frozenset(found)
 
     def _of_tree(self, placed: NodeAt, children: Sequence[NodeAt]) -> frozenset[str]:
-        """A tree ends at once when each of its leaves does; anything else is left to the run."""
+        """A tree is instant when each of its leaves is; other trees are not analysed."""
         for child in children:
             due = self._subject.statuses[child.path] if child.is_part else self._subject.outcomes.get(child.path, ("",))
             if not self.ends[child.path].issuperset(due):
@@ -120,7 +120,7 @@ class InstantOutcomes:
 
 
 def _waits(node: NodeSpec) -> bool:
-    """Tell whether a node may wait before it is run again."""
+    """Return whether a node may wait before a retry."""
     return node.retry is not None and node.retry.child is None and node.retry.backoff_s > 0
 
 
@@ -130,7 +130,7 @@ def _check_machine(
     children = subject.children(placed)
     by_name = {child.name: child for child in children}
     ranks = {child.name: rank for rank, child in enumerate(children)}
-    leads = {child.name: [to for to in instant.ways(child) if to in by_name] for child in children}
+    leads = {child.name: [to for to in instant.instant_targets(child) if to in by_name] for child in children}
     for loop in _loops(leads):
         inside = [by_name[name] for name in loop]
         if _can_change(subject, inside, keys):
@@ -139,13 +139,13 @@ def _check_machine(
         start = loop.index(first.name)
         shown = [*loop[start:], *loop[:start]]
         names = shown if len(shown) <= _SHOWN else [*shown[: _SHOWN - 1], "…"]
-        message = f"no time passes in the loop {' → '.join([*names, first.name])}, and nothing in it changes its course"
-        hint = "let one of these states wait for something, or write what the loop decides on"
+        message = f"no time passes in the loop {' → '.join([*names, first.name])}, and no state changes its decisions"
+        hint = "let one of these states wait, or write a value that the loop decides on"
         yield subject.finding("instant-loop", message, first.path, hint=hint)
 
 
 def _can_change(subject: AnalyzedBehavior, loop: Sequence[NodeAt], keys: Mapping[str, set[str]]) -> bool:
-    """Tell whether something in the loop writes what something in it reads."""
+    """Return whether a node in the loop writes a key that a node in it reads."""
     read: set[str] = set()
     written: set[str] = set()
     due = list(loop)
@@ -164,15 +164,15 @@ def _can_change(subject: AnalyzedBehavior, loop: Sequence[NodeAt], keys: Mapping
 
 
 def _loops(leads: Mapping[str, Sequence[str]]) -> Iterator[list[str]]:
-    """Go through the strongly connected parts that have a loop, each as one way round or, failing that, its members."""
+    """Yield one cycle of each strongly connected component that has one."""
     for part in strong_components(leads):
         members = set(part)
         if len(part) == 1 and part[0] not in leads[part[0]]:
             continue
-        yield _way_round(part, members, leads)
+        yield _cycle(part, members, leads)
 
 
-def _way_round(part: Sequence[str], members: set[str], leads: Mapping[str, Sequence[str]]) -> list[str]:
+def _cycle(part: Sequence[str], members: set[str], leads: Mapping[str, Sequence[str]]) -> list[str]:
     trail = [part[0]]
     while True:
         onward = next((to for to in leads[trail[-1]] if to in members), trail[0])

@@ -1,4 +1,4 @@
-"""Checks that joint angles which an arm of the cell is told have as many joints as it, and are within their limits."""
+"""Checks that commanded joint angles match the number of joints and the joint limits of the arm in the cell."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from engine.check.magnitude import MOST_TURNS_RAD
 from engine.document.signature import StateSignature
 
 JointRanges = Mapping[str, tuple[tuple[float, float], ...]]
-"""The least and the greatest angle of each joint, radians, by the name of the robot."""
+"""Minimum and maximum angle of each joint in radians, by robot name."""
 _NEARLY_RAD = 1e-6
 
 
 def check_joint_targets(
     subject: AnalyzedBehavior, ranges: JointRanges, known: Mapping[str, object]
 ) -> Iterator[Finding]:
-    """Find joint angles in a behavior that the arm they are for cannot have.
+    """Find joint angles in a behavior that violate the joint limits or joint count of their arm.
 
     Args:
         subject: The behavior.
-        ranges: Those of the robots whose models are known.
+        ranges: The joint ranges of the robots whose models are known.
         known: Parameters of the behavior by name.
     """
     for placed in subject.nodes.values():
@@ -65,13 +65,17 @@ def _check_state(
 def _fault(
     robot: str, ranges: tuple[tuple[float, float], ...], angles: list[float]
 ) -> tuple[int | None, str, str] | None:
-    """Return which joint is wrong, if it is one, what is wrong, and what to do."""
+    """Return the index of the wrong joint (None for the whole list), the message and the hint."""
     if len(angles) != len(ranges):
-        return None, f"`{robot}` has {len(ranges)} joints, not {len(angles)}", "give one angle for each, in radians"
+        return (
+            None,
+            f"`{robot}` has {len(ranges)} joints, not {len(angles)}",
+            "write one angle in radians for each joint",
+        )
     if max(map(abs, angles)) > MOST_TURNS_RAD:
-        return None  # told as degrees
+        return None  # reported as degrees by `check_magnitudes`
     for index, (angle, (low, high)) in enumerate(zip(angles, ranges, strict=True)):
         if not low - _NEARLY_RAD <= angle <= high + _NEARLY_RAD:
-            message = f"joint {index + 1} of `{robot}` cannot be at {angle:g} rad"
-            return index, message, f"it turns from {low:.4g} to {high:.4g} rad"
+            message = f"joint {index + 1} of `{robot}`: {angle:g} rad is outside the joint limits"
+            return index, message, f"the limits are {low:.4g} to {high:.4g} rad"
     return None

@@ -1,4 +1,4 @@
-"""Values under `with` as far as they are known before a run: constants, and expressions over what is known."""
+"""Values under `with` as far as they are known before a run: constants, and expressions over known values."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from engine.errors import ExpressionError
 
 @dataclass(frozen=True)
 class UnknownValue:
-    """What only a run knows; `key` is the parameter or userdata key that it is, where it is nothing but one."""
+    """A value known only in a run; `key` is its parameter or userdata key, if it is only a key."""
 
     key: str | None = None
 
 
 def known_part(found: Template | ExpressionError, known: Mapping[str, object]) -> object:
-    """Return a value as plain data, with `UnknownValue` where it depends on more than is known.
+    """Return a value as plain data, with `UnknownValue` for parts that depend on unknown names.
 
     Args:
-        found: The value, compiled.
+        found: The compiled value.
         known: Parameters by name.
     """
     if isinstance(found, ExpressionError):
@@ -32,7 +32,7 @@ def known_part(found: Template | ExpressionError, known: Mapping[str, object]) -
         try:
             return found.evaluate(known)
         except ExpressionError:
-            return UnknownValue()  # told where kinds are compared, or at the latest by a run
+            return UnknownValue()  # reported by the type checks, or at the latest by a run
     return _inside(found, known)
 
 

@@ -1,4 +1,4 @@
-"""Finds numbers so large that they seem to be in another unit: degrees for radians, millimetres for metres."""
+"""Finds numbers so large that they are probably in another unit: degrees for radians, millimetres for metres."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engine.document.parameter_spec import ParameterSpec
 
 @dataclass(frozen=True, kw_only=True)
 class _Unit:
-    """A unit, the one that is taken for it, and how large a number alone, or the largest of several, still is."""
+    """A unit, the unit it is confused with, and the largest plausible number alone or in a list."""
 
     other: str
     factor: float
@@ -25,18 +25,18 @@ class _Unit:
 
 
 MOST_TURNS_RAD = 2.5 * math.pi
-"""More than any joint of an arm turns to one side."""
+"""More than the range of any arm joint in one direction."""
 _UNITS: Mapping[str, _Unit] = {
     "rad": _Unit(other="degrees", factor=math.pi / 180.0, alone=MOST_TURNS_RAD, in_list=MOST_TURNS_RAD),
-    # A hall is longer than a gripper is wide.
+    # Positions in a hall are larger than the width of a gripper.
     "m": _Unit(other="millimetres", factor=0.001, alone=10.0, in_list=30.0),
-    "m/s": _Unit(other="millimetres a second", factor=0.001, alone=10.0, in_list=30.0),
+    "m/s": _Unit(other="millimetres per second", factor=0.001, alone=10.0, in_list=30.0),
 }
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnitSuspicion:
-    """A number, or a list of numbers, that seems to be in another unit; `steps` lead to it."""
+    """A number, or a list of numbers, that is probably in another unit; `steps` lead to it."""
 
     steps: tuple[str | int, ...]
     message: str
@@ -44,12 +44,12 @@ class UnitSuspicion:
 
 
 def unit_suspicions(annotation: Any, value: object, *, name: str = "") -> Iterator[UnitSuspicion]:
-    """Go through what seems to be in another unit than the annotations inside a type say, once for each list.
+    """Yield the numbers that are probably in another unit than their type declares, once per list.
 
     Args:
         annotation: The type.
         value: Plain data.
-        name: What the whole value is called.
+        name: Name of the whole value.
     """
     for steps, found in annotated_lists(annotation, value):
         inner = next((step for step in reversed(steps) if isinstance(step, str)), name)
@@ -61,12 +61,12 @@ def unit_suspicions(annotation: Any, value: object, *, name: str = "") -> Iterat
 def unit_suspicion(
     name: str, values: Sequence[object], unit: object, *, steps: tuple[str | int, ...] = ()
 ) -> UnitSuspicion | None:
-    """Return what is odd about numbers in a unit; None where nothing is.
+    """Return the suspicion about numbers in a unit; None if they are plausible.
 
     Args:
-        name: What they are called.
-        values: The number alone, or all in the list; what is no number is not looked at.
-        unit: Theirs.
+        name: Their name.
+        values: The single number, or all items of the list; items that are not numbers are ignored.
+        unit: Their unit.
         steps: The keys that lead to the number, or to the list of them.
     """
     due = _UNITS.get(str(unit))
@@ -76,16 +76,16 @@ def unit_suspicion(
     largest = max(numbers, key=abs)
     if not (due.in_list if len(values) > 1 else due.alone) < abs(largest) < math.inf:
         return None
-    meant = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
+    converted = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
     return UnitSuspicion(
         steps=steps,
         message=f"`{name}`: {largest:g} {unit} looks like {due.other}",
-        hint=f"if so, write {meant if len(values) == 1 else f'[{meant}]'}",
+        hint=f"if so, write {converted if len(values) == 1 else f'[{converted}]'}",
     )
 
 
 def check_magnitudes(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find numbers in a behavior that seem to be in another unit than is due."""
+    """Find numbers in a behavior that are probably in another unit than their parameter."""
     declared = subject.behavior.parameters
     for name, parameter in declared.items():
         found = unit_suspicion(name, [parameter.default], _unit(parameter)) if not parameter.required else None

@@ -1,4 +1,4 @@
-"""Checks what nodes are given under `with`, `in` and `out`: names, types, ranges, well-formed expressions."""
+"""Checks the values under `with`, `in` and `out` of nodes: names, types, ranges, well-formed expressions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from engine.suggestions import did_you_mean
 
 
 def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find parameters and keys that do not exist, values that do not fit, and expressions that are not well formed."""
+    """Find unknown parameters and keys, invalid values, and malformed expressions."""
     defaults = default_values(subject)
     for placed in subject.nodes.values():
         yield from _check_expressions(subject, placed)
@@ -42,7 +42,7 @@ def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
 
 
 def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
-    """Return the parameters of a behavior that have a default, as a run that is given nothing sees them."""
+    """Return the parameters of a behavior that have a default, as a run without values sees them."""
     declared = subject.behavior.parameters.items()
     return {
         name: parameter.normal(parameter.default)
@@ -52,13 +52,13 @@ def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
 
 
 def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, object]) -> tuple[bool, object]:
-    """Return whether a value is known when all parameters have their defaults, and which it is."""
+    """Return whether a value is known with the defaults of all parameters, and the value."""
     if isinstance(found, ExpressionError) or not found.names <= defaults.keys():
         return False, None
     try:
         return True, found.evaluate(defaults)
     except ExpressionError:
-        return False, None  # told where kinds are compared, or at the latest by a run
+        return False, None  # reported by the type checks, or at the latest by a run
 
 
 def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
@@ -80,7 +80,7 @@ def _check_names(
             yield subject.finding("unknown-parameter", message, placed.path, "with", name, hint=hint, at_key=True)
     for name in required:
         if name not in given:
-            message = f"`{what}` needs the parameter `{name}`"
+            message = f"`{what}` requires the parameter `{name}`"
             yield subject.finding("missing-parameter", message, placed.path, hint=f"add `{name}: …` to `with`")
 
 
@@ -114,13 +114,13 @@ def _check_state(
         yield from _check_together(subject, placed, signature, values)
 
 
-_DEFAULTS = "this is what it is when the parameters of the behavior have their defaults"
+_DEFAULTS = "this is the value with the default parameters of the behavior"
 
 
 def _check_together(
     subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature, values: Mapping[str, object]
 ) -> Iterator[Finding]:
-    """Find values that fit one by one and not together, such as two of which only one may be given."""
+    """Find values that are valid alone but not together, such as two mutually exclusive parameters."""
     complaint = _complaint(dict(values), signature.state, words=str)
     if complaint is not None:
         hint = f"see `flexcell states show {signature.name}`"
@@ -130,20 +130,20 @@ def _check_together(
 def _complaint(
     value: object, kind: Any, *, words: Callable[[str], str] = explain_validation_error
 ) -> tuple[str, tuple[str | int, ...]] | None:
-    """Return what is wrong with a value and where inside it; None when it fits."""
+    """Return what is wrong with a value and where inside it; None when it is valid."""
     try:
         msgspec.convert(value, cast("type[Any]", kind))
     except msgspec.ValidationError as error:
         what, _, inner = str(error).partition(" - at ")
         return words(what), _steps(inner)
     except Exception:
-        # A check of a custom state may raise anything when it is made; a run tells what.
+        # The constructor of a custom state may raise anything; a run reports it.
         return None
     return None
 
 
 def _steps(inner: str) -> tuple[str | int, ...]:
-    """Return the keys that a msgspec path such as `$.xyz[1]` names, as far as it names them."""
+    """Return the keys in a msgspec path such as `$.xyz[1]`, as far as they are named."""
     found: list[str | int] = []
     for name, index in re.findall(r"\.([^.\[\]`]+)|\[(\d+|\.\.\.)\]", inner):
         if index == "...":

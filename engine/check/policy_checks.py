@@ -16,16 +16,16 @@ _RESUME = ("rerun", "ask")
 
 
 def check_policies(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find settings that can have no effect, never let a run go on, or are no such thing."""
+    """Find settings that have no effect, block a run, or are invalid."""
     for placed in subject.nodes.values():
         node = placed.node
         if node.retry is not None and node.retry.child is None and not node.retry.errors and not node.retry.outcomes:
-            message = "this `retry` never happens: it names no `outcomes`, and `errors` is false"
+            message = "this `retry` has no effect: it names no `outcomes`, and `errors` is false"
             yield subject.finding("idle-retry", message, placed.path, "retry", at_key=True)
         for outcome, level in node.autonomy.items():
             if level == "full":
-                message = f"`{outcome}` requires `full`, which no run has more of: it never passes by itself"
-                hint = "require `high` at most, unless an operator is to be asked in every run"
+                message = f"`{outcome}` requires `full`, the highest level: it never passes without the operator"
+                hint = "require at most `high`, unless every run has to ask the operator"
                 yield subject.finding(
                     "autonomy-never-passes", message, placed.path, "autonomy", outcome, hint=hint, at_key=True
                 )
@@ -40,7 +40,7 @@ def _check_resume(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding
     outcomes = subject.outcomes.get(placed.path)
     if resume is None or outcomes is None or resume in (*_RESUME, *outcomes):
         return
-    message = f"`{resume}` is no way to resume `{placed.name}`"
+    message = f"`{resume}` is not a valid `resume` value of `{placed.name}`"
     hint = did_you_mean(resume, (*_RESUME, *outcomes))
     yield subject.finding("bad-resume", message, placed.path, "resume", hint=hint)
 
@@ -48,7 +48,7 @@ def _check_resume(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding
 def _check_constant(
     subject: AnalyzedBehavior, placed: NodeAt, keys: tuple[str, ...], found: Template
 ) -> Iterator[Finding]:
-    """Check what does not depend on a run: a guard that is always the same, items that are no list."""
+    """Check constants: a guard that is always open or closed, items that are not a list."""
     try:
         value = found.evaluate({})
     except ExpressionError as error:
@@ -57,18 +57,18 @@ def _check_constant(
     key = keys[-1]
     if key == "when":
         if not isinstance(value, bool):
-            message = f"the guard takes true or false, and gets {value!r}"
-            hint = f"write `${{{value}}}`" if isinstance(value, str) else "compare it"
+            message = f"the guard expects true or false, but gets {value!r}"
+            hint = f"write `${{{value}}}`" if isinstance(value, str) else "write a comparison"
             yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
             return
         message = f"this guard is always {'open' if value else 'closed'}"
-        hint = "remove it" if value else "let it depend on a parameter or a userdata key"
+        hint = "remove it" if value else "make it depend on a parameter or a userdata key"
         yield subject.finding("constant-guard", message, placed.path, *keys, hint=hint)
     elif key == "times" and whole_number(value) is None:
-        message = f"`times` takes a whole number, 0 or more, and gets {value!r}"
+        message = f"`times` expects an integer of 0 or more, but gets {value!r}"
         hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
         yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
     elif key == "items" and not isinstance(value, list):
-        message = f"`items` takes a list, and gets {value!r}"
+        message = f"`items` expects a list, but gets {value!r}"
         hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
         yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)

@@ -1,4 +1,4 @@
-"""Checks that every state of a machine can be reached and can come to an end."""
+"""Checks that every state of a machine is reachable and can reach an outcome of the machine."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from engine.suggestions import did_you_mean
 
 
 def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find missing initial states, states nothing leads to, and states that never lead out."""
+    """Find missing initial states, unreachable states, and states from which no outcome is reachable."""
     for placed in subject.nodes.values():
         machine = placed.node.sequential
         if machine is None:
             continue
         if machine.initial not in machine.states:
-            message = f"there is no state `{machine.initial}` to begin with"
+            message = f"the initial state `{machine.initial}` does not exist"
             hint = did_you_mean(machine.initial, machine.states)
             yield subject.finding("missing-initial", message, placed.path, placed.node.kind, "initial", hint=hint)
             continue
@@ -28,7 +28,7 @@ def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> I
     reached = _reachable([initial], leads)
     for name in leads:
         if name not in reached:
-            hint = "remove it, or lead a transition to it"
+            hint = "remove it, or add a transition to it"
             yield subject.finding(
                 "unreachable-node", f"no transition leads to `{name}`", f"{placed.path}/{name}", hint=hint
             )
@@ -38,12 +38,12 @@ def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> I
             comes_from.setdefault(target, []).append(name)
     ends = [target for target in comes_from if target not in leads]
     leaving = _reachable(ends, comes_from)
-    # States that lead nowhere at all are reported as unconnected; a trap has transitions and no way out.
+    # States without transitions are reported as unconnected; a trap has transitions but no exit.
     trap = [name for name in leads if name in reached and name not in leaving and leads[name]]
     if trap:
         shown = ", ".join(f"`{name}`" for name in trap[:5])
         message = f"from {shown}{' and others' if len(trap) > 5 else ''} no outcome of this machine can be reached"
-        hint = "lead a transition out of the loop, unless it is meant to run until it is stopped"
+        hint = "add a transition out of the loop, unless it is intended to run until it is stopped"
         yield subject.finding("no-path-to-outcome", message, f"{placed.path}/{trap[0]}", hint=hint)
 
 

@@ -1,4 +1,4 @@
-"""Checks that nodes which run side by side do not command the same device."""
+"""Checks that concurrent nodes do not command the same device."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from engine.document.signature import StateSignature
 
 _NONE: frozenset[str] = frozenset()
 _SIDE_BY_SIDE = ("concurrency", "parallel", "while_do_else")
-"""Of the last one only its condition runs beside the others."""
+"""In the last one only the condition runs concurrently with the others."""
 _MOST_USES = 20_000
-"""Uses of referred behaviors that are looked at, each with the parameters it gives."""
+"""Maximum number of behavior references evaluated, each with its own parameters."""
 
 
 def check_resources(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find resources that two branches of a concurrency or parallel use, as far as constants tell."""
+    """Find resources that two branches of a concurrency or parallel use, as far as they are constant."""
     if not any(placed.kind in _SIDE_BY_SIDE for placed in subject.nodes.values()):
         return
     used = _Resources().used(subject, dict.fromkeys(subject.behavior.parameters, UNKNOWN_PLACEHOLDER))
@@ -31,12 +31,12 @@ def check_resources(subject: AnalyzedBehavior) -> Iterator[Finding]:
                 alone = placed.kind == "while_do_else" and child is not children[0]
                 other = owners.get(resource, child) if alone else owners.setdefault(resource, child)
                 if other is not child:
-                    message = f"`{other.name}` and `{child.name}` run side by side and both command `{resource}`"
-                    yield subject.finding("shared-resource", message, child.path, hint="run them one after the other")
+                    message = f"`{other.name}` and `{child.name}` run concurrently and both command `{resource}`"
+                    yield subject.finding("shared-resource", message, child.path, hint="run them in sequence")
 
 
 class _Resources:
-    """The resources of nodes; what a referred behavior uses is worked out once for the same parameters."""
+    """The resources of nodes; those of a referred behavior are computed once per set of parameters."""
 
     def __init__(self) -> None:
         self._uses = 0
@@ -47,7 +47,7 @@ class _Resources:
 
         Args:
             subject: The behavior.
-            known: Its parameters; those that only a run knows are `UNKNOWN_PLACEHOLDER`.
+            known: Its parameters; those known only in a run are `UNKNOWN_PLACEHOLDER`.
         """
         used: dict[str, frozenset[str]] = {}
         for placed in subject.postorder:
@@ -58,7 +58,7 @@ class _Resources:
     def _own(self, subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, object]) -> frozenset[str]:
         signature = subject.signature(placed.node)
         if signature is not None:
-            # Most states command nothing, and a class that does not say otherwise need not be made.
+            # Most states command no device: only classes that declare resources are instantiated.
             if not signature.commands_hardware:
                 return frozenset()
             return _resources_of(signature, given_values(subject, placed, known))
@@ -77,7 +77,7 @@ class _Resources:
 
 
 def _resources_of(signature: StateSignature, given: Mapping[str, object]) -> frozenset[str]:
-    """Ask the state which resources it commands."""
+    """Return the resources that the state commands."""
     state = try_make_state(signature, given)
     try:
         return (
@@ -86,5 +86,5 @@ def _resources_of(signature: StateSignature, given: Mapping[str, object]) -> fro
             else _NONE
         )
     except Exception:
-        # It is a custom class, asked with stand-ins for unknown values: what it names is then unknown too.
+        # A custom class may fail with placeholders for unknown values: its resources are then unknown.
         return _NONE

@@ -1,4 +1,4 @@
-"""States made before a run, with stand-ins for the parameters that only the run knows."""
+"""States created before a run, with placeholders for parameters that are known only in the run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.errors import ExpressionError
 from engine.state import State
 
 UNKNOWN_PLACEHOLDER = "\0unknown"
-"""Stands for values that only a run knows."""
+"""Placeholder for values that are known only in a run."""
 
 
 def given_values(subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, object]) -> dict[str, object]:
@@ -29,12 +29,12 @@ def given_values(subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, 
             try:
                 values[name] = found.evaluate(known)
             except ExpressionError:
-                continue  # told where kinds are compared
+                continue  # reported by the type checks
     return values
 
 
 def try_make_state(signature: StateSignature, given: Mapping[str, object]) -> State | None:
-    """Return the state with these parameters, None where they do not fit, which is told elsewhere."""
+    """Return the state with these parameters; None if they are invalid, which another check reports."""
     values: dict[str, object] = {}
     for name, parameter in signature.parameters.items():
         value = given.get(name, UNKNOWN_PLACEHOLDER if parameter.required else parameter.default)
@@ -47,11 +47,11 @@ def try_make_state(signature: StateSignature, given: Mapping[str, object]) -> St
     try:
         return signature.state(**{names[name]: value for name, value in values.items()})
     except Exception:
-        # It is a custom class, which may refuse stand-ins for unknown values in any way.
+        # A custom class may reject placeholders with any exception.
         return None
 
 
 @cache
 def _field_names(state: type[State]) -> Mapping[str, str]:
-    """Field name by parameter name; kept, as reading type hints for every node would double the load time."""
+    """Field name by parameter name; cached, as reading type hints for every node would double the load time."""
     return {found.encode_name: found.name for found in msgspec.structs.fields(state)}

@@ -1,4 +1,4 @@
-"""Checks that every outcome leads somewhere and every transition to something that exists."""
+"""Checks that every outcome is connected and every transition target exists."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ def _unknown(subject: AnalyzedBehavior, placed: NodeAt, name: str, error: Flexce
 
 
 def _check_named_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    """Find outcomes that retry, autonomy, `success` and `next` name and the node does not have."""
+    """Find outcomes in `retry`, `autonomy`, `success` and `next` that the node does not have."""
     node = placed.node
     named: list[tuple[str, Sequence[str | int], str, bool]] = []
     if node.retry is not None and node.retry.child is None:
         outcomes = _each(node.retry.outcomes)
-        named += [(outcome, ("retry", "outcomes", i), "to retry on", False) for i, outcome in outcomes]
-    named += [(outcome, ("autonomy", outcome), "to ask the operator about", True) for outcome in node.autonomy]
-    named += [(outcome, ("success", i), "that could mean success", False) for i, outcome in _each(node.success)]
+        named += [(outcome, ("retry", "outcomes", i), "for `retry`", False) for i, outcome in outcomes]
+    named += [(outcome, ("autonomy", outcome), "for `autonomy`", True) for outcome in node.autonomy]
+    named += [(outcome, ("success", i), "for `success`", False) for i, outcome in _each(node.success)]
     if named:
         yield from _check_known(subject, placed, placed, named)
     if node.foreach is not None and node.foreach.next:
         child = subject.children(placed)[0]
-        following = [(o, ("foreach", "next", i), "to go on after", False) for i, o in _each(node.foreach.next)]
+        following = [(o, ("foreach", "next", i), "for `next`", False) for i, o in _each(node.foreach.next)]
         yield from _check_known(subject, placed, child, following)
 
 
@@ -65,18 +65,18 @@ def _check_known(
 
 def _check_machine(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     siblings = placed.node.children
-    leaving = _ways_out(subject, placed)
+    leaving = _machine_outcomes(subject, placed)
     for child in subject.children(placed):
         if leaving is not None and child.name in leaving:
-            message = f"`{child.name}` is a state of this machine and an outcome of it"
+            message = f"`{child.name}` is both a state and an outcome of this machine"
             yield subject.finding("ambiguous-target", message, child.path, hint="rename the state")
     for child in subject.children(placed):
         yield from _check_targets(subject, child, siblings, leaving)
         yield from _check_outcomes(subject, child)
 
 
-def _ways_out(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[str] | None:
-    """Return the outcomes that a machine may have; None where its container takes any."""
+def _machine_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[str] | None:
+    """Return the outcomes that a machine may have; None if its container accepts any."""
     if placed.container is None:
         return subject.behavior.outcomes
     return placed.node.transitions if placed.container.sequential is not None else None
@@ -88,7 +88,7 @@ def _check_targets(
     for keys, target in targets(child.node).items():
         if leaving is None or target in siblings or target in leaving:
             continue
-        message = f"`{target}` is neither a state of this machine nor an outcome that leads out of it"
+        message = f"`{target}` is neither a state nor an outcome of this machine"
         hint = did_you_mean(target, {*siblings, *leaving})
         yield subject.finding("unknown-target", message, child.path, *keys, hint=hint)
 
@@ -100,7 +100,7 @@ def _check_outcomes(subject: AnalyzedBehavior, child: NodeAt) -> Iterator[Findin
     connected = child.node.transitions
     for outcome in subject.possible(child) or ():
         if outcome not in connected and not _reported_inside(child.node):
-            message = f"outcome `{outcome}` of `{child.name}` leads nowhere"
+            message = f"outcome `{outcome}` of `{child.name}` is not connected"
             hint = f"add `{outcome}: …` to its `transitions`"
             yield subject.finding("unconnected-outcome", message, child.path, hint=hint)
     for outcome in connected:
@@ -114,7 +114,7 @@ def _check_outcomes(subject: AnalyzedBehavior, child: NodeAt) -> Iterator[Findin
 
 
 def _reported_inside(node: NodeSpec) -> bool:
-    """A machine's loose ends are reported at the transition inside it, where the slip is likely to be."""
+    """Unconnected outcomes of a machine are reported at the transition inside it, the likely cause."""
     return node.sequential is not None
 
 

@@ -1,4 +1,4 @@
-"""Checks parts of behavior trees: children that are never asked, parts that never end, foreign behaviours."""
+"""Checks parts of behavior trees: children that never run, parts that never end, py_trees behaviours."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engine.suggestions import did_you_mean
 
 
 def check_trees(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find what can be known to be wrong with trees before a tick."""
+    """Find defects of trees that are known before the first tick."""
     for placed in subject.nodes.values():
         if placed.in_tree and placed.is_part:
             yield from _check_dead_children(subject, placed)
@@ -38,21 +38,21 @@ def _check_dead_children(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[
         statuses = subject.statuses[child.path]
         if statuses and onward not in statuses and "skipped" not in statuses:
             names = ", ".join(f"`{later.name}`" for later in children[number + 1 :][:3])
-            message = f"{names} can never be asked: `{child.name}` before it always {always}"
-            hint = "change the order, or give the outcomes that mean SUCCESS with `success`"
+            message = f"{names} cannot run: `{child.name}` before it always {always}"
+            hint = "change the order, or declare the outcomes that mean SUCCESS with `success`"
             yield subject.finding("unreachable-node", message, children[number + 1].path, hint=hint)
             return
 
 
 def _check_dead_branches(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    """Look at what an `if_then_else` or `while_do_else` can never choose."""
+    """Find branches that an `if_then_else` or `while_do_else` never chooses."""
     condition, *branches = subject.children(placed)
-    said = subject.statuses[condition.path]
+    possible = subject.statuses[condition.path]
     for branch, chosen in zip(branches, TREE_OUTCOMES, strict=False):
-        if said and chosen not in said and not (chosen == "failure" and "skipped" in said):
+        if possible and chosen not in possible and not (chosen == "failure" and "skipped" in possible):
             always = "fails" if chosen == "success" else "succeeds"
-            message = f"`{branch.name}` can never be asked: `{condition.name}` always {always}"
-            hint = "change the condition, or give the outcomes that mean SUCCESS with `success`"
+            message = f"`{branch.name}` cannot run: `{condition.name}` always {always}"
+            hint = "change the condition, or declare the outcomes that mean SUCCESS with `success`"
             yield subject.finding("unreachable-node", message, branch.path, hint=hint)
 
 
@@ -61,11 +61,11 @@ def _check_end(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     if subject.statuses[placed.path] or not all(inside):
         return
     shown = " or ".join(sorted(inside[0]))
-    said = "shows every end of its child as RUNNING"
+    reason = "maps SUCCESS and FAILURE of its child to RUNNING"
     if placed.node.condition is not None:
-        said = f"waits for {placed.node.condition.status}, and its child only ends with {shown}"
-    hint = "leave one end as it is, or the tree goes on until it is stopped"
-    message = f"this `{placed.kind}` never ends: it {said}"
+        reason = f"waits for {placed.node.condition.status}, but its child only ends with {shown}"
+    hint = "change the mapping or the status; otherwise the tree runs until it is stopped"
+    message = f"this `{placed.kind}` never ends: it {reason}"
     yield subject.finding("never-ends", message, placed.path, placed.kind, hint=hint, at_key=True)
 
 
@@ -77,13 +77,13 @@ def _check_restarts(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
     ends = InstantOutcomes(subject).ends
     slow = [f"`{child.name}`" for child in wanted if not ends[child.path]]
     if len(slow) > 1:
-        message = f"{', '.join(slow[:3])} take time and must succeed in one tick; until then they are run again"
-        hint = "remove `synchronise: false`: what has succeeded then waits for the others"
+        message = f"{', '.join(slow[:3])} take time and must succeed in the same tick; until then they restart"
+        hint = "remove `synchronise: false`: a child that has succeeded then waits for the others"
         yield subject.finding("restarted-children", message, placed.path, "parallel", "synchronise", hint=hint)
 
 
 def _check_watching(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    """Look at the states directly in a part of a tree, which a composite without memory may ask again."""
+    """Check the leaves of a part of a tree, which a composite without memory may repeat."""
     for child in subject.children(placed):
         signature = subject.signature(child.node)
         if signature is None:
@@ -91,25 +91,23 @@ def _check_watching(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
         is_action = signature.commands_hardware
         in_front = _is_in_front(subject, child)
         if child.node.every is not None and (is_action or not in_front):
-            what = "an action" if is_action else "not in front of anything that is at work meanwhile"
+            what = "an action" if is_action else "not in front of an action"
             message = f"`{child.name}` is {what}, so `every` has no effect"
-            hint = "it is for checks in front of an action in a `sequence` or `selector` without memory, or in `while`"
+            hint = "it applies to checks before an action in a `sequence` or `selector` without memory, or in `while`"
             yield subject.finding("idle-every", message, child.path, "every", hint=hint, at_key=True)
-        elif in_front and not is_action and not _is_asked_again(subject, child, signature):
-            message = (
-                f"`{child.name}` stands in front of others to watch over them, and nothing asks it again meanwhile"
-            )
-            hint = f"give it a period, `every: 200 ms`; or say in the class of `{signature.name}` that it `observes`"
+        elif in_front and not is_action and not _is_repeated(subject, child, signature):
+            message = f"the check `{child.name}` is not repeated while the nodes after it run"
+            hint = f"set a period, `every: 200 ms`, or declare `observes` in the class of `{signature.name}`"
             yield subject.finding("unwatched-check", message, child.path, "state", hint=hint)
 
 
-def _is_asked_again(subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature) -> bool:
+def _is_repeated(subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature) -> bool:
     reads = any(isinstance(given, Template) and given.names for given in subject.given_to(placed).values())
     return signature.instant or signature.observes or placed.node.every is not None or reads or bool(signature.inputs)
 
 
 def _is_in_front(subject: AnalyzedBehavior, placed: NodeAt) -> bool:
-    """Tell whether a leaf of a tree, or a part around it, stands in front of others in a composite without memory."""
+    """Return whether a node, or a part around it, precedes others in a composite without memory."""
     below = placed
     while below.parent is not None and below.in_tree:
         around = subject.nodes[below.parent]
@@ -128,7 +126,7 @@ def _without_memory(node: NodeSpec) -> bool:
 
 
 def _check_behaviour(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> Iterator[Finding]:
-    # Imported where it is wanted: most trees have no behaviour of py_trees, and it takes its time to load.
+    # Imported on demand: py_trees loads slowly, and most trees have no behaviour of it.
     from engine.runtime.tree.behaviour_catalogue import find_behaviour
 
     try:
@@ -141,11 +139,11 @@ def _check_behaviour(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> It
 
 
 def _check_arguments(subject: AnalyzedBehavior, placed: NodeAt, name: str, kind: type[object]) -> Iterator[Finding]:
-    """Compare `with` with the constructor; `name` is given by the engine where it is left out."""
+    """Compare `with` with the constructor; the engine passes `name` if it is missing."""
     try:
         known = inspect.signature(kind).parameters
     except (TypeError, ValueError):
-        return  # some classes do not say what they take
+        return  # some classes have no introspectable signature
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values()):
         return
     given = placed.node.parameters
@@ -157,5 +155,5 @@ def _check_arguments(subject: AnalyzedBehavior, placed: NodeAt, name: str, kind:
     for argument, parameter in known.items():
         required = parameter.default is parameter.empty and parameter.kind is not parameter.VAR_POSITIONAL
         if required and argument not in given and argument != "name":
-            message = f"`{name}` needs the parameter `{argument}`"
+            message = f"`{name}` requires the parameter `{argument}`"
             yield subject.finding("missing-parameter", message, placed.path, hint=f"add `{argument}: …` to `with`")

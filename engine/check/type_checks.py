@@ -1,4 +1,4 @@
-"""Checks that the values which reach a node are of a kind that it takes."""
+"""Checks that the values that reach a node have a type that it accepts."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ _MOST_ROUTES = 100
 
 @dataclass(frozen=True)
 class _Use:
-    """A place where a value of a type is due: an input key, or a value with expressions."""
+    """A place that expects a value of a type: an input key, or a value with expressions."""
 
     placed: NodeAt
     keys: tuple[str | int, ...]
     what: str
     due: Any
     key: str | None
-    """The userdata key, where the value is read from one."""
+    """The userdata key that the value is read from, if any."""
     value: object = None
 
     @property
-    def takes(self) -> str:
-        """What is due, in words."""
-        return f"{self.what} takes {describe_type(type_of(self.due))}"
+    def expects(self) -> str:
+        """The expected type as text."""
+        return f"{self.what} expects {describe_type(type_of(self.due))}"
 
 
 def check_types(subject: AnalyzedBehavior, resolver: TypeInference) -> Iterator[Finding]:
-    """Find inputs, parameters, guards and lists that get values they do not take."""
+    """Find inputs, parameters, guards and lists that get values of a wrong type."""
     check = _Kinds(subject, resolver)
     for placed in subject.nodes.values():
         if placed.path in resolver.flow.before:
@@ -66,7 +66,7 @@ class _Kinds:
             try:
                 reaching = _reaching(self._resolver, use)
             except ExpressionError as error:
-                hint = error.hint or "convert it, for instance with `string(…)`, `int(…)` or `double(…)`"
+                hint = error.hint or "convert it, for example with `string(…)`, `int(…)` or `double(…)`"
                 yield self._subject.finding("type-mismatch", error.message, placed.path, *use.keys, hint=hint)
                 continue
             yield from self._compared(use, reaching)
@@ -79,24 +79,24 @@ class _Kinds:
             return
         site, kind = wrong[0]
         always = len(wrong) == len(reaching)
-        message = f"{use.takes}, and {'gets' if always else 'may get'} {describe_inferred_type(kind)}"
+        message = f"{use.expects}, but {'gets' if always else 'may get'} {describe_inferred_type(kind)}"
         if site is not None:
-            message += self._way(use.placed.path, site, always=always)
+            message += self._origin_text(use.placed.path, site, always=always)
         code = "type-mismatch" if always else "maybe-type-mismatch"
         yield self._subject.finding(code, message, use.placed.path, *use.keys, hint=_complaint(kind, use.due))
 
-    def _way(self, path: str, site: DefinitionSite, *, always: bool) -> str:
-        """Say where a value comes from and, where others come too, by which way."""
+    def _origin_text(self, path: str, site: DefinitionSite, *, always: bool) -> str:
+        """Return the origin of a value and, if other values also arrive, its path."""
         self._routes += 1
         if self._routes > _MOST_ROUTES:
             return f" from {_origin(self._subject, site, site.path)}"
         steps = witness_path(self._resolver.flow, path, 1 << site.number)
         at = steps[0] if self._resolver.flow.sites.shared(site) and len(steps) > 1 else site.path
-        said = f" from {_origin(self._subject, site, at)}"
-        return said if always or len(steps) == 1 else f"{said} on the way {format_witness_path(steps)}"
+        origin = f" from {_origin(self._subject, site, at)}"
+        return origin if always or len(steps) == 1 else f"{origin} on the path {format_witness_path(steps)}"
 
     def _inside(self, placed: NodeAt) -> Iterator[Finding]:
-        """Find uses inside a referred behavior that do not take what is passed in here."""
+        """Find uses inside a referred behavior that do not accept the values passed here."""
         referred = self._subject.referred(placed.node)
         inner = self._resolver.inner(placed.path)
         if referred is None or inner is None:
@@ -105,19 +105,19 @@ class _Kinds:
             self._refused[id(inner)] = {refusal.key: refusal for refusal in _refusals(referred, inner)}
         for name, refusal in self._refused[id(inner)].items():
             if name in placed.node.inputs:
-                where = f"{refusal.takes}, at `{refusal.path}` of `{placed.node.behavior}`"
-                message = f"{where}, and {'gets' if refusal.always else 'may get'} {refusal.gets} through `{name}`"
+                where = f"{refusal.expects}, at `{refusal.path}` of `{placed.node.behavior}`"
+                message = f"{where}, but {'gets' if refusal.always else 'may get'} {refusal.gets} through `{name}`"
                 code = "type-mismatch" if refusal.always else "maybe-type-mismatch"
                 yield self._subject.finding(code, message, placed.path, "in", name)
 
 
 @dataclass(frozen=True)
 class _Refusal:
-    """A node inside a referred behavior that does not take an initial value that was passed in."""
+    """A node inside a referred behavior that does not accept an initial value passed to the behavior."""
 
     key: str
     path: str
-    takes: str
+    expects: str
     gets: str
     always: bool
 
@@ -128,12 +128,12 @@ def _refusals(referred: AnalyzedBehavior, inner: TypeInference) -> Iterator[_Ref
             try:
                 reaching = _reaching(inner, use)
             except ExpressionError:
-                continue  # told where the behavior itself is checked, if it is always so
+                continue  # reported by the check of the behavior itself, if it always occurs
             wrong = [(site, kind) for site, kind in reaching if type_fit(kind, use.due) is TypeFit.NO]
             for site, kind in wrong:
                 if site is not None and site.path == BEHAVIOR:
                     always = len(wrong) == len(reaching)
-                    yield _Refusal(site.key, other.path, use.takes, describe_inferred_type(kind), always)
+                    yield _Refusal(site.key, other.path, use.expects, describe_inferred_type(kind), always)
 
 
 def _uses(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[_Use]:
@@ -180,6 +180,6 @@ def _origin(subject: AnalyzedBehavior, site: DefinitionSite, path: str) -> str:
         case "item" | "index":
             return f"`{site.key}` of the rounds of `{site.path}`"
         case "collect":
-            return f"what `{site.path}` collects"
+            return f"the values collected by `{site.path}`"
         case _:
             return f"`{site.name}` of `{subject.run_path(path)}`"

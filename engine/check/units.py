@@ -1,4 +1,4 @@
-"""Checks that a parameter handed on to a node has the unit, and keeps to the limits, that are due there."""
+"""Checks that a behavior parameter passed to a node has the unit and the limits that the node requires."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NUMERIC = ("number", "integer")
 
 @dataclass(frozen=True, kw_only=True)
 class _Due:
-    """What a parameter of a state or behavior asks of a number; limits with their ends, nearly."""
+    """What a parameter of a state or behavior requires of a number; exclusive limits count as inclusive."""
 
     unit: str = ""
     low: float = -math.inf
@@ -28,7 +28,7 @@ class _Due:
 
 
 def check_units(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find parameters of the behavior that are handed on with another unit, without one, or out of range."""
+    """Find parameters of the behavior that are passed with another unit, without a unit, or out of range."""
     declared = subject.behavior.parameters
     if not declared:
         return
@@ -48,18 +48,20 @@ def _compare(
     what = placed.node.state or placed.node.behavior
     path, keys = placed.path, ("with", name)
     if due.unit and not parameter.unit:
-        message = f"`{name}` of `{what}` is in {due.unit}, and the parameter `{source}` has no unit"
+        message = f"`{name}` of `{what}` is in {due.unit}, but the parameter `{source}` has no unit"
         yield subject.finding("missing-unit", message, path, *keys, hint=f"declare it with `unit: {due.unit}`")
     elif due.unit and parameter.unit.strip() != due.unit:
-        message = f"`{name}` of `{what}` is in {due.unit}, and the parameter `{source}` in {parameter.unit}"
+        message = f"`{name}` of `{what}` is in {due.unit}, but the parameter `{source}` is in {parameter.unit}"
         hint = f"declare `{source}` in {due.unit}, or convert it in the expression"
         yield subject.finding("unit-mismatch", message, path, *keys, hint=hint)
     low, high = parameter.minimum, parameter.maximum
     too_low = low is not None and low < due.low
     too_high = high is not None and high > due.high
     if too_low or too_high:
-        limit = f"not below {due.low:g}" if too_low else f"not above {due.high:g}"
-        message = f"the parameter `{source}` may be {low if too_low else high:g}, and `{name}` of `{what}` {limit}"
+        limit = f"minimum is {due.low:g}" if too_low else f"maximum is {due.high:g}"
+        message = (
+            f"the parameter `{source}` may be {low if too_low else high:g}, but for `{name}` of `{what}` the {limit}"
+        )
         key = "minimum" if too_low else "maximum"
         hint = f"narrow `{key}` of `{source}`"
         yield subject.finding("range-too-wide", message, path, *keys, hint=hint)

@@ -1,4 +1,4 @@
-"""Checks that what a node reads is defined on every path, and that branches do not get in each other's way."""
+"""Checks that the keys a node reads are defined on every path, and that branches do not conflict."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _SIDE_BY_SIDE = ("concurrency", "parallel")
 
 
 def check_userdata(subject: AnalyzedBehavior, flow: DataFlow, read: Sequence[KeyRead]) -> Iterator[Finding]:
-    """Find keys that are read and not defined, always or on some path, and conflicts between branches."""
+    """Find keys that are read but undefined, always or on some path, and conflicts between branches."""
     keys = _Keys(subject, flow, read)
     if not subject.incomplete:
         yield from keys.check_defined()
     yield from keys.check_branches()
 
 
-# No slots: what is worked out for the first finding is kept for the others.
+# No slots: cached properties need a `__dict__`.
 @dataclass(frozen=True)
 class _Keys:
     subject: AnalyzedBehavior
@@ -61,30 +61,32 @@ class _Keys:
         places = self._places(key)
         if places:
             where = " and ".join(f"`{place.path}`" for place in places[:3])
-            message = f"`{read.placed.name}` reads `{key}`, which nothing has defined when it is reached"
-            hint = f"{where} defines it later, or in a scope of its own; declare it in a `userdata` around both"
+            message = f"`{read.placed.name}` reads `{key}`, which is not defined at this point"
+            hint = f"{where} defines it later, or in its own scope; declare it in a `userdata` around both"
             return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
-        near = did_you_mean(key, self._names)
+        suggestion = did_you_mean(key, self._names)
         if read.by in ("expression", "post"):
             message = f"`{key}` is neither a parameter nor a userdata key that can be read here"
-            return self.subject.finding("undeclared-name", message, path, *read.keys, hint=near)
+            return self.subject.finding("undeclared-name", message, path, *read.keys, hint=suggestion)
         if read.by == "shared":
-            message = f"the shared key `{key}` is defined nowhere around the branches"
-            hint = f"give it an initial value in a `userdata`, `{key}: …`; {near}"
+            message = f"the shared key `{key}` is not defined around the branches"
+            hint = f"add an initial value to a `userdata`, `{key}: …`; {suggestion}"
             return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
         if read.by == "input":
             message = f"`{read.placed.node.state}` reads the userdata key `{key}`, which is not defined here"
-            return self.subject.finding("undefined-key", message, path, hint=f"map it with `in: {{{key}: …}}`; {near}")
+            return self.subject.finding(
+                "undefined-key", message, path, hint=f"map it with `in: {{{key}: …}}`; {suggestion}"
+            )
         message = f"the userdata key `{key}` is not defined here"
-        return self.subject.finding("undefined-key", message, path, *read.keys, hint=near)
+        return self.subject.finding("undefined-key", message, path, *read.keys, hint=suggestion)
 
     def _perhaps_undefined(self, read: KeyRead, *, with_route: bool) -> Finding:
         path, key = read.placed.path, read.key
-        message = f"`{read.placed.name}` reads `{key}`, which may not be defined"
+        message = f"`{read.placed.name}` reads `{key}`, which may be undefined"
         if with_route and read.by not in ("collect", "shared", "post"):
             steps = witness_path(self.flow, path, self.flow.sites.undefined_bit(key))
-            message += f": nothing defines it on the way {format_witness_path(steps)}"
-        hint = f"give `{key}` an initial value in `userdata`, or lead this way elsewhere"
+            message += f": it is not defined on the path {format_witness_path(steps)}"
+        hint = f"add an initial value of `{key}` to `userdata`, or change this path"
         return self.subject.finding("maybe-undefined-key", message, path, *read.keys, hint=hint)
 
     def _places(self, key: str) -> tuple[DefinitionSite, ...]:
@@ -92,7 +94,7 @@ class _Keys:
 
     @cached_property
     def _names(self) -> frozenset[str]:
-        """All names that somebody declares or writes anywhere in the behavior."""
+        """All names that are declared or written anywhere in the behavior."""
         document = self.subject.behavior.document
         names = {*document.parameters, *document.userdata}
         for placed in self.subject.nodes.values():
@@ -114,7 +116,7 @@ class _Keys:
         return found
 
     def _writers(self, placed: NodeAt) -> dict[str, list[NodeAt]]:
-        """Return the branches that write each key that is defined outside; other keys are lost when they end."""
+        """Return the branches that write each key defined outside; other keys are discarded when they end."""
         sites = self.flow.sites
         writers: dict[str, list[NodeAt]] = {}
         for child in self.subject.children(placed):
@@ -126,22 +128,24 @@ class _Keys:
     def _check_writers(self, key: str, writers: Sequence[NodeAt]) -> Iterator[Finding]:
         if len(writers) > 1:
             names = " and ".join(f"`{child.name}`" for child in writers)
-            message = f"{names} run side by side and write `{key}`; what `{writers[-1].name}` writes stays"
+            message = f"{names} run concurrently and write `{key}`; the value of `{writers[-1].name}` remains"
             hint = f"let them write different keys with `out`, or name it in the container: `shared: [{key}]`"
             yield self.subject.finding("parallel-writers", message, writers[-1].path, hint=hint)
 
     def _check_siblings(self, placed: NodeAt, key: str, writers: Sequence[NodeAt]) -> Iterator[Finding]:
         from_outside = self.flow.inside[placed.path] & self.flow.sites.defined_bits(key)
         start = len(placed.path) + 1
-        told: set[str] = set()
+        reported: set[str] = set()
         for read in self._readers.get(key, ()):
             path = read.placed.path
             if not path.startswith(f"{placed.path}/") or not self.flow.before.get(path, 0) & from_outside:
                 continue
             branch = path[start:].partition("/")[0]
             other = next((writer.name for writer in writers if writer.name != branch), None)
-            if other is not None and branch not in told:
-                told.add(branch)
-                message = f"`{read.placed.name}` reads `{key}` as it was before, though `{other}` beside it writes it"
-                hint = f"a branch sees what others write once all have ended, or at once with `shared: [{key}]`"
+            if other is not None and branch not in reported:
+                reported.add(branch)
+                message = (
+                    f"`{read.placed.name}` reads the previous value of `{key}`, which `{other}` writes concurrently"
+                )
+                hint = f"branches see each other's values when all have ended, or immediately with `shared: [{key}]`"
                 yield self.subject.finding("sibling-read", message, path, *read.keys, hint=hint)

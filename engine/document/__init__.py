@@ -1,6 +1,6 @@
 """Documents: behaviors, cells and entries as strict YAML or JSON, read into frozen models.
 
-A document that cannot be used is a `DocumentError` with file, line and column. Entries are read and written by
+An invalid document raises `DocumentError` with file, line and column. Entries are read and written by
 `engine.document.entries_document`, which few programs need.
 """
 

@@ -20,14 +20,14 @@ from engine.errors import Position
 
 
 class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
-    """A behavior as written. `view` (canvas positions) and `notes`, by node path, have no meaning."""
+    """A behavior as written. `view` (canvas positions) and `notes`, by node path, do not affect a run."""
 
     flexcell: Literal[1]
-    name: Annotated[str, Meta(min_length=1, max_length=128, description="What people call it")]
+    name: Annotated[str, Meta(min_length=1, max_length=128, description="Display name")]
     description: str = ""
     parameters: dict[Key, ParameterSpec] = {}
     userdata: dict[Key, object] = {}
-    outcomes: Annotated[tuple[OutcomeName, ...], Meta(min_length=1, description="How it can end, at least one")]
+    outcomes: Annotated[tuple[OutcomeName, ...], Meta(min_length=1, description="Possible outcomes, at least one")]
     success: Annotated[tuple[OutcomeName, ...], Meta(description="The outcomes that mean success")] = ()
     cell: Annotated[str, Meta(min_length=1, description="The cell it runs in, relative to this document")] | None = None
     root: NodeSpec
@@ -42,21 +42,21 @@ class Behavior:
     document: BehaviorDocument
     file: Path
     meaning: str
-    """SHA-256 of what the document and its references mean: without `view`, `notes`, comments, formatting."""
+    """Semantic hash (SHA-256) of the document and its references: without `view`, `notes`, comments, formatting."""
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
     source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
-    """The classes that Python gave it, by the `module:Class` written for each; a document brings none."""
+    """The classes passed from Python, by their `module:Class`; empty for a behavior from a document."""
     substitutes: Substitutes | None = field(default=None, repr=False)
-    """What stands in for some of its nodes, in a test."""
+    """The substitutes for some of its nodes, in a test."""
     gaps: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]], repr=False, compare=False)
-    """What could not be read, in a behavior that is only to be checked: keys by the path of their node, or by an empty
-    one where they are the behavior's own; an empty key where nobody knows which. None of a behavior that may be run."""
+    """Unreadable keys in a behavior that can only be checked, by the path of their node; the empty path is the behavior
+    itself, the empty key an unknown key. Empty for a behavior that can be run."""
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """The display name."""
         return self.document.name
 
     @property
@@ -66,12 +66,12 @@ class Behavior:
 
     @property
     def parameters(self) -> Mapping[str, ParameterSpec]:
-        """What a run may be given, by name."""
+        """The parameters of a run, by name."""
         return self.document.parameters
 
     @property
     def outcomes(self) -> tuple[str, ...]:
-        """How it can end."""
+        """The possible outcomes."""
         return self.document.outcomes
 
     @property
@@ -81,32 +81,32 @@ class Behavior:
 
     @property
     def cell_file(self) -> Path | None:
-        """The cell it runs in unless another is given; None where it names none."""
+        """The default cell; None if the document names none."""
         cell = self.document.cell
         return (self.file.parent / cell).resolve() if cell is not None else None
 
     def with_substitutes(self, substitutes: Substitutes | None) -> Behavior:
-        """Return the behavior with stand-ins, which does not mean the same any more; itself for none."""
+        """Return the behavior with substitutes and another semantic hash; the behavior itself for None."""
         if substitutes is None:
             return self
         meaning = sha256(self.meaning.encode() + substitutes.text).hexdigest()
         return replace(self, substitutes=substitutes, meaning=meaning)
 
     def nodes(self) -> Iterator[tuple[str, NodeSpec]]:
-        """Go through (path, node) in document order, containers before their children."""
+        """Yield (path, node) in document order, containers before their children."""
         return walk("root", self.root)
 
     def position(self, path: str, *keys: str | int) -> Position:
-        """Return where the node at `path` (`root/approach/left`) stands, or a value inside it.
+        """Return the position of the node at `path` (`root/approach/left`), or of a value inside it.
 
         Args:
-            path: The node; where it is absent, the nearest ancestor is given.
+            path: The node; if it does not exist, the position of the nearest ancestor is returned.
             keys: Keys as written, from the node inward, e.g. `"with", "speed"`.
         """
         return self.source.position((*self.data_path(path), *keys), of_key=not keys)
 
     def key_position(self, path: str, *keys: str | int) -> Position:
-        """Return where a key inside the node at `path` stands."""
+        """Return the position of a key inside the node at `path`."""
         return self.source.position((*self.data_path(path), *keys), of_key=True)
 
     def data_path(self, path: str) -> DataPath:
@@ -122,7 +122,7 @@ class Behavior:
 
 
 def walk(path: str, node: NodeSpec) -> Iterator[tuple[str, NodeSpec]]:
-    """Go through (path, node) of a node and everything inside it, in document order."""
+    """Yield (path, node) of a node and everything inside it, in document order."""
     due = [(path, node)]
     while due:
         here, current = due.pop()

@@ -1,9 +1,9 @@
-"""The one environment of CEL in which every expression is compiled.
+"""The shared CEL environment in which every expression is compiled.
 
-An environment of its own for each set of names costs 150 kB with its first program, so the names
-in a text are replaced by aliases that the shared one declares, `__flexcell_text_0`, by type and number.
+A separate environment for each set of names costs 150 kB with its first program, so the names in a text are
+replaced by aliases that the shared environment declares by type and number, for example `__flexcell_text_0`.
 
-CEL is loaded with the first expression that is more than a name: many behaviors have none.
+CEL is loaded with the first expression that is not only a name: many behaviors have none.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from importlib import import_module
 from typing import Any, Literal
 
 MAX_NAMES = 64
-"""Variables in one expression."""
+"""Maximum number of variables in one expression."""
 ALIAS = "__flexcell_"
-"""How aliases begin; no expression may use such a name."""
+"""Prefix of aliases; expressions must not use such names."""
 
 ValueType = Literal["boolean", "integer", "number", "text", "list", "mapping", "nothing", "anything"]
-"""What is known of a value before a run."""
+"""The static type of a value, known before a run."""
 
 NameUse = tuple[str, int]
-"""A name and the character at which it stands."""
+"""A name and its character index."""
 
 
 def alias(number: int, kind: ValueType = "anything") -> str:
-    """Return what the variable of this number and type is called in the environment."""
+    """Return the alias of the variable with this number and type."""
     return f"{ALIAS}{kind}_{number}"
 
 
 def aliased(text: str, uses: Sequence[NameUse], aliases: Mapping[str, str]) -> str:
-    """Return an expression with its variables called by their aliases."""
+    """Return an expression with its variables replaced by their aliases."""
     pieces: list[str] = []
     end = 0
     for name, start in sorted(uses, key=lambda use: use[1]):
@@ -56,7 +56,7 @@ def error_type() -> Any:
 
 
 def word_for(of_cel: str) -> ValueType:
-    """Return what a type is called outside of CEL."""
+    """Return the value type for a CEL type name."""
     outer = of_cel.partition("<")[0]
     for word, known in _cel_types().items():
         if known.name().partition("<")[0] == outer:
@@ -80,7 +80,7 @@ def _cel_types() -> Mapping[ValueType, Any]:
 
 
 def _mixed_arithmetic() -> Any:
-    """Let an integer meet a decimal in `+ - * /`, which CEL alone refuses."""
+    """Return overloads for mixed integers and decimals in `+ - * /`, which CEL itself refuses."""
     cel = _cel()
     integer, decimal = cel.Type.INT, cel.Type.DOUBLE
     functions: list[Any] = []
@@ -98,5 +98,5 @@ def _cel() -> Any:
 
 
 def _divide(dividend: float, divisor: float) -> float:
-    # A raised error would leave the evaluator in the middle; infinity is refused as a result.
+    # An exception would abort the evaluator; infinity is refused as a result.
     return dividend / divisor if divisor else math.inf

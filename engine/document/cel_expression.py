@@ -1,6 +1,6 @@
-"""One expression of a document: compiled by CEL once, with what it costs known before each evaluation.
+"""One expression of a document: compiled by CEL once, with its cost bounded before each evaluation.
 
-Integers and decimals mix freely in arithmetic: both integers give an integer (`7 / 2` is 3), else
+Arithmetic accepts mixed integers and decimals: two integers give an integer (`7 / 2` is 3), else
 the result is a decimal.
 """
 
@@ -32,9 +32,9 @@ from engine.errors import ExpressionError
 
 MAX_LENGTH = 1_000
 MAX_TEXT = 100_000
-"""Characters of text that an expression or a text with expressions in it may give."""
+"""Maximum number of characters in the result of an expression or of a text with expressions."""
 MAX_RESULT_WEIGHT = 10_000
-"""Values in a list or mapping that an expression may give."""
+"""Maximum number of values in a list or mapping that an expression returns."""
 RESERVED = frozenset(
     {
         *("as", "break", "const", "continue", "else", "for", "function", "if", "import", "in", "let", "loop"),
@@ -42,7 +42,7 @@ RESERVED = frozenset(
         *("bool", "bytes", "double", "dyn", "int", "list", "map", "null_type", "string", "type", "uint"),
     }
 )
-"""Words of the expression language, which cannot name a parameter or a userdata key."""
+"""Reserved words of the expression language; not allowed as names of parameters or userdata keys."""
 
 Variables = Mapping[str, object]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -58,12 +58,12 @@ _STRICT = frozenset(
         *("size", "startsWith", "endsWith", "contains", "matches"),
     }
 )
-"""What fails when run with the wrong types; comparing unlike values, for one, is only refused by the type check."""
+"""Operations that fail at run time with wrong types; others, such as comparisons, fail only the type check."""
 _MIXED_NUMBERS = re.compile(r"found no matching overload for .* applied to '\(.*\b(?:int.*double|double.*int)\b.*\)'")
 
 
 def as_text(value: object) -> str:
-    """Return a value as it appears inside text: text as it is, everything else as JSON."""
+    """Return a value as inserted into text: text unchanged, everything else as JSON."""
     return value if isinstance(value, str) else msgspec.json.encode(value).decode()
 
 
@@ -73,22 +73,22 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
     text: str
     names: frozenset[str]
     small_steps: float
-    """What it costs when all variables are small."""
-    _program: Any  # cel.Expression; None where the expression is just the name of a variable
+    """The cost with small values of all variables."""
+    _program: Any  # cel.Expression; None if the expression is only the name of a variable
     _syntax: Syntax | None
     _uses: tuple[NameUse, ...]
     _aliases: Mapping[str, str]
 
     @property
     def bare(self) -> bool:
-        """True when it is just the name of a variable."""
+        """True if the expression is only the name of a variable."""
         return self._program is None
 
     def result_type(self, variables: Mapping[str, ValueType]) -> ValueType:
-        """Return the type of its value, as far as the types of the variables tell.
+        """Return the static type of the result for these variable types.
 
         Raises:
-            ExpressionError: it fails whenever the variables have these types; says at which operation.
+            ExpressionError: the expression always fails with these types; names the operation.
         """
         if self.bare:
             return variables.get(self.text, "anything")
@@ -97,10 +97,10 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
         return _result_type(self.text, aliased(self.text, self._uses, aliases))
 
     def steps(self, sizes: Sizes) -> float:
-        """Return what an evaluation takes at most with variables of these sizes.
+        """Return an upper bound of the evaluation steps with variables of these sizes.
 
         Raises:
-            ExpressionError: nobody knows.
+            ExpressionError: the cost is unknown.
         """
         if self._syntax is None:
             return 0.0
@@ -110,28 +110,28 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
             raise ExpressionError(f"`${{{shorten_text(self.text)}}}`: {error.message}", hint=error.hint) from None
 
     def too_long(self, steps: float) -> ExpressionError:
-        """Return why it is not evaluated."""
-        count = f"{steps:,.0f}" if steps < 1e12 else "endless"
+        """Return the error for an evaluation that exceeds the step limit."""
+        count = f"{steps:,.0f}" if steps < 1e12 else "unlimited"
         message = f"`${{{shorten_text(self.text)}}}`: this may take {count} steps with values of this size"
         hint = f"{MAX_STEPS:,.0f} are allowed; use smaller values, a simpler expression or a state"
         return ExpressionError(message, hint=hint)
 
     def compute(self, variables: Variables) -> object:
-        """Return the value of the expression, whose cost was looked at before."""
+        """Return the value of the expression; the caller has checked its cost."""
         if self._program is None:
             return self._variable(variables, self.text)
-        shown = {name: self._variable(variables, name) for name in self.names}
+        values = {name: self._variable(variables, name) for name in self.names}
         try:
-            data = {called: _plain(shown[name]) for name, called in self._aliases.items()}
+            data = {called: _plain(values[name]) for name, called in self._aliases.items()}
             result = self._program.eval(data=data)
         except (RuntimeError, ValueError, TypeError, OverflowError) as error:
-            raise self._failed(_ERROR_STATUS.sub("", str(error)), shown) from error
+            raise self._failed(_ERROR_STATUS.sub("", str(error)), values) from error
         if result.type() == error_type():
-            raise self._failed(_ERROR_STATUS.sub("", str(result.value())), shown)
-        return self._checked(result.plain_value(), shown)
+            raise self._failed(_ERROR_STATUS.sub("", str(result.value())), values)
+        return self._checked(result.plain_value(), values)
 
     def text_of(self, variables: Variables) -> str:
-        """Return its value as it appears inside text."""
+        """Return its value as inserted into text."""
         value = self.compute(variables)
         try:
             return as_text(value)
@@ -141,7 +141,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
     def _variable(self, variables: Variables, name: str) -> object:
         if name not in variables:
             raise ExpressionError(
-                f"`${{{self.text}}}`: `{name}` is not defined", hint="it is no parameter or userdata key"
+                f"`${{{self.text}}}`: `{name}` is not defined", hint="it is not a parameter or userdata key"
             )
         return variables[name]
 
@@ -149,7 +149,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
         if isinstance(value, float) and not math.isfinite(value):
             raise self._failed(f"the result is {value}", data)
         if value is not None and not isinstance(value, bool | int | float | str | list | dict):
-            raise self._failed(f"the result is a {type(value).__name__}, which no document value can be", data)
+            raise self._failed(f"the result is a {type(value).__name__}, which is not a document value", data)
         if isinstance(value, str) and len(value) > MAX_TEXT:
             raise self._failed(too_much_text(len(value)), data)
         if isinstance(value, list | dict):
@@ -162,7 +162,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
         except ExpressionError as error:
             raise self._failed(error.message, data) from None
         if weight > MAX_RESULT_WEIGHT:
-            raise self._failed(f"the result holds more than {MAX_RESULT_WEIGHT:,} values", data)
+            raise self._failed(f"the result contains more than {MAX_RESULT_WEIGHT:,} values", data)
 
     def _failed(self, reason: str, data: Variables) -> ExpressionError:
         shown = ", ".join(f"{name} = {_shown(value)}" for name, value in data.items())
@@ -175,7 +175,7 @@ def compile_expression(text: str) -> Expression:
     """Compile the text between `${` and `}`.
 
     Raises:
-        ExpressionError: it is not well formed, or would take too long whatever it is given.
+        ExpressionError: it is malformed, or exceeds the step limit for any values.
     """
     text = text.strip()
     if len(text) > MAX_LENGTH:
@@ -207,7 +207,7 @@ def _small_steps(made: Expression) -> float:
     try:
         return made.steps(dict.fromkeys(made.names, SMALL))
     except ExpressionError:
-        return math.inf  # it depends on the value: a pattern, say
+        return math.inf  # the cost depends on the value, for example a pattern
 
 
 _COMPILED: TextCache[Expression] = TextCache(max_characters=150_000)
@@ -219,7 +219,7 @@ def _parse(text: str) -> ParsedExpression:
         return read_parsed(environment().compile(text, disable_check=True).serialize())
     except RuntimeError as error:
         for _, column, reason in _ERROR_LINE.findall(str(error)):
-            raise _malformed(text, _in_words(reason), int(column)) from None
+            raise _malformed(text, _to_plain_words(reason), int(column)) from None
         reason = _ERROR_STATUS.sub("", str(error)).splitlines()[0]
         raise ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint="use a simpler expression") from None
 
@@ -231,20 +231,20 @@ def _check_names(text: str, names: tuple[str, ...], uses: tuple[NameUse, ...]) -
         raise _malformed(text, f"`{ALIAS}` cannot be part of an expression")
     for name, start in uses:
         if not _NAME.fullmatch(name) or text[start : start + len(name)] != name:
-            raise _malformed(text, f"`{name}` is no name")
+            raise _malformed(text, f"`{name}` is not a valid name")
 
 
 def _checked_program(text: str, called: str) -> Any:
-    """Compile an expression; without its types where its only fault is that it compares integers with decimals.
+    """Compile an expression, without type check if its only type errors mix integers and decimals.
 
-    CEL refuses `1 < 2.5` before running it and computes it well when run.
+    The type check of CEL refuses `1 < 2.5`, its evaluator computes it correctly.
     """
     try:
         return environment().compile(called)
     except RuntimeError as error:
         for _, _, reason in _ERROR_LINE.findall(str(error)):
             if not _MIXED_NUMBERS.match(reason):
-                raise _malformed(text, _in_words(reason)) from None
+                raise _malformed(text, _to_plain_words(reason)) from None
     try:
         return environment().compile(called, disable_check=True)
     except RuntimeError as error:
@@ -253,15 +253,15 @@ def _checked_program(text: str, called: str) -> Any:
 
 
 def _malformed(text: str, reason: str, column: int = 0) -> ExpressionError:
-    place = f"at character {column}" if column > 0 else None
-    return ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint=place)
+    hint = f"at character {column}" if column > 0 else None
+    return ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint=hint)
 
 
-def _in_words(reason: str) -> str:
+def _to_plain_words(reason: str) -> str:
     unknown = _UNDECLARED.match(reason)
     if unknown:
         return f"there is no function `{unknown[1]}`"
-    # The parser lists every token it would have accepted; the reader only needs what it met.
+    # The parser lists every expected token; the author needs only the unexpected one.
     return re.sub(r" expecting \{.*", "", reason).replace("'<EOF>'", "end")
 
 
@@ -279,18 +279,18 @@ def _result_type(text: str, called: str) -> ValueType:
 
 
 def _impossible(reason: str) -> str | None:
-    """Say what fails when run; None for what only the type check refuses."""
+    """Return the operation that fails at run time; None for errors of the type check only."""
     selected = _NO_FIELDS.match(reason)
     if selected:
-        return f"{_type_in_words(selected[1])} has no fields"
+        return f"{_type_name(selected[1])} has no fields"
     refused = _NO_OVERLOAD.match(reason)
     if refused is None or refused[1] not in _STRICT or _MIXED_NUMBERS.match(reason):
         return None
-    operands = [_type_in_words(operand) for operand in re.split(r", (?![^(]*\))", refused[2])]
+    operands = [_type_name(operand) for operand in re.split(r", (?![^(]*\))", refused[2])]
     return f"`{_SYMBOL.sub('', refused[1])}` cannot be applied to {' and '.join(operands)}"
 
 
-def _type_in_words(of_cel: str) -> str:
+def _type_name(of_cel: str) -> str:
     known = {
         "string": "text",
         "int": "an integer",
@@ -304,12 +304,12 @@ def _type_in_words(of_cel: str) -> str:
 
 
 def too_much_text(length: int) -> str:
-    """Say that a text is too long."""
-    return f"the text has {length:,} characters, and at most {MAX_TEXT:,} are allowed"
+    """Return the message for a text that is too long."""
+    return f"the text has {length:,} characters; the maximum is {MAX_TEXT:,}"
 
 
 def _shown(value: object) -> str:
-    """Return the beginning of a value; nobody writes out a large one for a message."""
+    """Return the beginning of a value for a message, without formatting all of a large value."""
     if isinstance(value, str):
         return shorten_text(repr(value[:100]))
     if isinstance(value, list | tuple | dict):

@@ -1,8 +1,8 @@
-"""The syntax tree of an expression, read from the protobuf bytes in which CEL hands out what it has parsed.
+"""The syntax tree of an expression, read from the serialized protobuf bytes of a parsed CEL expression.
 
-Only the messages of `cel/expr/syntax.proto` that make up a tree are read. Macros are comprehensions
-already, so that the tree is what the evaluator runs. Trees have no cycles, and the cache holds many nodes:
-the garbage collector never passes over them.
+Only the tree messages of `cel/expr/syntax.proto` are read. Macros are already expanded to comprehensions, so the
+tree is what the evaluator runs. Trees have no cycles, and the cache holds many nodes: they are excluded from
+garbage collection.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _FIXED = {_FIXED64: 8, _FIXED32: 4}
 
 
 class CelLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
-    """A constant; `text` is None where it is neither text nor bytes."""
+    """A constant; `text` is None if it is neither text nor bytes."""
 
     text: str | None = None
 
@@ -31,7 +31,7 @@ class CelIdentifier(msgspec.Struct, frozen=True, gc=False, tag=True):
 
 
 class CelSelect(msgspec.Struct, frozen=True, gc=False, tag=True):
-    """A field of a value, or with `test` whether it has it."""
+    """A field of a value, or with `test` whether the field exists."""
 
     operand: Syntax
     test: bool
@@ -58,7 +58,7 @@ class CelMap(msgspec.Struct, frozen=True, gc=False, tag=True):
 
 
 class CelComprehension(msgspec.Struct, frozen=True, gc=False, tag=True):
-    """What `all`, `exists`, `exists_one`, `map` and `filter` become: a fold over a list or mapping."""
+    """The expansion of `all`, `exists`, `exists_one`, `map` and `filter`: a fold over a list or mapping."""
 
     variable: str
     values: Syntax
@@ -74,19 +74,19 @@ Syntax = CelLiteral | CelIdentifier | CelSelect | CelCall | CelList | CelMap | C
 
 @dataclass(frozen=True, slots=True)
 class ParsedExpression:
-    """A tree, and at which character of the text each of its nodes stands, by the id of the node."""
+    """A tree, and the character index of each node, by node id."""
 
     root: Syntax
     positions: Mapping[int, int]
 
     def free_names(self) -> Iterator[tuple[str, int]]:
-        """Return each use of a name that no comprehension binds, with its character."""
+        """Yield each use of a name that no comprehension binds, with its character index."""
         for used in _free(self.root, frozenset()):
             yield used.name, self.positions.get(used.id, -1)
 
 
 def read_parsed(serialized: bytes) -> ParsedExpression:
-    """Return the tree in the bytes of a parsed, not type-checked expression."""
+    """Return the tree in the serialized bytes of a parsed, unchecked expression."""
     message = _Fields(_Fields(serialized).message(2))
     positions = (_Fields(entry) for entry in _Fields(message.message(3)).messages(4))
     return ParsedExpression(_expression(message.message(2)), {entry.number(1): entry.number(2) for entry in positions})

@@ -1,6 +1,6 @@
-"""Cell documents: which robots, world, fixtures, parts, cameras and store make up a work cell.
+"""Cell documents: robots, world, fixtures, parts, cameras and store of a work cell.
 
-Lengths are metres, angles radians, masses kilograms. Paths are relative to the document, except
+Lengths are in metres, angles in radians, masses in kilograms. Paths are relative to the document, except
 `store.path`, which is relative to the current directory because it is written at run time.
 """
 
@@ -22,37 +22,41 @@ from engine.errors import DocumentError
 
 
 class SqliteStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
-    """Named entries in a file; `seed` is an entries document that fills what is missing."""
+    """Named entries in a file; `seed` is an entries document with initial values of missing entries."""
 
     path: Annotated[str, Meta(min_length=1, description="Database file, relative to the current directory")]
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
 class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
-    """Named entries on a MongoDB server; `seed` is an entries document that fills what is missing.
+    """Named entries on a MongoDB server; `seed` is an entries document with initial values of missing entries.
 
-    `${NAME}` in `uri` stands for an environment variable, such as that with the password.
+    `${NAME}` in `uri` is replaced by an environment variable, for example the password.
     """
 
-    uri: Annotated[str, Meta(pattern=r"^(mongodb(\+srv)?://|\$\{)", description="Such as `mongodb://127.0.0.1:27017`")]
-    database: Annotated[str, Meta(pattern="^[A-Za-z0-9_-]{1,63}$", description="Its name on the server")] = "flexcell"
+    uri: Annotated[
+        str, Meta(pattern=r"^(mongodb(\+srv)?://|\$\{)", description="For example `mongodb://127.0.0.1:27017`")
+    ]
+    database: Annotated[str, Meta(pattern="^[A-Za-z0-9_-]{1,63}$", description="Database name on the server")] = (
+        "flexcell"
+    )
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
 class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
-    """The simulated surroundings.
+    """The simulated world.
 
-    The two silences are for simulations in real time on a loaded machine: a longer one lets an arm move on for
-    longer while nobody watches it.
+    The two timeouts are for simulations in real time on a loaded machine: a longer one lets an arm move for
+    longer without supervision.
     """
 
     step_s: Annotated[float, Meta(gt=0.0, le=0.01, description="Physics step in seconds")] = 0.001
     gravity: bool = True
     engine_silence_s: Annotated[
-        float, Meta(ge=0.1, le=60.0, description="Without a sign of the engine for so long, everything comes to rest")
+        float, Meta(ge=0.1, le=60.0, description="Seconds without an engine message after which all motion stops")
     ] = 0.2
     world_silence_s: Annotated[
-        float, Meta(ge=0.1, le=60.0, description="Without a step of the world for so long, it is lost and ended")
+        float, Meta(ge=0.1, le=60.0, description="Seconds without a simulation step until the world is terminated")
     ] = 0.25
 
 
@@ -67,13 +71,13 @@ class GripperSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class RobotSpec(StrictModel, frozen=True, kw_only=True):
-    """One robot: its model, who drives it, where its base stands and what it holds.
+    """One robot: its model, driver, base placement and gripper.
 
     `model` (also that of the gripper) is the name of a built-in model, or the path of a model folder
     with a `/` in it, relative to this document. `calibration` is the arm's factory calibration file.
-    `coupled_joints` says that its controller counts coupled axes as one with the other. `outputs` says
-    on which digital outputs of its controller things hang. `driver` is `sim`, or a mapping with the
-    driver's name as `kind` and its own options beside it.
+    `coupled_joints`: the controller counts coupled axes relative to each other. `outputs` maps uses to
+    digital outputs of the controller. `driver` is `sim`, or a mapping with the driver's name as `kind`
+    and its options as further keys.
     """
 
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
@@ -86,7 +90,7 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
 
     @property
     def simulated(self) -> bool:
-        """True when the world of the cell makes this robot."""
+        """True if the world of the cell simulates this robot."""
         return self.driver == "sim"
 
     @property
@@ -96,27 +100,27 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class Jitter(StrictModel, frozen=True, kw_only=True):
-    """How far a part may lie off, uniformly to both sides, when a run is seeded."""
+    """Maximum random offset of a part in a seeded run, uniform in both directions."""
 
     xy_m: Offset = 0.0
     yaw_rad: Angle = 0.0
 
 
 class Spring(StrictModel, frozen=True, kw_only=True):
-    """How a fixture gives way along its z axis: foam, a part on a compliant table, a sprung pad.
+    """Compliance of a fixture along its z axis: foam, a part on a compliant table, a sprung pad.
 
-    Its skin is soft at first touch, which makes forces on it believable while a tool slides over it;
-    on a rigid fixture they are so at rest only.
+    Its surface is soft at first contact, which gives plausible forces while a tool slides over it;
+    on a rigid fixture forces are plausible only at rest.
     """
 
     stiffness_n_m: Annotated[float, Meta(gt=0.0, description="Stiffness of the spring in N/m")]
     damping_ns_m: Annotated[float, Meta(ge=0.0, description="Damping of the spring in N s/m")] = 60.0
-    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of what gives way in kilograms")] = 0.1
-    friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of its skin")] = 0.3
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of the moving body in kilograms")] = 0.1
+    friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of the surface")] = 0.3
 
 
 class Fixture(StrictModel, frozen=True, kw_only=True):
-    """A fixed body, or one that gives way by its `spring`.
+    """A fixed body, or a compliant one with a `spring`.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
     edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
@@ -132,7 +136,7 @@ class Fixture(StrictModel, frozen=True, kw_only=True):
 
 
 class PartSpec(StrictModel, frozen=True, kw_only=True):
-    """A free body with real contact; a magnet pulls at it when it is `magnetic`.
+    """A free body with contact physics; a magnet attracts it if it is `magnetic`.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
     `at` is its centre.
@@ -165,7 +169,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """A cell document with the file it came from."""
+    """A cell document with its file."""
 
     document: CellDocument
     file: Path
@@ -178,12 +182,12 @@ class Cell:
 
     @property
     def seed_file(self) -> Path | None:
-        """The entries document that fills the store, resolved; None without one."""
+        """The resolved path of the entries document that seeds the store; None without one."""
         store = self.document.store
         return self.resolve(store.seed) if store is not None and store.seed is not None else None
 
     def resolve(self, path: str) -> Path:
-        """Return a path of the document, which is relative to its folder, as one that can be opened."""
+        """Return a path of the document, resolved against the folder of the document."""
         return (self.file.parent / path).resolve()
 
 
@@ -204,11 +208,11 @@ def load_cell(path: Path | str) -> Cell:
     return Cell(document=document, file=file, source=source)
 
 
-_LATER = "it comes with a later version; remove it"
+_LATER = "remove it"
 _REFUSED = {"modules": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
 
 
-# A password between `:` and `@` that is not the name of an environment variable.
+# A password between `:` and `@` that is not an environment variable.
 _SECRET = re.compile(r"://[^@/:]*:(?!\$\{\w+\}@)[^@/]*@")
 _SIZES = {
     "box": "edge lengths x, y, z",
@@ -222,7 +226,7 @@ def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
     store = document.store
     if isinstance(store, MongoStoreSpec) and _SECRET.search(store.uri):
         raise DocumentError(
-            "the address of the store has a password in it",
+            "the `uri` of the store contains a password",
             where=source.position(("store", "uri")),
             hint="write ${NAME} instead and set that environment variable: mongodb://user:${NAME}@host",
         )
@@ -249,7 +253,7 @@ def _require_sizes(document: CellDocument, source: DocumentSource) -> None:
             )
         if path[0] == "parts" and path[1] in document.fixtures:
             raise DocumentError(
-                f"`{path[1]}` is a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
+                f"`{path[1]}` is both a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
             )
 
 
@@ -269,7 +273,7 @@ def _require_world(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
         if robot.simulated:
             raise DocumentError(
-                f"robot `{name}` is simulated, and the cell has no world",
+                f"robot `{name}` is simulated, but the cell has no world",
                 where=source.position(("robots", name), of_key=True),
                 hint="add `world: {kind: mujoco}`",
             )
@@ -285,13 +289,13 @@ def _require_people(document: CellDocument, source: DocumentSource) -> None:
         path: DataPath = ("people", name)
         if document.world is None:
             raise DocumentError(
-                f"person `{name}` is simulated, and the cell has no world",
+                f"person `{name}` is simulated, but the cell has no world",
                 where=source.position(path, of_key=True),
                 hint="add `world: {kind: mujoco}`",
             )
         if name in taken:
             raise DocumentError(
-                f"`{name}` is a person and a {taken[name]}",
+                f"`{name}` is both a person and a {taken[name]}",
                 where=source.position(path, of_key=True),
                 hint="rename one",
             )
@@ -301,5 +305,5 @@ def _require_people(document: CellDocument, source: DocumentSource) -> None:
             raise DocumentError(
                 f"the hand of person `{name}` cannot rest {away_m:.3f} m from the shoulder",
                 where=source.position((*path, "hand_rests")),
-                hint=f"it reaches {least_m:.3f} to {greatest_m:.3f} m",
+                hint=f"its reach is {least_m:.3f} to {greatest_m:.3f} m",
             )

@@ -1,4 +1,4 @@
-"""What a cell document says of its cameras, of the space that they watch, and of the people who reach into it."""
+"""Cameras, occupancy map and people in a cell document."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from engine.document.decoding import StrictModel
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement, PositionXyz
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
-Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images in a second")]
+Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images per second")]
 FieldOfView = Annotated[float, Meta(gt=0.05, lt=3.0, description="Angle between the upper and lower edge, radians")]
 
 
-DetectionRate = Annotated[float, Meta(gt=0.0, le=120.0, description="Detections in a second")]
+DetectionRate = Annotated[float, Meta(gt=0.0, le=120.0, description="Detections per second")]
 PixelCount = Annotated[int, Meta(ge=1, description="Number of pixels")]
-SeenShare = Annotated[float, Meta(ge=0.0, le=1.0, description="Share of a part that is seen, 0 to 1")]
-PartLabel = Annotated[str, Meta(min_length=1, max_length=80, description="What the detector calls a part")]
+SeenShare = Annotated[float, Meta(ge=0.0, le=1.0, description="Visible share of a part, 0 to 1")]
+PartLabel = Annotated[str, Meta(min_length=1, max_length=80, description="Label of a part in detections")]
 
 
 class ObjectDetector(StrictModel, frozen=True, kw_only=True):
-    """Finds the parts of the cell in a camera's images; an ideal detector that stands in for a learned one.
+    """Detects the parts of the cell in a camera's images; an ideal detector in place of a learned one.
 
-    It knows the parts and where they are, and reports those of which the camera sees enough: the score is the
-    share of a part's pixels that nothing hides. Parts of which fewer than `min_pixels`, or a smaller share than
-    `min_share`, are seen are not found. `labels` say what parts are called, else it is by their names. Boxes are in
-    the frame `frame` that stands at `frame_at`. `noise_m` and `noise_rad` are standard deviations of the pose along
-    and about each axis. It works at most `rate_hz` times a second, while somebody reads it or with `always`.
+    It knows the parts and their poses, and reports the sufficiently visible ones: the score is the visible share
+    of a part's pixels. Parts with fewer visible pixels than `min_pixels`, or a smaller visible share than
+    `min_share`, are not reported. `labels` sets the labels of parts; the default is the part name. Boxes are in
+    the frame `frame`, whose origin is at `frame_at`. `noise_m` and `noise_rad` are standard deviations of the pose
+    along and about each axis. It runs at most `rate_hz` times per second, while subscribed or with `always`.
     """
 
     rate_hz: DetectionRate = 4.0
@@ -42,16 +42,16 @@ class ObjectDetector(StrictModel, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if self.frame == "world" and self.frame_at != Placement():
-            raise ValueError("the frame `world` stands at its own origin; give the frame another name")
+            raise ValueError("the frame `world` cannot be moved; choose another frame name")
 
 
 class DepthCamera(StrictModel, frozen=True, kw_only=True):
-    """A depth camera that stands in the cell, simulated by the world.
+    """A fixed depth camera in the cell, simulated by the world.
 
-    `at` is where it stands and `look_at` the point in the middle of its image; up in the image is up in the
-    world. Distances outside `range_m`, along the view, are not measured. `noise_m` is the standard deviation
-    at 1 m, it grows with the square of the distance. With `detect`, which may be `{}`, it finds parts.
-    `driver` is `sim`.
+    `at` is its position and `look_at` the point in the centre of its image; up in the image is up in the world.
+    Distances along the optical axis outside `range_m` are not measured. `noise_m` is the standard deviation at
+    1 m; it grows with the square of the distance. With `detect`, which may be `{}`, it detects parts. `driver` is
+    `sim`.
     """
 
     at: PositionXyz
@@ -66,11 +66,11 @@ class DepthCamera(StrictModel, frozen=True, kw_only=True):
 
 
 class OccupancyMap(StrictModel, frozen=True, kw_only=True):
-    """The box of space, along the world's axes, in which unknown things count as obstacles.
+    """The axis-aligned box in the world frame in which unknown objects count as obstacles.
 
-    It is filled and cleared by what the cameras see; without cameras it stays empty. What is nearer than
-    `robot_margin_m` to an arm or to what it holds, or than `known_margin_m` to a fixture or part, is taken for
-    that and left out.
+    Camera measurements fill and clear it; without cameras it stays empty. Points nearer than `robot_margin_m`
+    to an arm or its held object, or than `known_margin_m` to a fixture or part, are attributed to that and
+    ignored.
     """
 
     center_m: PositionXyz
@@ -81,15 +81,15 @@ class OccupancyMap(StrictModel, frozen=True, kw_only=True):
 
 
 def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[float, float]:
-    """Return the least and the greatest distance of a hand from the shoulder; the hand stays out of the shoulder."""
+    """Return the minimum and maximum distance of the hand from the shoulder; the hand stays outside the shoulder."""
     return max(abs(upper_arm_m - forearm_m), radius_m), upper_arm_m + forearm_m
 
 
 class Person(StrictModel, frozen=True, kw_only=True):
-    """A person of a simulated cell, of whom one arm is there: it reaches from `shoulder` and rests at `hand_rests`.
+    """One arm of a person in a simulated cell: it reaches from `shoulder` and rests at `hand_rests`.
 
-    The arm is two capsules and a ball, of the lengths and radii of an adult's; it is moved, nothing stops it.
-    `forearm_m` ends in the middle of the hand, which is what `hand_rests` and reaches are about.
+    The arm consists of two capsules and a ball with the dimensions of an adult; it moves kinematically, without
+    contact response. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
     """
 
     shoulder: PositionXyz
@@ -101,5 +101,5 @@ class Person(StrictModel, frozen=True, kw_only=True):
 
     @property
     def reach_m(self) -> tuple[float, float]:
-        """Least and greatest distance of the hand from the shoulder."""
+        """Minimum and maximum distance of the hand from the shoulder."""
         return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)

@@ -1,13 +1,13 @@
-"""A text as a stream that a parser in C reads in portions."""
+"""A text as a stream that a C parser reads in chunks."""
 
 from __future__ import annotations
 
 
 class ChunkedText:
-    """A text in portions: between two of them other threads have a turn, also inside of a very long scalar."""
+    """A text in chunks: other threads run between chunks, even inside a very long scalar."""
 
     name = "document"
-    """What the parser calls it."""
+    """Name in messages of the parser."""
 
     def __init__(self, text: str) -> None:
         self._data = text.encode()

@@ -1,4 +1,4 @@
-"""A condition of a concurrency container: which children must have ended how, how many, and what comes of it."""
+"""A condition of a concurrency container: required outcomes of children, their number, and the consequence."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from msgspec import Meta
 from engine.document.node_kind import Count, NodeName, OutcomeName
 
 AT_LEAST = "at_least"
-"""Among the children of a condition, with a number in place of an outcome."""
+"""Key among the children of a condition, with a number instead of an outcome."""
 PREEMPT, WHEN = "preempt", "when"
-"""The two keys of a condition that preempts some children in place of deciding an outcome."""
+"""The two keys of a condition that preempts children instead of deciding an outcome."""
 
 
 ConditionEntry = Annotated[
@@ -35,7 +35,7 @@ ConditionEntry = Annotated[
 class ConcurrencyCondition(msgspec.Struct, frozen=True, kw_only=True):
     """Holds when the children in `when` have ended with the outcome named for each: all, or any `at_least` of them.
 
-    It decides the `outcome` of the container, or is empty there and preempts the children in `preempt`.
+    It decides the `outcome` of the container, or has an empty `outcome` and preempts the children in `preempt`.
     """
 
     outcome: str = ""
@@ -45,39 +45,39 @@ class ConcurrencyCondition(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def decides(self) -> bool:
-        """Whether the container ends by it."""
+        """Whether it ends the container."""
         return not self.preempt
 
     @property
     def needed(self) -> int:
-        """How many of the children must have ended so."""
+        """Required number of children that have ended with the named outcome."""
         return len(self.when) if self.at_least is None else self.at_least
 
     @property
     def needs_all(self) -> bool:
-        """Whether it holds only when each child has ended as named."""
+        """Whether it requires all children."""
         return self.needed == len(self.when)
 
     @property
     def consequence(self) -> str:
-        """What comes of it, in words: the outcome, or `preempt a, b`."""
+        """The consequence as text: the outcome, or `preempt a, b`."""
         return self.outcome if self.decides else f"{PREEMPT} {', '.join(self.preempt)}"
 
     @property
     def said(self) -> str:
-        """All of it in words, by which a run remembers it."""
+        """The condition as text, its identifier in a run."""
         return f"{self.consequence} when {self}"
 
     def holds(self, has_ended: Callable[[str, str], bool]) -> bool:
-        """Tell whether enough children have ended so, by what is said of a child and an outcome."""
+        """Return whether enough children have ended as required; `has_ended` takes a child and an outcome."""
         return sum(has_ended(name, due) for name, due in self.when.items()) >= self.needed
 
     def asks_only_for(self, is_meant: Callable[[str, str], bool]) -> bool:
-        """Tell whether all that it asks for is what is meant, by what is said of a child and an outcome."""
+        """Return whether `is_meant` is true for each required child and outcome."""
         return all(is_meant(name, due) for name, due in self.when.items())
 
     def __str__(self) -> str:
-        """Return what it asks for in words."""
+        """Return the required outcomes as text."""
         if self.needs_all:
             return " and ".join(f"{name}={due}" for name, due in self.when.items())
         return f"{self.needed} of " + ", ".join(f"{name}={due}" for name, due in self.when.items())
@@ -99,13 +99,13 @@ def preemptable(conditions: Iterable[ConcurrencyCondition]) -> frozenset[str]:
 
 
 def read_entry(entry: Mapping[str, object]) -> ConcurrencyCondition | None:
-    """Return a condition as documents write it; None for what is none.
+    """Return the condition in a document entry; None if the entry is not a condition.
 
     `{outcome: {child: outcome, …}}` decides, `{preempt: [child, …], when: {child: outcome, …}}` preempts.
     """
     preempted, when = entry.get(PREEMPT), entry.get(WHEN)
     if isinstance(preempted, list | tuple):
-        # An outcome may have this name as well; what is written for it is a mapping.
+        # An outcome may also have this name; its value is a mapping.
         if not isinstance(when, dict) or len(entry) != 2:
             return None
         named = cast("list[object] | tuple[object, ...]", preempted)
@@ -118,7 +118,7 @@ def read_entry(entry: Mapping[str, object]) -> ConcurrencyCondition | None:
 
 
 def _read(written: Mapping[str, object], *, outcome: str = "", preempt: tuple[str, ...] = ()) -> ConcurrencyCondition:
-    # A child may have this name as well; what is written for it is text.
+    # A child may also have this name; its value is text.
     count = written.get(AT_LEAST)
     when = {name: due for name, due in written.items() if isinstance(due, str)}
     return ConcurrencyCondition(

@@ -1,4 +1,4 @@
-"""Unquoted scalars as the core schema of YAML 1.2 reads them, within 64 bits and finite."""
+"""Unquoted scalars of the YAML 1.2 core schema, limited to 64 bits and finite numbers."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _WORDS: dict[str, bool | None] = {
 
 
 def plain_scalar(text: str) -> bool | int | float | str | None:
-    """Return what unquoted text means in the core schema of YAML 1.2.
+    """Return the value of unquoted text in the core schema of YAML 1.2.
 
     Raises:
-        ValueError: it is a number that is not finite or does not fit into 64 bits; says so.
+        ValueError: the number is not finite or does not fit into 64 bits.
     """
     first = text[:1]
     if first in "~nNtTfF":
@@ -42,7 +42,7 @@ def plain_scalar(text: str) -> bool | int | float | str | None:
 
 
 def _integer(digits: str, base: int) -> int:
-    # Twenty-four places hold any 64-bit number with sign in octal; longer text is not worth converting.
+    # 24 characters hold any signed 64-bit number in octal; longer text is not converted.
     number = int(digits, base) if len(digits) <= 24 else None
     if number is None or not -(2**63) <= number < 2**63:
         raise ValueError(f"{shorten_scalar(digits)} does not fit into 64 bits")
@@ -50,5 +50,5 @@ def _integer(digits: str, base: int) -> int:
 
 
 def shorten_scalar(text: str) -> str:
-    """Return text as a message shows it."""
+    """Return text shortened for a message."""
     return text if len(text) <= 40 else f"{text[:37]}…"

@@ -1,4 +1,4 @@
-"""Plain data to typed models; what does not fit is reported at its line and column."""
+"""Decodes plain data to typed models; mismatches are reported with line and column."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ _TYPES = {"object": "mapping", "array": "list", "str": "text", "float": "number"
 
 
 class StrictModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
-    """Root of the models of a document: a key that is not a field is an error."""
+    """Base class of document models: unknown keys are errors."""
 
 
 def decode_document(source: DocumentSource, kind: type[T], *, refused: Mapping[str, str] | None = None) -> T:
     """Return the document as a `kind`.
 
     Args:
-        source: What was read.
+        source: The parsed document.
         kind: A model, usually a `StrictModel` one.
-        refused: For keys that are known and not supported, what to say about them.
+        refused: Hints for known but unsupported keys.
 
     Raises:
-        DocumentError: the data does not fit; `where` is the position of the first mistake, `others` are the others.
+        DocumentError: the data is invalid; `where` is the position of the first mistake, `others` are the others.
     """
     try:
         return msgspec.convert(source.data, kind)
@@ -63,10 +63,10 @@ def mistake_errors(
     *,
     refused: Mapping[str, str] | None = None,
 ) -> list[DocumentError]:
-    """Return what to say about the mistakes of a document that is to be a `kind`."""
+    """Return the errors of a document of type `kind`."""
     known = list(mistakes)
-    meant = with_corrected_keys(source, known)
-    return [_of_mistake(meant, kind, mistake, refused or {}) for mistake in known]
+    corrected = with_corrected_keys(source, known)
+    return [_of_mistake(corrected, kind, mistake, refused or {}) for mistake in known]
 
 
 def _of_mistake(
@@ -78,7 +78,7 @@ def _of_mistake(
             name = str(path[-1])
             where = source.position(path, of_key=True)
             if name in refused:
-                return DocumentError(f"this version does not run `{name}`", where=where, hint=refused[name])
+                return DocumentError(f"this version does not support `{name}`", where=where, hint=refused[name])
             hint = did_you_mean(name, field_names(kind, path[:-1]))
             return DocumentError(f"unknown key `{name}`", where=where, hint=hint)
         case "missing":
@@ -107,16 +107,16 @@ def _refusal(
 
 
 def explain_validation_error(what: str) -> str:
-    """Say what msgspec complains of with the type names that authors of YAML know."""
+    """Return a msgspec message with the type names of the document format."""
 
     def types(match: re.Match[str]) -> str:
         names = [_TYPES.get(name, name) for name in match[1].split(" | ")]
         return " or ".join("nothing" if name == "null" else name for name in names)
 
-    said = re.sub(r"expected `str` matching regex .*", "not in the allowed form", what, flags=re.IGNORECASE | re.DOTALL)
-    said = re.sub(r"^Invalid enum value (.*)", r"there is no choice \1", said)
-    said = re.sub(r"`([a-z |]+)`", types, said)
-    return f"{said[:1].lower()}{said[1:]}"
+    text = re.sub(r"expected `str` matching regex .*", "not in the allowed form", what, flags=re.IGNORECASE | re.DOTALL)
+    text = re.sub(r"^Invalid enum value (.*)", r"there is no choice \1", text)
+    text = re.sub(r"`([a-z |]+)`", types, text)
+    return f"{text[:1].lower()}{text[1:]}"
 
 
 @cache
@@ -130,7 +130,7 @@ def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
 
 
 def _advice(kind: object, path: DataPath, *, of_key: bool, given: str) -> str | None:
-    """Return what the model says about the value (or the key) at `path`: its description, or the choices."""
+    """Return the hint of the model for the value (or the key) at `path`: its description, or the choices."""
     if of_key:
         mappings = [option for option in _types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
         return next((found for option in mappings if (found := _description([option.key_type]))), None)

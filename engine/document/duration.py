@@ -1,4 +1,4 @@
-"""Durations as documents write them: `30 s`, `500 ms`, `2 min`, `1 h`, or a number of seconds."""
+"""Durations in documents: `30 s`, `500 ms`, `2 min`, `1 h`, or a number of seconds."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from msgspec import Meta
 from engine.errors import DocumentError
 
 LONGEST_S = 1e9
-"""Thirty years: longer waits are mistakes, and times beyond it lose their microseconds."""
+"""Thirty years: longer waits are mistakes, and floats beyond it lose microsecond resolution."""
 _PATTERN = r"^[0-9]+(\.[0-9]+)? ?(ms|s|min|h)$"
 _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
-_MEANING = "A duration: a number of seconds, or text such as `500 ms`, `30 s`, `2 min`, `1 h`"
+_MEANING = "A duration: a number of seconds, or text, for example `500 ms`, `30 s`, `2 min`, `1 h`"
 
 Duration = (
     Annotated[float, Meta(ge=0.0, le=LONGEST_S, description=_MEANING)]
@@ -25,7 +25,7 @@ def seconds(duration: float | str) -> float:
     """Return a duration in seconds.
 
     Raises:
-        DocumentError: it is negative, longer than `LONGEST_S`, or has no unit that is known.
+        DocumentError: it is negative, longer than `LONGEST_S`, or has an unknown unit.
     """
     if isinstance(duration, str):
         if not re.fullmatch(_PATTERN, duration):

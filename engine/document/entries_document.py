@@ -18,8 +18,8 @@
 
 Joints are radians, positions metres, quaternions x y z w; joints may also be written as
 `{joints: […], names: […], model: panda}`. In a store these are the kinds `joints`, `pose`, `dmp`,
-`cart_dmp`, `cart_offsets`, `trajectory`, `gripper`, `detection` and `record`. An entry that `tags`
-does not name keeps those it has.
+`cart_dmp`, `cart_offsets`, `trajectory`, `gripper`, `detection` and `record`. An entry that is not in
+`tags` keeps its tags.
 """
 
 from __future__ import annotations
@@ -93,14 +93,14 @@ class EntriesDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Entries:
-    """An entries document with the file it came from."""
+    """An entries document with its file."""
 
     document: EntriesDocument
     file: Path
     source: DocumentSource = field(repr=False)
 
     def records(self) -> tuple[EntryRecord, ...]:
-        """Return every entry in the form a store takes; `revision` is 0, for not stored yet."""
+        """Return every entry as a store record; `revision` is 0 for entries not yet stored."""
         return tuple(
             EntryRecord(kind=kind, name=name, value=_value(value), revision=0, tags=self._tags(section, name))
             for kind, section in SECTIONS.items()
@@ -169,7 +169,7 @@ def write_entries(records: Iterable[EntryRecord]) -> str:
 
 
 def _value(written: object) -> dict[str, object]:
-    """Return what an entry holds, from how it is written."""
+    """Return the stored value of an entry as written."""
     if isinstance(written, tuple):
         return {"joints": list(cast("tuple[float, ...]", written))}
     if isinstance(written, Pose):
@@ -180,6 +180,6 @@ def _value(written: object) -> dict[str, object]:
 
 
 def _short(value: dict[str, object]) -> object:
-    """Return a joint configuration as a list where nothing else is said of it."""
-    said = {key: each for key, each in value.items() if each}
-    return said["joints"] if said.keys() == {"joints"} else said
+    """Return a joint configuration as a list if it has no other data."""
+    present = {key: each for key, each in value.items() if each}
+    return present["joints"] if present.keys() == {"joints"} else present

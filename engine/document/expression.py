@@ -1,10 +1,10 @@
 """`${…}` in the text of a document: CEL expressions over parameters and userdata, never Python.
 
-A text that is one expression gives the expression's typed value; expressions inside a longer text
-give text. `$${` is a literal `${`.
+A text that is one expression has the typed value of the expression; expressions inside a longer text
+are inserted as text. `$${` is a literal `${`.
 
-No evaluation begins that may take more than `MAX_STEPS`: its cost is known before, from its syntax and
-the sizes of its variables. So expressions are evaluated where they stand, on the event loop too.
+An evaluation that may take more than `MAX_STEPS` is refused: its cost is bounded in advance from its syntax
+and the sizes of its variables. Expressions are therefore evaluated in place, also on the event loop.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ from engine.document.value_size import SMALL, measure_value
 from engine.errors import ExpressionError
 
 MAX_PER_TEXT = 100
-"""Expressions in one text."""
+"""Maximum number of expressions in one text."""
 MAX_PER_VALUE = 1_000
-"""Expressions in one value, the lists and mappings inside it included."""
+"""Maximum number of expressions in one value, including nested lists and mappings."""
 
 _BEGIN = 30.0
-"""Steps before an evaluation whose cost is counted."""
+"""Steps to start an evaluation with a counted cost."""
 _LOOK = 1.5
-"""Steps for each character of an expression whose cost is counted."""
+"""Steps for each character of an expression with a counted cost."""
 _MEASURE = 0.4
-"""Steps for each unit of weight that is measured."""
+"""Steps for each measured unit of weight."""
 _Evaluation = Callable[[Variables], object]
 
 _PLAIN = frozenset((bool, int, float, type(None)))
 
 
 class Template(msgspec.Struct, frozen=True, gc=False):
-    """A value in which expressions are replaced on `evaluate`."""
+    """A value with expressions; `evaluate` replaces them."""
 
     value: object
-    """The value as written."""
+    """The value as written in the document."""
     names: frozenset[str]
     """The variables that the expressions use."""
     _evaluate: _Evaluation | None
@@ -55,14 +55,14 @@ class Template(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def constant(self) -> bool:
-        """True when there is no expression in it."""
+        """True if it contains no expression."""
         return self._evaluate is None
 
     def evaluate(self, variables: Variables) -> object:
         """Return the value with its expressions replaced; without expressions, the value itself.
 
         Raises:
-            ExpressionError: a variable is missing, an expression fails, or it might take too long; names both.
+            ExpressionError: a variable is missing, an expression fails, or it may exceed the step limit.
         """
         if self._evaluate is None:
             return self.value
@@ -72,10 +72,10 @@ class Template(msgspec.Struct, frozen=True, gc=False):
 
 
 def compile_template(value: object) -> Template:
-    """Prepare a value of a document: text, or lists and mappings with text in them.
+    """Compile the expressions in a document value: text, or lists and mappings that contain text.
 
     Raises:
-        ExpressionError: an expression is not well formed, or there are too many.
+        ExpressionError: an expression is malformed, or there are too many.
     """
     found: list[_Found] = []
     evaluation = _prepare(value, found)
@@ -83,31 +83,31 @@ def compile_template(value: object) -> Template:
 
 
 def _names(expressions: Iterable[Expression], *more: str) -> frozenset[str]:
-    """Return the names that they use, in one of their sets where that holds them all."""
+    """Return all names in the expressions, reusing the set of one of them if it holds all names."""
     sets = {frozenset(more), *(expression.names for expression in expressions)} - {frozenset[str]()}
     return sets.pop() if len(sets) == 1 else frozenset[str]().union(*sets)
 
 
 _Found = tuple["Expression", bool]
-"""An expression, and whether its value becomes part of a text."""
+"""An expression, and whether its value is inserted into a text."""
 
 
 class _Read(msgspec.Struct, frozen=True, gc=False):
-    """What the expressions of a value look into, and so what their evaluation costs."""
+    """The variables that the expressions of a value read, which determine their cost."""
 
     computed: tuple[Expression, ...] = ()
     shown: tuple[str, ...] = ()
-    """Variables whose value becomes text."""
+    """Variables whose values are inserted as text."""
     names: frozenset[str] = frozenset()
     small_steps: float | None = 0.0
-    """The cost with small values; None where that may be too much."""
+    """The cost with small values; None if that may exceed the limit."""
     characters: int = 0
 
     def steps(self, variables: Variables) -> float:
-        """Return what an evaluation takes at most.
+        """Return an upper bound of the steps of an evaluation.
 
         Raises:
-            ExpressionError: that is more than an evaluation may take.
+            ExpressionError: the bound exceeds the step limit.
         """
         if self.small_steps is not None and all(map(_is_small, map(variables.get, self.names))):
             return self.small_steps
@@ -131,7 +131,7 @@ def _new_read(found: list[_Found]) -> _Read:
 
 
 def _is_small(value: object) -> bool:
-    """Tell whether a value keeps to `SMALL`."""
+    """Return whether a value is within `SMALL`."""
     if _is_short(value):
         return True
     if isinstance(value, dict):
@@ -228,7 +228,7 @@ def split_text(text: str) -> list[str | Expression]:
     """Return the literal pieces and the expressions of a text in order.
 
     Raises:
-        ExpressionError: an expression is not well formed, or there are too many.
+        ExpressionError: an expression is malformed, or there are too many.
     """
     pieces: list[str | Expression] = []
     literal: list[str] = []
@@ -262,7 +262,7 @@ def _openings(text: str) -> Iterator[int]:
 
 
 def _closing_brace(text: str, start: int) -> int:
-    """Return the index of the brace that closes an expression, passing over its own braces and quotes."""
+    """Return the index of the closing brace of an expression, skipping nested braces and quotes."""
     depth = 0
     quote = ""
     index = start

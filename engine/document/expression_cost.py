@@ -1,8 +1,8 @@
-"""What the evaluation of an expression may cost at most, from its syntax and the sizes of its variables.
+"""Upper bound of the evaluation cost of an expression, from its syntax and the sizes of its variables.
 
-The cost is counted in steps of about a microsecond. Figures are those of the slowest inputs that
-were measured; `benchmarks/hostile_inputs.py` holds them against the clock. Whatever is not known here is
-refused, so that no evaluation begins whose end is not known.
+The unit is a step of about one microsecond. The constants are those of the slowest measured inputs;
+`benchmarks/hostile_inputs.py` compares them with the clock. Unknown functions are refused, so that every
+evaluation has a known bound.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from engine.document.value_size import SCALAR, ValueSize, either_size, joined_si
 from engine.errors import ExpressionError
 
 MAX_STEPS = 10_000.0
-"""What one evaluation may cost: 10 ms."""
+"""Maximum cost of one evaluation: 10 ms."""
 
 Sizes = Mapping[str, ValueSize]
 
 _START = 10.0
 _NODE = 0.15
 _READ = 1.0
-"""For each unit of weight that is handed over to the evaluator."""
+"""Steps per unit of weight passed to the evaluator."""
 _RESULT = 1.5
-"""For each unit of weight that is handed back."""
+"""Steps per unit of weight returned."""
 _ROUND = 0.4
 _ADD = 5.0
-"""For what `filter` and the like add in a round, the choice included."""
+"""Steps per item that `filter` and similar macros add, including the condition."""
 _COPY = 0.2
-"""For each item that is copied when lists are joined; `map` and `filter` join one item at a time."""
+"""Steps per copied item when lists are joined; `map` and `filter` join one item at a time."""
 _COMPARE = 0.3
 _FIND = 0.1
 _ARITHMETIC = 4.0
@@ -58,10 +58,10 @@ class ExpressionCost:
 
 
 def cost_of(root: Syntax, sizes: Sizes) -> ExpressionCost:
-    """Return what an expression may cost with variables of these sizes; of those that are absent as little as can be.
+    """Return the cost bound of an expression with variables of these sizes; missing ones count as minimal.
 
     Raises:
-        ExpressionError: it uses a function or a message whose cost nobody knows.
+        ExpressionError: it uses a function or message of unknown cost.
     """
     counting = _Counting(_START + _READ * sum(size.weight for size in sizes.values()))
     result = counting.size(root, sizes)
@@ -75,7 +75,7 @@ class _Counting:
         self.steps = steps
 
     def size(self, node: Syntax, sizes: Sizes) -> ValueSize:
-        """Return the size of the value of a node, counting what it costs."""
+        """Return the size of the value of a node, adding its cost."""
         self.steps += _NODE
         match node:
             case CelLiteral():
@@ -97,7 +97,7 @@ class _Counting:
                 return self._fold(node, sizes)
 
     def added(self, node: CelComprehension, inside: Sizes) -> ValueSize | None:
-        """Return the size of what a round adds, counting what it costs; each node once, for they are nested."""
+        """Return the size of the values that a round adds, adding its cost; each nested node counts once."""
         growth = _growth(node)
         if growth is None:
             self.size(node.step, inside)
@@ -139,7 +139,7 @@ class _Counting:
         each.size(node.condition, inside)
         item = each.added(node, inside)
         rounds = values.length
-        # `map` joins a list to one item in every round, and so copies all before it.
+        # `map` appends one item per round, and copies all previous items.
         copied = _COPY * rounds * (rounds + 1) / 2 if item is not None and item.length else 0.0
         self.steps = min(self.steps + rounds * each.steps + copied, _ENDLESS)
         made = list_size(rounds * item.length, item.inside) if item is not None and item.length else SCALAR
@@ -147,7 +147,7 @@ class _Counting:
 
 
 def _growth(node: CelComprehension) -> Syntax | None:
-    """Return what a round adds to the accumulator, None where that is a truth value."""
+    """Return the expression that a round adds to the accumulator; None if it is a truth value."""
     step = node.step
     if isinstance(step, CelCall) and _is_conditional(step):
         step = step.arguments[1]
@@ -200,16 +200,16 @@ def _contains(given: list[ValueSize]) -> tuple[float, ValueSize]:
 def _matches(given: list[ValueSize]) -> tuple[float, ValueSize]:
     text, pattern = given
     if pattern.literal is None and pattern.text:
-        hint = "write it as text, or give it as a parameter or key of its own"
-        raise ExpressionError("the pattern of `matches` is put together", hint=hint)
+        hint = "write it as literal text, or pass it as one parameter or key"
+        raise ExpressionError("the pattern of `matches` is computed", hint=hint)
     weight = pattern_weight(pattern.literal or "")
     return 20 + 2 * weight + text.text * weight / 10, SCALAR
 
 
 def _zoned(given: list[ValueSize]) -> tuple[float, ValueSize]:
-    # The evaluator opens the file of the zone, whatever it is.
+    # The evaluator opens the time zone file for any name.
     if len(given) > 1 and not _ZONE.fullmatch(given[1].literal or ""):
-        raise ExpressionError("this is no time zone", hint="write it as `Europe/Berlin` or `+02:00`")
+        raise ExpressionError("this is not a time zone", hint="write it as `Europe/Berlin` or `+02:00`")
     return 5.0, SCALAR
 
 

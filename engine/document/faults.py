@@ -1,12 +1,12 @@
-"""Fault documents: what shall go wrong with which requests of a run, to see how a behavior takes it.
+"""Fault documents: faults injected into requests of a run, to test how a behavior handles them.
 
     flexcell: 1
     faults:
       - {at: root/*/grasp, address: left/gripper/*, request: 1, error: the fingers are blocked}
       - {at: root/**, address: left/*, probability: 0.1, late: 500 ms}
 
-A request is what a state asks of its surroundings: a service call, an action goal, or the read of a
-topic. The first fault in the document that matches a request is applied to it, and only that one.
+A request of a state is a service call, an action goal, or the read of a topic. Only the first fault in the
+document that matches a request is applied to it.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ AddressPattern = Annotated[
     str,
     Meta(
         min_length=1,
-        description="A bus address or topic such as `left/gripper/*`; wildcards as in `at`",
+        description="A bus address or topic, for example `left/gripper/*`; wildcards as in `at`",
     ),
 ]
 
 
 class HangFault(StrictModel, frozen=True, kw_only=True):
-    """The device takes the request and never answers.
+    """The device accepts the request and never responds.
 
-    A cancel reaches it and is confirmed, unless `ignore_cancel`.
+    A cancel is delivered and confirmed, unless `ignore_cancel` is set.
     """
 
     ignore_cancel: bool = False
@@ -48,26 +48,26 @@ class HangFault(StrictModel, frozen=True, kw_only=True):
 class ErrorFault(StrictModel, frozen=True, kw_only=True):
     """The request fails with `message`.
 
-    `by` says how: `abort` ends the goal as aborted, `reject` refuses it, `raise` raises in the
-    state; services and topics always raise. Without `after` the device never gets the request; an
-    aborted goal with `after` is under way for so long, and then stopped.
+    `by` selects how: `abort` ends the goal as aborted, `reject` rejects it, `raise` raises in the
+    state; services and topics always raise. Without `after` the device never receives the request; an
+    aborted goal with `after` runs for that time and is then stopped.
     """
 
-    message: Annotated[str, Meta(min_length=1, description="What the failure says")]
+    message: Annotated[str, Meta(min_length=1, description="Error message of the failure")]
     by: Literal["abort", "reject", "raise"] = "abort"
     after: Duration = 0.0
 
     @property
     def after_s(self) -> float:
-        """How long it is under way, in seconds."""
+        """Time until the failure, in seconds."""
         return seconds(self.after)
 
 
 class CrashFault(StrictModel, frozen=True, kw_only=True):
-    """The process is killed at once, as by `kill -9`.
+    """The process is killed immediately, as by `kill -9`.
 
-    `at_event` when the event of this number is recorded; `on_request` before a matching request
-    leaves the engine, or after its effect and before its answer is recorded.
+    `at_event`: when the event with this number is recorded; `on_request`: before a matching request
+    is sent, or after its effect and before its response is recorded.
     """
 
     at_event: Annotated[int, Meta(ge=1, description="Number of an event, from 1")] | None = None
@@ -75,40 +75,40 @@ class CrashFault(StrictModel, frozen=True, kw_only=True):
 
 
 class Fault(StrictModel, frozen=True, kw_only=True):
-    """One thing that goes wrong: exactly one kind, and to which requests it happens.
+    """One fault: exactly one kind, and the requests that it applies to.
 
     `request` is the n-th request of one state that `at` and `address` match, counted over all its
-    activations. `times` bounds how often the fault is applied in a run. `probability` draws for
-    each such request, from the seed of the run, the state and the number of the request, so that
-    parallel branches do not disturb one another.
+    activations. `times` limits how often the fault is applied in a run. `probability` is sampled for
+    each such request from the seed of the run, the state and the number of the request, so that
+    parallel branches are independent.
 
-    `late` delays the answer. `duplicate` delivers the request twice, with the same goal id: the
-    copy comes `at_once` or `after_end` of the original, whose answer is the one that counts; the
-    message of a topic is read twice. With `lost` the `request` never reaches the device, or the
-    device does it and its `answer` never comes; of a topic one message is lost.
+    `late` delays the response. `duplicate` delivers the request twice, with the same goal id: the
+    copy follows `at_once` or `after_end` of the original, whose response is used; the message of a
+    topic is read twice. With `lost` the `request` never reaches the device, or the device executes it
+    and its `answer` is lost; of a topic one message is lost.
     """
 
     name: str = ""
     at: PathPattern = "**"
     address: AddressPattern = "**"
     request: Annotated[int, Meta(ge=1, description="The n-th matching request of a state, from 1")] | None = None
-    times: Annotated[int, Meta(ge=1, description="How often at most, 1 or more")] | None = None
+    times: Annotated[int, Meta(ge=1, description="Maximum number of applications, 1 or more")] | None = None
     probability: Annotated[float, Meta(gt=0.0, le=1.0, description="Above 0, at most 1")] = 1.0
     late: Duration | None = None
     hang: HangFault | None = None
-    error: ErrorFault | Annotated[str, Meta(min_length=1, description="What the failure says")] | None = None
+    error: ErrorFault | Annotated[str, Meta(min_length=1, description="Error message of the failure")] | None = None
     duplicate: Literal["at_once", "after_end"] | None = None
     lost: Literal["request", "answer"] | None = None
     crash: CrashFault | None = None
 
     @property
     def kinds(self) -> tuple[FaultKind, ...]:
-        """All kinds it has; a valid fault has one."""
+        """All kinds of the fault; a valid fault has one."""
         return tuple(kind for kind in FAULT_KINDS if getattr(self, kind) is not None)
 
     @property
     def kind(self) -> FaultKind:
-        """What goes wrong."""
+        """The kind of the fault."""
         return self.kinds[0]
 
     @property
@@ -118,12 +118,12 @@ class Fault(StrictModel, frozen=True, kw_only=True):
 
     @property
     def failure(self) -> ErrorFault | None:
-        """The error, where it is one, also when only its message is written."""
+        """The error fault, also if only its message is written; None for other kinds."""
         return ErrorFault(message=self.error) if isinstance(self.error, str) else self.error
 
     @property
     def crashes_at(self) -> int | None:
-        """The number of the event at which it kills the process, if that is what it does."""
+        """The number of the event at which it kills the process; None for other faults."""
         return self.crash.at_event if self.crash is not None else None
 
 
@@ -140,14 +140,14 @@ class FaultsDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Faults:
-    """A fault document with the file it came from."""
+    """A fault document with its file."""
 
     document: FaultsDocument
     file: Path
     source: DocumentSource = field(repr=False)
 
     def position(self, index: int) -> Position:
-        """Return where the fault with this index, from 0, stands."""
+        """Return the position of the fault with this index, from 0."""
         return self.source.position(("faults", index))
 
 
@@ -182,21 +182,23 @@ def _require_one_kind(source: DocumentSource, index: int, fault: Fault) -> None:
     known = ", ".join(f"`{kind}`" for kind in FAULT_KINDS)
     if not fault.kinds:
         where = source.position(("faults", index))
-        raise DocumentError("this fault does not say what goes wrong", where=where, hint=f"add one of {known}")
+        raise DocumentError("this fault has no kind", where=where, hint=f"add one of {known}")
     if len(fault.kinds) > 1:
         where = source.position(("faults", index, fault.kinds[1]), of_key=True)
         raise DocumentError(
-            f"this fault is `{fault.kinds[0]}` and `{fault.kinds[1]}` at once", where=where, hint="make it two faults"
+            f"this fault has both `{fault.kinds[0]}` and `{fault.kinds[1]}`",
+            where=where,
+            hint="split it into two faults",
         )
 
 
 def _require_one_crash(source: DocumentSource, index: int, fault: Fault, crash: CrashFault) -> None:
     where = source.position(("faults", index, "crash"), of_key=True)
     if (crash.at_event is None) == (crash.on_request is None):
-        raise DocumentError("a crash has either `at_event` or `on_request`", where=where, hint="give one of them")
+        raise DocumentError("a crash has either `at_event` or `on_request`", where=where, hint="set one of them")
     if crash.at_event is None:
         return
     for key in _WHERE_AND_WHEN:
         if getattr(fault, key) != getattr(_PLAIN, key):
             place = source.position(("faults", index, key), of_key=True)
-            raise DocumentError(f"`{key}` has no meaning beside `at_event`", where=place, hint=f"remove `{key}`")
+            raise DocumentError(f"`{key}` has no effect with `at_event`", where=place, hint=f"remove `{key}`")

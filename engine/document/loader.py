@@ -21,12 +21,12 @@ from engine.host.gc_pause import pause_gc
 
 MAX_CHAIN = 64
 MAX_EXPANDED_NODES = 50_000
-"""Each takes some 2 kB in a plan."""
+"""Maximum number of nodes; each takes about 2 kB in a plan."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CircularReference:
-    """A chain of files in which the last one refers to the first again, closed at `position`."""
+    """A chain of files in which the last one refers to the first, at `position`."""
 
     chain: tuple[Path, ...]
     position: Position
@@ -37,9 +37,9 @@ class CircularReference:
 
 @dataclass(frozen=True, kw_only=True)
 class BehaviorSurvey:
-    """What there is to say of a document before it is checked.
+    """The result of reading a document before the check.
 
-    `behavior` is None where nothing can be read. With mistakes it is only good for being checked: it has gaps.
+    `behavior` is None if nothing is readable. With mistakes it has gaps and can only be checked, not run.
     """
 
     behavior: Behavior | None
@@ -51,8 +51,8 @@ def load_behavior(path: Path | str) -> Behavior:
     """Read a behavior document and everything it refers to.
 
     Raises:
-        DocumentError: a file cannot be read or is not a valid behavior, or behaviors refer to
-            one another in a circle; `where` is the position.
+        DocumentError: a file cannot be read or is not a valid behavior, or the references are
+            circular; `where` is the position.
     """
     behavior, circles = read_behavior(path)
     if circles:
@@ -63,7 +63,7 @@ def load_behavior(path: Path | str) -> Behavior:
 
 @pause_gc
 def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, ...]]:
-    """Read a behavior like `load_behavior`, returning circular references, left open, beside it.
+    """Read a behavior like `load_behavior`; also return the circular references, which stay unresolved.
 
     Raises:
         DocumentError: a file cannot be read or is not a valid behavior.
@@ -94,8 +94,8 @@ def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within
 
     Args:
         path: Its file.
-        text: What is read in its place, as it is being edited; references are read relative to `path`.
-        within: A folder; what a document with mistakes names outside of it is not looked at, and is a mistake.
+        text: Edited text to read instead of the file; references are relative to `path`.
+        within: A folder; references to files outside of it are not read and are mistakes.
     """
     file = Path(path)
     try:
@@ -117,7 +117,7 @@ def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within
 
 
 class _Reading:
-    """One pass over a document and its references; with a list for mistakes it goes around them."""
+    """One pass over a document and its references; with a list for mistakes it collects them and continues."""
 
     def __init__(self, *, mistakes: list[DocumentError] | None = None, within: Path | None = None) -> None:
         self._within = within.resolve() if within is not None else None
@@ -155,7 +155,7 @@ class _Reading:
         return self._complete(self._without_stray_cell(partial.behavior), file, chain)
 
     def _without_stray_cell(self, behavior: Behavior) -> Behavior:
-        """Return a behavior that names no cell outside of the folder."""
+        """Return the behavior without a cell outside of the folder."""
         if behavior.cell_file is None or not self._is_outside(behavior.cell_file):
             return behavior
         self._refuse_outside(str(behavior.document.cell), behavior.source.position(("cell",)))
@@ -176,13 +176,13 @@ class _Reading:
         return replace(behavior, references=references, meaning=meaning)
 
     def _count_expanded(self, behavior: Behavior, meanings: Mapping[str, str]) -> int:
-        """Count the nodes of a behavior with every use of a reference unfolded."""
+        """Count the nodes of a behavior with all references expanded."""
         count = 0
         for path, node in behavior.nodes():
             meaning = meanings.get(node.behavior) if node.behavior is not None else None
             count += 1 + (self._expanded[meaning] if meaning is not None else 0)
             if count > MAX_EXPANDED_NODES:
-                message = f"with its references unfolded the behavior has more than {MAX_EXPANDED_NODES} nodes"
+                message = f"with its references expanded the behavior has more than {MAX_EXPANDED_NODES} nodes"
                 raise DocumentError(message, where=behavior.position(path), hint="refer to fewer behaviors")
         return count
 
@@ -199,7 +199,7 @@ class _Reading:
                 self.circles.append(CircularReference(chain=chain[start:], position=position))
                 continue
             if len(chain) >= MAX_CHAIN:
-                raise DocumentError(f"behaviors refer to one another more than {MAX_CHAIN} deep", where=position)
+                raise DocumentError(f"behavior references are nested more than {MAX_CHAIN} deep", where=position)
             if self._is_outside(file):
                 self._refuse_outside(written, position)
             elif not file.is_file():
@@ -215,7 +215,7 @@ class _Reading:
         self.mistakes.append(error)
 
     def _referred(self, file: Path, chain: tuple[Path, ...]) -> Behavior | None:
-        """Return a behavior that is referred to; None for one that is gone around, as nothing of it can be read."""
+        """Return a referred behavior; None if it is skipped because nothing of it is readable."""
         if _identity(file) in self._failed:
             return None
         try:

@@ -1,7 +1,7 @@
-"""Finds every place where plain data does not fit a model, and what is left of the data without those places.
+"""Finds every mismatch between plain data and a model, and returns the data without the mismatches.
 
-A mistake does not hide the others: a mistyped key is read as the one that was meant, an unknown one is left out, a
-value that does not fit gives way to its default or, where there is none, to a stand-in. `MAX_MISTAKES` end the look.
+A mistake does not hide the others: a mistyped key is read as the most similar valid one, an unknown key is removed,
+an invalid value is replaced by its default or a placeholder. The search ends after `MAX_MISTAKES`.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from engine.document.yaml_source import DataPath, DocumentSource, PositionTree
 from engine.suggestions import close_names
 
 MAX_MISTAKES = 100
-"""Mistakes of one document that are told."""
+"""Maximum number of reported mistakes of one document."""
 _LONGEST_KEY = 100
 _ALIKE = 0.7
 UNREADABLE = "unreadable"
-"""What stands for text that cannot be read."""
+"""Placeholder for unreadable text."""
 
 Plain = dict[str, object]
 Repair = Callable[[Plain], Plain]
@@ -30,10 +30,10 @@ Repair = Callable[[Plain], Plain]
 
 @dataclass(frozen=True, kw_only=True)
 class DocumentMistake:
-    """A place where data does not fit: `path` leads to the value, to a key that is wrong, or to one that is missing.
+    """A mismatch in the data: `path` leads to the value, or to the wrong or missing key.
 
-    `complaint` is what msgspec says of the value; empty for keys that are unknown or missing. `meant` is the key as
-    which an unknown one was read. All other steps of the path are keys as they were meant.
+    `complaint` is the msgspec message for the value; empty for unknown or missing keys. `meant` is the valid key as
+    which an unknown key was read. All other steps of the path are corrected keys.
     """
 
     path: DataPath
@@ -43,11 +43,11 @@ class DocumentMistake:
 
 
 class TooManyMistakes(Exception):
-    """The look was stopped."""
+    """The search was stopped."""
 
 
 class _Broken:
-    """Stands for a value of which nothing can be used."""
+    """Placeholder for an unusable value."""
 
 
 _BROKEN: Final = _Broken()
@@ -55,17 +55,17 @@ _BROKEN: Final = _Broken()
 
 @dataclass
 class MistakeCollector:
-    """One look at one document.
+    """One search in one document.
 
     Args:
-        repairs: For a model, how to complete what is left of it when something was left out.
+        repairs: By model, a function that completes the remaining data after a removal.
     """
 
     repairs: Mapping[type, Repair] = field(default_factory=dict[type, Repair])
     mistakes: list[DocumentMistake] = field(default_factory=list[DocumentMistake])
 
     def sift(self, value: object, kind: Any) -> object:
-        """Return the value without its mistakes; None where nothing is left, or there are too many.
+        """Return the value without its mistakes; None if nothing is left or there are too many.
 
         The mistakes found are in `mistakes`, in the order of the data.
         """
@@ -82,7 +82,7 @@ class MistakeCollector:
         known = len(self.mistakes)
         kept = self._container(value, kind, path)
         if len(self.mistakes) == known:
-            # It is wrong as a whole, or what is wrong in it cannot be told apart.
+            # The value is wrong as a whole, or its mistakes cannot be located.
             self._note(DocumentMistake(path=path, fault="value", complaint=complaint))
             return _BROKEN
         return kept if kept is not _BROKEN and _complaint(kept, kind) is None else _BROKEN
@@ -128,7 +128,7 @@ class MistakeCollector:
         return kept
 
     def _unknown(self, value: Plain, key: str, fields: Mapping[str, FieldInfo], path: DataPath) -> Plain:
-        """Read a mistyped key as the one that was meant, if what stands there fits."""
+        """Read a mistyped key as the most similar valid one, if its value is valid there."""
         absent = [name for name in fields if name not in value]
         meant = next(iter(close_names(key[:_LONGEST_KEY], absent, most=1, cutoff=_ALIKE)), "")
         number = len(self.mistakes)
@@ -151,12 +151,12 @@ class MistakeCollector:
         return kept
 
     def _kept(self, value: object, kind: Any, path: DataPath) -> object:
-        """Return what is left of a value that must be there."""
+        """Return the remaining data of a required value."""
         found = self._value(value, kind, path)
         return self._stand_in(kind) if found is _BROKEN else found
 
     def _stand_in(self, kind: Any) -> object:
-        """Return a value that fits; broken where none is known."""
+        """Return a valid placeholder value; broken if none is known."""
         candidates = (self._made(option) for option in options(kind))
         return next((each for each in candidates if each is not _BROKEN and _complaint(each, kind) is None), _BROKEN)
 
@@ -182,7 +182,7 @@ class MistakeCollector:
 
 
 def with_corrected_keys(source: DocumentSource, mistakes: Iterable[DocumentMistake]) -> DocumentSource:
-    """Return a document in which what stands at mistyped keys is also found under those that were meant."""
+    """Return a document in which the values of mistyped keys are also found under the corrected keys."""
     place = source.place
     for mistake in mistakes:
         if mistake.meant:
@@ -203,7 +203,7 @@ def _with_alias(place: PositionTree, path: DataPath, meant: str) -> PositionTree
 
 
 def options(kind: Any) -> Iterator[Any]:
-    """Go through the types that a value may have, without their annotations."""
+    """Yield the types that a value may have, without their annotations."""
     origin = get_origin(kind)
     if origin is Annotated:
         yield from options(get_args(kind)[0])
@@ -232,7 +232,7 @@ def _has_tag(kind: type[msgspec.Struct], value: Plain) -> bool:
 
 
 def _items(option: Any, count: int) -> list[Any] | None:
-    """Return the types of so many items of a list; None for other types, and where it cannot have as many."""
+    """Return the types of `count` items of a list; None for other types or an invalid count."""
     arguments = get_args(option)
     if get_origin(option) is list or (get_origin(option) is tuple and arguments[-1:] == (...,)):
         return [arguments[0]] * count

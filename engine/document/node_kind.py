@@ -24,19 +24,19 @@ TreeKind = Literal[
     "while_do_else",
     "behaviour",
 ]
-"""Kinds that stand only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
+"""Kinds allowed only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
 Wrapper = Literal["retry", "timeout", "guard"]
 NodeKind = PlainKind | TreeKind | Wrapper
 KINDS: tuple[PlainKind, ...] = get_args(PlainKind)
 TREE_KINDS: tuple[TreeKind, ...] = get_args(TreeKind)
 WRAPPERS: tuple[Wrapper, ...] = get_args(Wrapper)
-"""Keys of every node that, given a `child` inside a tree, are decorators of it."""
+"""Keys of every node that are decorators inside a tree, if they have a `child`."""
 
 SLOTS: Mapping[str, tuple[str, ...]] = {
     "if_then_else": ("if", "then", "else"),
     "while_do_else": ("while", "do", "else"),
 }
-"""The keys of the children of parts whose children have roles, in the order in which they are asked."""
+"""The keys of the children of parts whose children have roles, in tick order."""
 
 Key = Annotated[str, Meta(pattern="^[A-Za-z_][A-Za-z0-9_]{0,63}$", description="Letters, digits and `_`")]
 NodeName = Annotated[
@@ -49,17 +49,17 @@ Reference = Annotated[str, Meta(min_length=1, description="A behavior file, rela
 Expression = Annotated[str, Meta(min_length=1, description="An expression, `${…}`")]
 AutonomyLevel = Literal["off", "low", "high", "full"]
 Status = Literal["success", "failure", "running"]
-Count = Annotated[int, Meta(ge=1, description="For `at_least`: how many of these")]
-Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or more")]
+Count = Annotated[int, Meta(ge=1, description="For `at_least`: number of children")]
+Times = Annotated[int, Meta(ge=1, le=1_000_000, description="Number of times, 1 or more")]
 
 
 Assignments = Annotated[dict[Key, object], Meta(description="`{userdata key: value}`, in this order")]
 
 
 class PostConditionsSpec(StrictModel, frozen=True, kw_only=True):
-    """Userdata that is assigned when a part of a tree has ended, or was halted; values may hold `${…}`.
+    """Userdata that is assigned when a part of a tree has ended or was halted; values may contain `${…}`.
 
-    `always` is after success and failure, behind the others. Nothing is assigned for a part that was skipped.
+    `always` applies after success and failure, after the others. A skipped part assigns nothing.
     """
 
     on_success: Assignments = {}
@@ -69,7 +69,7 @@ class PostConditionsSpec(StrictModel, frozen=True, kw_only=True):
 
 
 def numbered(wanted: Iterable[str]) -> list[str]:
-    """Return names for the children of a part of a tree; one that is taken gets a number."""
+    """Return unique names for the children of a part of a tree; duplicates get a number."""
     names: dict[str, None] = {}
     seen: dict[str, int] = {}
     for own in wanted:

@@ -1,8 +1,8 @@
 """The nodes of a behavior document as frozen models: states, containers and the parts of trees.
 
-A node has exactly one kind key and, beside it, keys that hold for every kind (`transitions`,
+A node has exactly one kind key and optional keys that apply to every kind (`transitions`,
 `timeout`, `retry`, `on_error`, `guard`, `autonomy`, `resume`, `description`). Mappings keep the
-order of the document, which is the order of precedence.
+order of the document, the order of precedence.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from engine.document.node_kind import (
 
 
 class TimeoutSpec(StrictModel, frozen=True, kw_only=True):
-    """Preempt the node `after` a duration and leave it for `to`.
+    """Preempt the node `after` a duration and continue at `to`.
 
     In a machine `to` is a sibling or an outcome of the machine; in a concurrency or foreach
-    container it is the outcome that the container sees; in a tree it is `success` or `failure`; at
+    container it is the outcome of the node for the container; in a tree it is `success` or `failure`; at
     the root it is an outcome of the behavior. As a decorator in a tree it has a `child` and fails.
     """
 
@@ -56,13 +56,13 @@ class TimeoutSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class RetrySpec(StrictModel, frozen=True, kw_only=True):
-    """Run the node again, up to `times` more, after these outcomes, and after errors when `errors`.
+    """Retry the node, up to `times` times, after these outcomes, and after errors with `errors`.
 
-    The wait before the first repetition is `backoff`; it doubles each time. As a decorator in a
-    tree it has a `child` and runs it again after FAILURE.
+    The wait before the first retry is `backoff`; it doubles each time. As a decorator in a
+    tree it has a `child` and retries it after FAILURE.
     """
 
-    times: Annotated[int, Meta(ge=1, le=1_000_000, description="How often to run it again, 1 or more")]
+    times: Annotated[int, Meta(ge=1, le=1_000_000, description="Maximum number of retries, 1 or more")]
     backoff: Duration = 0.0
     outcomes: tuple[str, ...] = ()
     errors: bool = True
@@ -75,9 +75,9 @@ class RetrySpec(StrictModel, frozen=True, kw_only=True):
 
 
 class GuardSpec(StrictModel, frozen=True, kw_only=True):
-    """Enter the node only when the expression `when` is true, else leave it at once for `to`.
+    """Enter the node only if the expression `when` is true, else continue at `to`.
 
-    In a tree `to` is `success`, `failure` or `skipped`. As a decorator there it has a `child`, which is stopped when
+    In a tree `to` is `success`, `failure` or `skipped`. As a decorator there it has a `child`, which is halted when
     `when` becomes false; without `to` it then fails.
     """
 
@@ -87,7 +87,7 @@ class GuardSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class MachineSpec(StrictModel, frozen=True, kw_only=True):
-    """A state machine: one child at a time, from `initial` along the children's `transitions`."""
+    """A state machine: runs one child at a time, from `initial` along the children's `transitions`."""
 
     initial: str
     states: Annotated[dict[NodeName, NodeSpec], Meta(min_length=1, description="The children, at least one")]
@@ -95,11 +95,12 @@ class MachineSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class ConcurrencySpec(StrictModel, frozen=True, kw_only=True):
-    """Children side by side; the first condition that holds decides the outcome.
+    """Concurrent children; the first condition that holds decides the outcome.
 
-    A condition asks for outcomes of children, all of them, or any `at_least` of them. One with `preempt` decides
-    nothing: when it first holds, the children named there are preempted and the others go on. Keys in `shared` have one
-    value for all children at any time; what a child writes to other keys is seen by the others once all have ended.
+    A condition requires outcomes of children: all of them, or any `at_least` of them. One with `preempt` decides
+    no outcome: when it first holds, the children named there are preempted and the others continue. Keys in `shared`
+    have one value for all children at any time; other keys written by a child become visible to the others when all
+    have ended.
     """
 
     states: Annotated[dict[NodeName, NodeSpec], Meta(min_length=1, description="The children, at least one")]
@@ -117,11 +118,11 @@ class ConcurrencySpec(StrictModel, frozen=True, kw_only=True):
 class ForEachSpec(StrictModel, frozen=True, kw_only=True, rename={"item": "as"}):
     """Run `child` once for each of `items`, or `times` times.
 
-    Outcomes: `exhausted` when all were done, `broken` when a child ended otherwise than `next` says.
+    Outcomes: `exhausted` after all rounds, `broken` when a child ended with an outcome not in `next`.
 
-    `items` is an expression that gives a list. Each round has a scope of its own with the item
+    `items` is an expression whose value is a list. Each round has its own scope with the item
     under the key `as` and the number of the round, from 0, under `index`. `next` names the
-    outcomes after which the next round begins, by default those that mean success to the child.
+    outcomes after which the next round begins, by default the success outcomes of the child.
     `collect` appends, after each such round, the value of a key to a list outside.
     """
 
@@ -136,7 +137,7 @@ class ForEachSpec(StrictModel, frozen=True, kw_only=True, rename={"item": "as"})
 
 
 class CompositeSpec(StrictModel, frozen=True, kw_only=True):
-    """Children of a sequence or selector; with `memory` a child that is done is not asked again.
+    """Children of a sequence or selector; with `memory` a completed child is not ticked again.
 
     A plain list of children has memory.
     """
@@ -146,23 +147,23 @@ class CompositeSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class ParallelSpec(StrictModel, frozen=True, kw_only=True):
-    """Children ticked together; `policy` says whose success is its own: `all`, `one`, or those named.
+    """Children ticked together; `policy` names the children that must succeed: `all`, `one`, or names.
 
-    With `synchronise` a child that has succeeded is not run again while the others are at work.
+    With `synchronise` a child that has succeeded is not restarted while the others run.
 
-    With thresholds in place of a policy it succeeds when `success_count` children have (all, without it) and fails when
-    `failure_count` have failed (1, without it) or too few are left to succeed; a child that has ended is not run again.
+    With thresholds instead of a policy it succeeds when `success_count` children have succeeded (default: all) and
+    fails when `failure_count` have failed (default: 1) or success is impossible; ended children are not restarted.
     """
 
     children: Annotated[tuple[NodeSpec, ...], Meta(min_length=1, description="The children, at least one")]
     policy: Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)] = "all"
     synchronise: bool = True
-    success_count: Annotated[int, Meta(ge=1, description="How many children must succeed")] | None = None
-    failure_count: Annotated[int, Meta(ge=1, description="How many children must fail")] | None = None
+    success_count: Annotated[int, Meta(ge=1, description="Number of children that must succeed")] | None = None
+    failure_count: Annotated[int, Meta(ge=1, description="Number of children that must fail")] | None = None
 
     @property
     def counts(self) -> bool:
-        """Whether it has thresholds in place of a policy."""
+        """Whether it has thresholds instead of a policy."""
         return self.success_count is not None or self.failure_count is not None
 
 
@@ -173,21 +174,21 @@ class DecoratorSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class OneShotSpec(StrictModel, frozen=True, kw_only=True):
-    """Runs its child to completion, or to success, once in a run of the tree, and remembers the end."""
+    """Runs its child to completion, or to success, once in a run of the tree, and keeps the status."""
 
     child: NodeSpec
     policy: Literal["completion", "success"] = "completion"
 
 
 class RepeatSpec(StrictModel, frozen=True, kw_only=True):
-    """Runs its child until it has succeeded `times` times in a row; fails when it fails."""
+    """Runs its child until it has succeeded `times` times in a row; fails when the child fails."""
 
     child: NodeSpec
     times: Times
 
 
 class CooldownSpec(StrictModel, frozen=True, kw_only=True):
-    """Fails without asking its child until `after` has passed since the child last ended."""
+    """Fails without ticking its child until `after` has passed since the child last ended."""
 
     child: NodeSpec
     after: Duration
@@ -199,9 +200,9 @@ class CooldownSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class RemapSpec(StrictModel, frozen=True, kw_only=True):
-    """Shows another status than the child has.
+    """Maps the status of its child to another status.
 
-    Where an end of the child is shown as `running`, the child is run again `every` so often.
+    If a final status is mapped to `running`, the child is restarted with the period `every`.
     """
 
     child: NodeSpec
@@ -217,9 +218,9 @@ class RemapSpec(StrictModel, frozen=True, kw_only=True):
 
 
 class StatusConditionSpec(StrictModel, frozen=True, kw_only=True):
-    """Is SUCCESS when the child has this status, RUNNING until then.
+    """SUCCESS when the child has this status, RUNNING until then.
 
-    A child that has ended otherwise is run again `every` so often.
+    A child that has ended with another status is restarted with the period `every`.
     """
 
     child: NodeSpec
@@ -235,9 +236,9 @@ class StatusConditionSpec(StrictModel, frozen=True, kw_only=True):
 class IfThenElseSpec(
     StrictModel, frozen=True, kw_only=True, rename={"condition": "if", "body": "then", "otherwise": "else"}
 ):
-    """Asks `if` once; then runs `then` where that has succeeded, else `else`, and ends as that does.
+    """Ticks `if` to its end once, then runs `then` after success or `else` after failure, with its status.
 
-    Without `else` it fails where `if` has failed.
+    Without `else` it fails if `if` has failed.
     """
 
     condition: NodeSpec
@@ -248,10 +249,10 @@ class IfThenElseSpec(
 class WhileDoElseSpec(
     StrictModel, frozen=True, kw_only=True, rename={"condition": "while", "body": "do", "otherwise": "else"}
 ):
-    """Runs `do` while `while` succeeds, `else` while it fails, and ends as that does; without `else` it fails.
+    """Runs `do` while `while` succeeds, `else` while it fails, with its status; without `else` it fails.
 
-    `while` is asked again in the meantime as checks are in a composite without memory. When it says something else,
-    what runs is halted and its clean-up awaited before the other begins.
+    `while` is repeated in the meantime like a check in a composite without memory. When its status changes, the
+    active branch is halted and its clean-up awaited before the other branch starts.
     """
 
     condition: NodeSpec
@@ -261,7 +262,7 @@ class WhileDoElseSpec(
 
 TREE_OUTCOMES = ("success", "failure")
 GUARD_TARGETS = (*TREE_OUTCOMES, "skipped")
-"""Where a guard may lead in a tree; what is skipped is passed over by the part around it."""
+"""The targets of a guard in a tree; the parent passes over a skipped node."""
 FOREACH_OUTCOMES = ("exhausted", "broken")
 
 _Listed = Annotated[tuple["NodeSpec", ...], Meta(min_length=1, description="The children, at least one")]
@@ -270,17 +271,17 @@ _Listed = Annotated[tuple["NodeSpec", ...], Meta(min_length=1, description="The 
 class NodeSpec(
     StrictModel, frozen=True, kw_only=True, dict=True, rename={"parameters": "with", "inputs": "in", "outputs": "out"}
 ):
-    """One node: its kind, its wiring into the enclosing container, and what to do when it fails.
+    """One node: its kind, its connections in the container, and its error handling.
 
-    `parameters` (`with:`) go to a state or behavior; text in them may hold `${…}` expressions.
+    `parameters` (`with:`) are passed to a state or behavior; text in them may contain `${…}` expressions.
     `inputs` (`in:`) maps input keys of the state or behavior to userdata keys that can be read
     here, `outputs` (`out:`) maps output keys to the userdata keys that they are written to.
-    `autonomy` names for an outcome the level from which on it does not pass by itself any more;
-    `resume` says what to do with the node after a crash: `rerun`, `ask`, or take an outcome.
-    `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its place in paths.
-    `post` (in a tree) says which userdata is assigned when it has ended, or was halted.
-    `every` (in a tree) is how often a py_trees `behaviour` is ticked while it is RUNNING, 0.1 s without it,
-    and how often a check is asked again while it stands in front of a running action in a composite without memory.
+    `autonomy` sets for an outcome the level up to which it waits for the operator;
+    `resume` defines how the node is resumed after a crash: `rerun`, `ask`, or an outcome.
+    `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its name in paths.
+    `post` (in a tree) defines the userdata assigned when it has ended or was halted.
+    `every` (in a tree) is the tick period of a py_trees `behaviour` while it is RUNNING, default 0.1 s, and the
+    period at which a check is repeated before a running action in a composite without memory.
     """
 
     state: str | None = None
@@ -320,14 +321,14 @@ class NodeSpec(
 
     @property
     def kinds(self) -> tuple[NodeKind, ...]:
-        """All kind keys it has; a valid node has one."""
+        """All kind keys of the node; a valid node has one."""
         plain: tuple[NodeKind, ...] = tuple(kind for kind in (*KINDS, *TREE_KINDS) if getattr(self, kind) is not None)
         wrapping: tuple[NodeKind, ...] = tuple(key for key in WRAPPERS if self._wrapped(key) is not None)
         return (*plain, *wrapping)
 
     @property
     def kind(self) -> NodeKind:
-        """The key that says what the node is."""
+        """The kind key of the node."""
         if self.state is not None:
             return "state"
         return self.kinds[0]
@@ -398,16 +399,16 @@ class NodeSpec(
 
     @property
     def own_name(self) -> str:
-        """Its name inside a tree: as given, else after what it is."""
+        """Its name inside a tree: as written, else derived from its kind."""
         if self.name is not None:
             return self.name
-        said = self.state or self.behaviour or ""
-        said = re.split(r"[.:]", said)[-1] or (PurePosixPath(self.behavior).stem if self.behavior else "")
-        return re.sub(r"[^A-Za-z0-9_-]", "_", said)[:64] or (self.kinds or ("node",))[0]
+        kind = self.state or self.behaviour or ""
+        kind = re.split(r"[.:]", kind)[-1] or (PurePosixPath(self.behavior).stem if self.behavior else "")
+        return re.sub(r"[^A-Za-z0-9_-]", "_", kind)[:64] or (self.kinds or ("node",))[0]
 
 
 def shared_keys(node: NodeSpec) -> tuple[str, ...]:
-    """Return the keys that the branches of a concurrency container share; of another node none."""
+    """Return the keys that the branches of a concurrency container share; empty for other nodes."""
     return node.concurrency.shared if node.concurrency is not None else ()
 
 

@@ -1,4 +1,4 @@
-"""Parameters of a behavior: what a run may be given, of which type and within which limits."""
+"""Parameters of a behavior: names, types and limits of the values of a run."""
 
 from __future__ import annotations
 
@@ -38,29 +38,29 @@ _WORDS: Mapping[str, str] = {
 
 
 class ParameterSpec(StrictModel, frozen=True, kw_only=True):
-    """One parameter; without a default it must be given for each run. Limits include their ends."""
+    """One parameter; without a default each run must set it. Limits are inclusive."""
 
     type: ParameterType
     default: object = UNSET
     minimum: float | None = None
     maximum: float | None = None
-    unit: Annotated[str, Meta(description="SI unit, shown beside the value")] = ""
+    unit: Annotated[str, Meta(description="SI unit, shown after the value")] = ""
     choices: tuple[object, ...] = ()
-    label: Annotated[str, Meta(description="What the form calls it; the name when empty")] = ""
+    label: Annotated[str, Meta(description="Label in the form; the name if empty")] = ""
     description: str = ""
 
     @property
     def required(self) -> bool:
-        """True when a run cannot start without a value for it."""
+        """True if a run cannot start without a value for it."""
         return self.default is UNSET
 
     @property
     def value_type(self) -> object:
-        """The Python type that values are converted to."""
+        """The Python type of its values."""
         return _KINDS[self.type]
 
     def problem(self, value: object) -> str | None:
-        """Return what is wrong with a value, None when it is acceptable."""
+        """Return what is wrong with a value; None if it is valid."""
         if not _fits(self.type, value):
             return f"{value!r} is not {_WORDS[self.type]}"
         if isinstance(value, int | float) and not isinstance(value, bool):
@@ -73,11 +73,11 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
         return None
 
     def normal(self, value: object) -> object:
-        """Return an acceptable value as a run sees it: numbers as float, lists and mappings as they are."""
+        """Return a valid value as used in a run: numbers as float, lists and mappings unchanged."""
         return float(value) if self.type == "number" and isinstance(value, int | float) else value
 
     def from_text(self, text: str) -> object:
-        """Return the value that command-line text means: text as it is, everything else as JSON.
+        """Return the value of command-line text: text unchanged, everything else as JSON.
 
         Raises:
             DocumentError: the text is not JSON of this type.
@@ -90,7 +90,7 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
             raise DocumentError(f"{text!r} is not {_WORDS[self.type]}") from error
 
     def json_schema(self) -> dict[str, object]:
-        """Return the parameter as JSON Schema for a form, with `unit` beside the standard keys."""
+        """Return the parameter as JSON Schema for a form, with `unit` in addition to the standard keys."""
         schema: dict[str, object] = dict(msgspec.json.schema(_KINDS[self.type], schema_hook=any_value))
         schema |= {"minimum": self.minimum} if self.minimum is not None else {}
         schema |= {"maximum": self.maximum} if self.maximum is not None else {}
@@ -106,10 +106,10 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
 def bind_parameters(
     parameters: Mapping[str, ParameterSpec], given: Mapping[str, object], *, where: object | None = None
 ) -> dict[str, object]:
-    """Return a value for every parameter: the given one or the default.
+    """Return a value for every parameter: the given value or the default.
 
     Raises:
-        DocumentError: an unknown name, a missing or an unacceptable value; `where` is passed on.
+        DocumentError: an unknown name, or a missing or invalid value; `where` is passed through.
     """
     for name in given:
         if name not in parameters:
@@ -118,7 +118,7 @@ def bind_parameters(
     for name, parameter in parameters.items():
         if name not in given and parameter.required:
             raise DocumentError(
-                f"the parameter `{name}` is missing", where=where, hint=f"give {_WORDS[parameter.type]}"
+                f"the parameter `{name}` is missing", where=where, hint=f"set it to {_WORDS[parameter.type]}"
             )
         value = given.get(name, parameter.default)
         problem = parameter.problem(value)
@@ -129,10 +129,10 @@ def bind_parameters(
 
 
 def any_value(kind: type) -> dict[str, object]:
-    """Describe `object` to the JSON Schema generator: anything is allowed.
+    """Return the JSON Schema of `object`: any value is allowed.
 
     Raises:
-        NotImplementedError: for every other type that the generator does not know.
+        NotImplementedError: for any other type unknown to the generator.
     """
     if kind is object:
         return {"description": "any value"}

@@ -1,7 +1,7 @@
 """Reads a behavior document with mistakes: all mistakes, and the behavior without the faulty parts.
 
-A node of which something is left out has a gap. What stands there is not known, and the check says nothing that would
-follow from its absence. A run is never made of such a behavior.
+A node with removed content has a gap. Its content is unknown, and the check reports no finding that would only
+follow from its absence. Such a behavior is never run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from engine.document.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
 
 ANY_KEY = ""
-"""The key of a gap where nobody knows which key is missing."""
+"""The key of a gap with an unknown key."""
 _MOST_ROUNDS = 4
 _VERSION = ("flexcell",)
 _KEPT_WIRING = ("transitions", "on_error", "out")
@@ -38,25 +38,25 @@ _KEPT_WIRING = ("transitions", "on_error", "out")
 
 @dataclass(frozen=True, kw_only=True)
 class PartialBehavior:
-    """The mistakes of a document in the order of the file, and the behavior around them; None where nothing is left."""
+    """The mistakes of a document in file order, and the remaining behavior; None if nothing is left."""
 
     behavior: Behavior | None
     mistakes: tuple[DocumentError, ...]
 
 
 def read_partial_behavior(source: DocumentSource, file: Path, left_out: Collection[DataPath] = ()) -> PartialBehavior:
-    """Read a behavior document around its mistakes; its references are left open.
+    """Read the valid parts of a behavior document; its references stay unresolved.
 
     Args:
-        source: What could be read of its text.
-        file: Where it stands.
-        left_out: Mappings and lists in which something could not be read.
+        source: The readable part of its text.
+        file: Its file.
+        left_out: Mappings and lists with unreadable content.
     """
     sifting = MistakeCollector(repairs={NodeSpec: _with_kind})
     data = sifting.sift(source.data, BehaviorDocument)
     followed = [each for each in sifting.mistakes if not _follows(each, left_out)]
     foreign = [each for each in sifting.mistakes if each.path == _VERSION and each.fault == "value"]
-    # In a document of another version nobody knows what else is a mistake.
+    # In a document of another version, other mistakes cannot be determined.
     errors = mistake_errors(source, BehaviorDocument, foreign or followed)
     if foreign or not isinstance(data, dict):
         return PartialBehavior(behavior=None, mistakes=tuple(errors))
@@ -76,7 +76,7 @@ def read_partial_behavior(source: DocumentSource, file: Path, left_out: Collecti
 
 
 def _follows(mistake: DocumentMistake, left_out: Collection[DataPath]) -> bool:
-    """Tell whether something is only missing because it stood in what was left out."""
+    """Return whether a missing key may be part of the unreadable content."""
     where = mistake.path[:-1] if mistake.fault == "missing" else mistake.path
     return mistake.fault in ("missing", "value") and where in left_out
 
@@ -87,16 +87,16 @@ def _behavior(data: Plain, source: DocumentSource, file: Path) -> Behavior:
 
 
 def _with_kind(kept: Plain) -> Plain:
-    """Let what is left of a node be one, of an unknown state, where what it is was left out."""
+    """Return the rest of a node, as an unknown state if its kind was removed."""
     kinds = [key for key in (*KINDS, *TREE_KINDS) if kept.get(key) is not None]
     wrapped = [key for key in WRAPPERS if isinstance(kept.get(key), dict) and "child" in cast("Plain", kept[key])]
     return kept if kinds or wrapped else {**kept, "state": UNREADABLE}
 
 
 def _without(behavior: Behavior, found: Sequence[RuleViolation]) -> Plain:
-    """Return the data without what breaks a rule; a node that cannot be understood becomes one of an unknown state."""
+    """Return the data without rule violations; a node that cannot be interpreted becomes an unknown state."""
     data, nodes = behavior.source.data, dict(behavior.nodes())
-    # From the end, as what is left out of a list moves what comes behind it.
+    # From the end, as removing a list item shifts the following ones.
     for breach in reversed(found):
         here = behavior.data_path(breach.path) if breach.path else ()
         if breach.excess:
@@ -119,7 +119,7 @@ def _at(data: object, path: DataPath) -> object:
 
 
 def _changed(data: object, path: DataPath, value: Plain | None) -> object:
-    """Return a copy in which another value stands at a path, or nothing."""
+    """Return a copy with another value at a path, or without one."""
     step, *rest = path
     if isinstance(step, int):
         items = list(cast("list[object]", data))
@@ -142,7 +142,7 @@ def _gaps(behavior: Behavior, mistakes: Iterable[DocumentMistake]) -> Mapping[st
 
 
 def _gap(paths: Mapping[DataPath, str], mistake: DocumentMistake) -> tuple[str, str]:
-    """Return the node that a mistake is in, empty for the behavior itself, and which of its keys is not known."""
+    """Return the node of a mistake (empty for the behavior itself) and its unknown key."""
     steps = mistake.path
     depth = next((count for count in range(len(steps), 0, -1) if steps[:count] in paths), 0)
     inside = steps[depth:]

@@ -10,13 +10,13 @@ from msgspec import Meta
 
 PathPattern = Annotated[
     str,
-    Meta(min_length=1, description="A node path; `*` stands for any text without `/`, `**` for any number of parts"),
+    Meta(min_length=1, description="A node path; `*` matches any text without `/`, `**` any number of parts"),
 ]
 
 
 @lru_cache(maxsize=1024)
 def compile_pattern(pattern: str) -> re.Pattern[str]:
-    """Return what matches, with `fullmatch`, the paths that `pattern` stands for.
+    """Return a regular expression whose `fullmatch` accepts the paths that match `pattern`.
 
     `root/*/grasp` has exactly one part between, `root/**/grasp` none or more, `root/**` is `root`
     and everything inside it.
@@ -28,12 +28,12 @@ def compile_pattern(pattern: str) -> re.Pattern[str]:
         if part == "**":
             expression += ".*" if first and last else "(?:[^/]*/)*" if first else "(?:/[^/]*)*"
             continue
-        # A leading `**` has brought the separator with it already.
+        # A leading `**` already includes the separator.
         expression += "" if first or (index == 1 and parts[0] == "**") else "/"
         expression += "[^/]*".join(re.escape(text) for text in re.split(r"\*+", part))
     return re.compile(expression, re.DOTALL)
 
 
 def matches(pattern: str, path: str) -> bool:
-    """Tell whether `path` is one that `pattern` stands for."""
+    """Return whether `path` matches `pattern`."""
     return compile_pattern(pattern).fullmatch(path) is not None

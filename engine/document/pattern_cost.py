@@ -1,4 +1,4 @@
-"""How large the automaton of a regular expression may become, from its text alone."""
+"""Upper bound of the automaton size of a regular expression, from its text."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import re
 
 _REPEATED = re.compile(r"\{(\d*)(?:,(\d*))?\}")
 _MANY = 5_000
-"""A class of Unicode characters, `\\pL`, becomes thousands of ranges of bytes."""
+"""A class of Unicode characters, `\\pL`, compiles to thousands of byte ranges."""
 _OPEN = 20
-"""Any character, or all but some, becomes a handful of ranges of bytes."""
+"""Any character, or a negated class, compiles to a few byte ranges."""
 
 
 def pattern_weight(pattern: str) -> float:
-    """Return an upper bound for the number of instructions of a pattern, of an invalid one some number."""
-    # One row per open group: what it holds so far, and its last atom, to which a repetition applies.
+    """Return an upper bound of the number of instructions of a pattern; any number for an invalid one."""
+    # One row per open group: its weight so far, and its last atom, to which a repetition applies.
     groups: list[tuple[float, float]] = [(0.0, 0.0)]
     folded = 4.0 if "(?" in pattern else 1.0
     index = 0

@@ -1,4 +1,4 @@
-"""What all parts of a cell document are written with: names, lengths, colors and where things stand."""
+"""Common types of cell documents: names, lengths, colors and placements."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RotationRpy = Annotated[Vector3, Meta(description="Angles in radians, about x, y
 
 
 class Placement(StrictModel, frozen=True, kw_only=True):
-    """Where something stands in the world frame: position, and rotation about fixed x, y, z axes in turn."""
+    """A pose in the world frame: position, and rotation about the fixed x, y, z axes in this order."""
 
     xyz: PositionXyz = (0.0, 0.0, 0.0)
     rpy: RotationRpy = (0.0, 0.0, 0.0)

@@ -3,8 +3,8 @@
     flexcell: 1
     states: [my_cell.settle, my_cell.inspection]
 
-`flexcell.yaml` stands in the project folder, beside `behaviors/`. Modules in that folder can be
-imported. Nothing else makes flexcell import a module: neither behaviors nor recordings nor journals.
+`flexcell.yaml` is in the project folder, next to `behaviors/`. Modules in that folder can be
+imported. Nothing else causes an import: neither behaviors nor recordings nor journals.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ModuleName = Annotated[
     Meta(
         pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$",
         max_length=256,
-        description="A Python module such as `my_cell.settle`, without a class",
+        description="A Python module, for example `my_cell.settle`, without a class",
     ),
 ]
 
@@ -41,7 +41,7 @@ class ProjectDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Project:
-    """A project document with the file it came from."""
+    """A project document with its file."""
 
     document: ProjectDocument
     file: Path
@@ -53,7 +53,7 @@ class Project:
         return self.file.parent
 
     def position(self, index: int) -> Position:
-        """Return where a module of `states` stands."""
+        """Return the position of a module in `states`."""
         return self.source.position(("states", index))
 
 
@@ -70,10 +70,10 @@ def load_project(file: Path) -> Project:
 def find_project(start: Path) -> Project | None:
     """Read the project file of the folder `start` (or of the file's folder), or of the nearest one around it.
 
-    A file in a folder that everybody may write to, such as `/tmp`, is nobody's project and left out.
+    A file in a world-writable folder, such as `/tmp`, is ignored.
 
     Raises:
-        DocumentError: there is one that is not valid.
+        DocumentError: the project file is invalid.
     """
     here = start.resolve()
     for folder in (here, *here.parents):

@@ -1,4 +1,4 @@
-"""JSON Schemas of the document formats, generated from the models and committed beside them."""
+"""JSON Schemas of the document formats, generated from the models and committed with them."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def write_schemas(folder: Path = SCHEMA_FOLDER) -> tuple[Path, ...]:
 
 
 def _one_line_texts(value: object) -> object:
-    """Fold the line breaks and indents that descriptions have from their docstrings."""
+    """Remove the line breaks and indents of docstrings from descriptions."""
     if isinstance(value, str):
         return " ".join(value.split())
     if isinstance(value, dict):

@@ -11,10 +11,10 @@ from engine.document.behavior import BehaviorDocument, walk
 
 
 def compute_semantic_hash(document: BehaviorDocument, references: Mapping[str, str]) -> str:
-    """Return the SHA-256 of a document's meaning.
+    """Return the semantic hash (SHA-256) of a document.
 
     Args:
-        document: The behavior. Its `view` and `notes` are left out; the order of nodes and parameters counts.
+        document: The behavior. Its `view` and `notes` are ignored; the order of nodes and parameters is significant.
         references: The hashes of the behaviors it refers to, by the path as written.
     """
     order = [list(document.parameters), *(list(node.children) for _, node in walk("root", document.root))]

@@ -1,4 +1,4 @@
-"""What a state class declares: outcomes, parameters, input and output keys, as one frozen description."""
+"""Signature of a state class: outcomes, parameters, input and output keys."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ Schema = Mapping[str, object]
 class KeySignature:
     """One parameter, input key or output key.
 
-    `schema` is its JSON Schema, with description and unit where the class gives them; `default`
-    is meaningful where it is not `required`.
+    `schema` is its JSON Schema, with description and unit if the class declares them; `default`
+    is valid if it is not `required`.
     """
 
     name: str
@@ -35,7 +35,7 @@ class KeySignature:
 
 @dataclass(frozen=True, kw_only=True)
 class StateSignature:
-    """A state as documents and the palette see it."""
+    """The signature of a state for documents and the palette."""
 
     name: str
     doc: str
@@ -50,17 +50,17 @@ class StateSignature:
     state: type[State] = field(repr=False)
 
     def passed_on(self, output: str) -> str | None:
-        """Return the parameter whose value an output repeats, as the class marks it; None where there is none."""
+        """Return the parameter whose value an output repeats, as declared by the class; else None."""
         return next((key.name for key in self.parameters.values() if key.schema.get("output") == output), None)
 
     @property
     def commands_hardware(self) -> bool:
-        """Whether its class leases anything while it runs."""
+        """Whether its class leases devices while it runs."""
         return self.state.resources is not State.resources
 
     @property
     def has_arm_targets(self) -> bool:
-        """Whether its class says where it takes arms."""
+        """Whether its class declares arm targets."""
         return self.state.arm_targets is not State.arm_targets
 
     @property
@@ -81,7 +81,7 @@ def read_signature(state: type[State]) -> StateSignature:
     except StateError:
         raise
     except (Exception, SystemExit) as error:
-        # Its annotations and default factories are code of its author, which may raise anything.
+        # Annotations and default factories are user code, which may raise anything.
         raise _broken(state, f"describing it raised {type(error).__name__}: {error}", "correct the class") from error
 
 
@@ -94,9 +94,7 @@ def _describe(state: type[State]) -> StateSignature:
         raise _broken(state, f"its success names `{stray[0]}`, which is not one of its outcomes", "correct `success`")
     for outcome, keys in state.unwritten.items():
         if outcome not in state.outcomes or not set(keys) <= set(state.outputs):
-            raise _broken(
-                state, f"its `unwritten` names an outcome or key it has not: {outcome}", "correct `unwritten`"
-            )
+            raise _broken(state, f"its `unwritten` names an unknown outcome or key: {outcome}", "correct `unwritten`")
     prepare_type(state)
     return StateSignature(
         name=name,

@@ -1,7 +1,7 @@
-"""Counts the steps that expressions take, so that many cheap ones in a row are noticed too.
+"""Counts the steps of expressions, so that many cheap ones in a row are limited too.
 
-Each thread counts for itself. Counting is by bounds that are known before the evaluation, never by
-the clock, so that two runs of one behavior count alike.
+Each thread has its own count. It counts the bounds known before an evaluation, not clock time, so that
+two runs of one behavior have the same count.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from engine.errors import ExpressionError
 
 
 class StepMeter(threading.local):
-    """The steps of this thread so far, and how many more it may take."""
+    """The steps of this thread so far, and its remaining budget."""
 
     spent: float = 0.0
     """Steps of expressions."""
     worked: float = 0.0
-    """Those, and what is done for them: values are copied and measured."""
+    """Steps of expressions and of their overhead: copying and measuring values."""
     _limit: float = math.inf
     _subject: str = ""
 
@@ -28,7 +28,7 @@ class StepMeter(threading.local):
         """Count an evaluation that is about to begin.
 
         Raises:
-            ExpressionError: it is one too many inside `limited`.
+            ExpressionError: the limit of `limited` is exceeded.
         """
         self.spent += steps
         self.worked += steps
@@ -37,12 +37,12 @@ class StepMeter(threading.local):
             raise ExpressionError(message, hint="use fewer or simpler expressions, or a state")
 
     def work(self, steps: float) -> None:
-        """Count what is done for an expression; it counts for the loop, not against a limit."""
+        """Count overhead of an expression; it counts for the event loop, not against a limit."""
         self.worked += steps
 
     @contextmanager
     def limited(self, steps: float, subject: str) -> Generator[None]:
-        """Let at most so many steps be taken inside; `subject` names in the message what takes them."""
+        """Limit the steps inside the context; `subject` names their origin in the message."""
         outer = self._limit, self._subject
         self._limit, self._subject = min(self._limit, self.spent + steps), subject
         try:
@@ -52,4 +52,4 @@ class StepMeter(threading.local):
 
 
 METER = StepMeter()
-"""What every evaluation is counted on."""
+"""The meter of all evaluations."""

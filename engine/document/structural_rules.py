@@ -27,7 +27,7 @@ from engine.suggestions import did_you_mean
 
 _SHORTEST_EVERY_S = 1e-3
 _CONTAINER_KEYS = {
-    "with": "parameters go to states and behavior references",
+    "with": "only states and behavior references have parameters",
     "in": "the children of a container read the keys around it directly",
     "out": "the children of a container write the keys around it directly",
 }
@@ -35,10 +35,10 @@ _CONTAINER_KEYS = {
 
 @dataclass(frozen=True, kw_only=True)
 class RuleViolation:
-    """A rule that is broken: at the node `path`, or by what the behavior itself declares where that is empty.
+    """A violated rule at the node `path`; the empty path is the behavior itself.
 
-    Without what stands at `excess`, keys from the node inward, the rule is kept; None where the node cannot be
-    understood at all. What comes before in a list, or stands around another, is told first.
+    Removing the value at `excess`, keys from the node inward, satisfies the rule; None if the node cannot be
+    interpreted. Violations are reported in list order, outer ones first.
     """
 
     path: str
@@ -47,10 +47,10 @@ class RuleViolation:
 
 
 def require_structural_rules(behavior: Behavior) -> None:
-    """Check kinds, places of keys and names.
+    """Check kinds, positions of keys, and names.
 
     Raises:
-        DocumentError: the first breach; `where` is its position, `others` are the others.
+        DocumentError: the first violation; `where` is its position, `others` are the others.
     """
     errors = [breach.error for breach in rule_violations(behavior)]
     if errors:
@@ -58,7 +58,7 @@ def require_structural_rules(behavior: Behavior) -> None:
 
 
 def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
-    """Go through all breaches; what is inside a node that cannot be understood is left out."""
+    """Yield all violations; the content of a node that cannot be interpreted is skipped."""
     yield from _names(behavior)
     if behavior.root.transitions:
         where = behavior.key_position("root", "transitions")
@@ -73,7 +73,7 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
         yield from found
         if all(breach.excess is not None for breach in found):
-            # Inside a machine that is a leaf of a tree, machine rules hold again.
+            # Inside a machine that is a leaf of a tree, machine rules apply again.
             in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
 
 
@@ -98,7 +98,7 @@ def _every(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> I
         error = DocumentError("`every` goes with a check or a `behaviour` in a tree", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=("every",))
     elif seconds(node.every) < _SHORTEST_EVERY_S:
-        error = DocumentError("`every` is at least 1 ms", where=where, hint="100 ms is the usual")
+        error = DocumentError("`every` is at least 1 ms", where=where, hint="100 ms is typical")
         yield RuleViolation(path=path, error=error, excess=("every",))
 
 
@@ -108,12 +108,16 @@ def _names(behavior: Behavior) -> Iterator[RuleViolation]:
         for name in getattr(document, key):
             if name in RESERVED:
                 where = behavior.source.position((key, name), of_key=True)
-                error = DocumentError(f"`{name}` is a word of the expression language", where=where, hint="rename it")
+                error = DocumentError(
+                    f"`{name}` is a reserved word of the expression language", where=where, hint="rename it"
+                )
                 yield RuleViolation(path="", error=error, excess=(key, name))
     for name in document.userdata:
         if name in document.parameters:
             where = behavior.source.position(("userdata", name), of_key=True)
-            error = DocumentError(f"`{name}` is a parameter and a userdata key", where=where, hint="rename one of them")
+            error = DocumentError(
+                f"`{name}` is both a parameter and a userdata key", where=where, hint="rename one of them"
+            )
             yield RuleViolation(path="", error=error, excess=("userdata", name))
     for key in ("outcomes", "success"):
         names: tuple[str, ...] = getattr(document, key)
@@ -132,7 +136,7 @@ def _one_kind(behavior: Behavior, path: str, node: NodeSpec) -> RuleViolation | 
         return None
     if kinds:
         where = behavior.key_position(path, kinds[1])
-        error = DocumentError(f"this node is {_list(kinds)} at once", where=where, hint="keep one of them")
+        error = DocumentError(f"this node has several kinds: {_list(kinds)}", where=where, hint="keep one of them")
     else:
         where = behavior.key_position(path)
         error = DocumentError("this node has no kind", where=where, hint=f"add one of {_list(KINDS)}")
@@ -144,7 +148,7 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
     for key in ("transitions", "autonomy"):
         if getattr(node, key) and (key == "transitions" or node.kind in TREE_KINDS):
             where = behavior.key_position(path, key)
-            hint = "trees know success and failure"
+            hint = "trees have success and failure"
             error = DocumentError(f"a part of a tree has no `{key}`", where=where, hint=hint)
             yield RuleViolation(path=path, error=error, excess=(key,))
     for key in WRAPPERS[1:]:
@@ -158,13 +162,13 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
             yield RuleViolation(path=path, error=error, excess=(key, "to"))
         if wrapper.to not in statuses and not (wrapper.child is not None and wrapper.to is None):
             where = behavior.position(path, key)
-            hint = f"add `to: failure`, or give it a `child` to make it a decorator; it may be {_list(statuses)}"
+            hint = f"add `to: failure`, or add a `child` to make it a decorator; `to` may be {_list(statuses)}"
             error = DocumentError(f"`{key}` inside a tree needs a `to` that is a status", where=where, hint=hint)
             yield RuleViolation(path=path, error=error, excess=(key,))
     if node.on_error is not None and node.on_error not in TREE_OUTCOMES:
         where = behavior.position(path, "on_error")
         error = DocumentError(
-            f"inside a tree there is no `{node.on_error}` to go to", where=where, hint=f"use {_list(TREE_OUTCOMES)}"
+            f"`on_error` inside a tree cannot be `{node.on_error}`", where=where, hint=f"use {_list(TREE_OUTCOMES)}"
         )
         yield RuleViolation(path=path, error=error, excess=("on_error",))
     if node.kind in (*TREE_KINDS, *WRAPPERS):
@@ -187,7 +191,7 @@ def _policy(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViola
 
 
 def _thresholds(behavior: Behavior, path: str, group: ParallelSpec) -> Iterator[RuleViolation]:
-    """Thresholds can be reached, and stand in place of a policy."""
+    """Thresholds are reachable, and exclude a policy."""
     for key in ("success_count", "failure_count"):
         count: int | None = getattr(group, key)
         if count is not None and count > len(group.children):
@@ -198,13 +202,13 @@ def _thresholds(behavior: Behavior, path: str, group: ParallelSpec) -> Iterator[
     if group.policy != "all" or not group.synchronise:
         key = "synchronise" if group.policy == "all" else "policy"
         where = behavior.key_position(path, "parallel", key)
-        hint = "what has ended is not run again, and the counts say whose success is whose"
-        error = DocumentError(f"`{key}` does not go with thresholds", where=where, hint=hint)
+        hint = "with thresholds, ended children do not restart, and the counts replace the policy"
+        error = DocumentError(f"`{key}` cannot be combined with thresholds", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=("parallel", key))
 
 
 def _conditions(behavior: Behavior, path: str, container: ConcurrencySpec) -> Iterator[RuleViolation]:
-    """A condition has one outcome, or says whom it preempts and when; a number in it is `at_least`."""
+    """A condition has one outcome, or `preempt` and `when`; a number in it is `at_least`."""
     for index, entry in enumerate(container.conditions):
         keys = ("concurrency", "conditions", index)
         found = _misshapen(entry)
@@ -217,32 +221,32 @@ def _conditions(behavior: Behavior, path: str, container: ConcurrencySpec) -> It
 
 
 def _misshapen(entry: Mapping[str, object]) -> tuple[str, str, str] | None:
-    """Return the key that makes an entry no condition, what is wrong with it, and what to do."""
+    """Return the key that makes an entry invalid, the message and the hint."""
     preempted = entry.get(PREEMPT)
     if isinstance(preempted, tuple):
         named = cast("tuple[str, ...]", preempted)
         if len(entry) == 1:
-            return PREEMPT, f"a condition with `{PREEMPT}` says when", f"add `{WHEN}: {{child: outcome}}`"
+            return PREEMPT, f"a condition with `{PREEMPT}` requires `{WHEN}`", f"add `{WHEN}: {{child: outcome}}`"
         other = next(key for key in entry if key != PREEMPT)
         if other != WHEN:
-            hint = f"write `{WHEN}` here, and `{other}` in a condition of its own"
+            hint = f"write `{WHEN}` here, and `{other}` in a separate condition"
             return other, f"a condition decides an outcome or has `{PREEMPT}`, not both", hint
         repeated = next((name for name in named if named.count(name) > 1), None)
         if repeated is not None:
             return PREEMPT, f"`{repeated}` is repeated in `{PREEMPT}`", "remove it"
     elif len(entry) > 1:
         outcome = list(entry)[1]
-        return outcome, "a condition has one outcome", f"put `{outcome}` in a condition of its own"
+        return outcome, "a condition has one outcome", f"put `{outcome}` in a separate condition"
     no_mapping = next((key for key, value in entry.items() if isinstance(value, tuple) and key != PREEMPT), None)
     if no_mapping is None:
         return None
-    return no_mapping, f"`{no_mapping}`: a list, expected a mapping", "write `{child: outcome}`"
+    return no_mapping, f"`{no_mapping}`: expected a mapping, got a list", "write `{child: outcome}`"
 
 
 def _counts(
     behavior: Behavior, path: str, keys: tuple[str | int, ...], entry: Mapping[str, object]
 ) -> Iterator[RuleViolation]:
-    """A number in a condition is `at_least`, and no more than the children beside it."""
+    """A number in a condition is `at_least`, at most the number of children in the condition."""
     for key, written in entry.items():
         if not isinstance(written, dict):
             continue
@@ -256,15 +260,15 @@ def _counts(
             if name == AT_LEAST:
                 message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
             else:
-                message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
-            # Of a condition without children nothing is left, and it goes with the first that is wrong in it.
+                message, hint = f"`{name}`: {due} is not an outcome", f"write an outcome; only `{AT_LEAST}` is a number"
+            # A condition without valid children is removed with its first violation.
             error = DocumentError(message, where=where, hint=hint)
             yield RuleViolation(path=path, error=error, excess=excess or (*keys, key, name))
             excess = None
 
 
 def _bare(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
-    """A composite or decorator has nothing beside its kind, except for a guard."""
+    """A composite or decorator has no key except its kind and a guard."""
     for key in (*WRAPPERS, "on_error", "resume", "success"):
         if key not in (node.kind, "guard") and getattr(node, key):
             where = behavior.key_position(path, key)
@@ -273,7 +277,7 @@ def _bare(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolati
             yield RuleViolation(path=path, error=error, excess=(key,))
     if node.kind == "retry" and node.retry is not None and node.retry.outcomes:
         where = behavior.key_position(path, "retry", "outcomes")
-        hint = "it tries again after FAILURE"
+        hint = "it retries after FAILURE"
         error = DocumentError("`retry` with a `child` has no `outcomes`", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=("retry", "outcomes"))
 
@@ -282,19 +286,19 @@ def _no_tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[Rul
     if node.kind in (*TREE_KINDS, *WRAPPERS):
         where = behavior.key_position(path, node.kind)
         hint = f"put it inside `tree:`, or use one of {_list(KINDS)}"
-        error = DocumentError(f"`{node.kind}` stands only inside a tree", where=where, hint=hint)
+        error = DocumentError(f"`{node.kind}` is only allowed inside a tree", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=None)
         return
     for key in ("name", "success", "post"):
         if getattr(node, key):
             where = behavior.key_position(path, key)
-            error = DocumentError(f"`{key}` of a node stands only inside a tree", where=where, hint="remove it")
+            error = DocumentError(f"`{key}` of a node is only allowed inside a tree", where=where, hint="remove it")
             yield RuleViolation(path=path, error=error, excess=(key,))
     for key in WRAPPERS[1:]:
         wrapper = getattr(node, key)
         if wrapper is not None and wrapper.to is None:
             where = behavior.position(path, key)
-            error = DocumentError("the key `to` is missing", where=where, hint=f"say where `{key}` leads")
+            error = DocumentError("the key `to` is missing", where=where, hint=f"add the target of `{key}`")
             yield RuleViolation(path=path, error=error, excess=(key,))
 
 
@@ -302,7 +306,7 @@ def _rounds(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViola
     rounds = node.foreach
     if rounds is not None and (rounds.items is None) == (rounds.times is None):
         where = behavior.key_position(path, "foreach")
-        error = DocumentError("a foreach has either `items` or `times`", where=where, hint="give one of them")
+        error = DocumentError("a foreach has either `items` or `times`", where=where, hint="set one of them")
         yield RuleViolation(path=path, error=error, excess=("foreach", "times") if rounds.times is not None else ())
 
 
@@ -320,8 +324,8 @@ def _no_transitions(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[R
             where = behavior.key_position(f"{path}/{name}", "transitions")
             rounds = node.foreach is not None
             hint = "its outcomes are used in `next`" if rounds else "its outcomes are used in `conditions`"
-            beside = "is run round after round" if rounds else "runs side by side with others"
-            error = DocumentError(f"`{name}` {beside} and has no transitions", where=where, hint=hint)
+            use = "runs in rounds" if rounds else "runs concurrently with others"
+            error = DocumentError(f"`{name}` {use} and has no transitions", where=where, hint=hint)
             yield RuleViolation(path=f"{path}/{name}", error=error, excess=("transitions",))
 
 

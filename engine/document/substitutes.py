@@ -1,4 +1,4 @@
-"""Substitutes documents: which nodes of a behavior are stood in for, and by what, so that the rest can be tested.
+"""Substitutes documents: replacements of nodes of a behavior, so that the rest can be tested.
 
     flexcell: 1
     substitutes:
@@ -6,7 +6,7 @@
       - {at: root/detect, script: [{outcome: none}, {error: the camera is dark}, {outcome: found}]}
       - {at: root/**/plan, state: "my_states:PlanNothing"}
 
-A node, of whatever kind, keeps its wiring; what it would do is not done. The first entry that matches a node counts.
+A replaced node of any kind keeps its connections but is not executed. The first entry that matches a node applies.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from engine.errors import DocumentError, Position
 class SubstituteEnding(StrictModel, frozen=True, kw_only=True):
     """How one activation of a node ends: with an outcome and its outputs, or an error, `after` a time.
 
-    `outputs` are those of the state or behavior that is stood in for; of a container they are userdata keys.
+    `outputs` are those of the replaced state or behavior; of a container they are userdata keys.
     """
 
     outcome: str | None = None
     after: Duration = 0.0
     outputs: dict[Key, object] = {}
-    error: Annotated[str, Meta(min_length=1, description="What the error says")] | None = None
+    error: Annotated[str, Meta(min_length=1, description="Error message")] | None = None
 
     @property
     def after_s(self) -> float:
-        """How long it takes, in seconds."""
+        """Duration in seconds."""
         return seconds(self.after)
 
 
 class Substitute(SubstituteEnding, frozen=True, kw_only=True):
-    """What stands in for the nodes `at`: an ending, a `script` of them, or another `state`.
+    """The replacement of the nodes `at`: an ending, a `script` of endings, or another `state`.
 
-    A script has one ending for each activation, in turn; the last one is that of all others. Another state is given the
-    parameters `with`, or those of the state that it replaces, and has no outcome that this one has not.
+    A script has one ending for each activation, in order; the last one applies to all further activations. Another
+    state gets the parameters `with`, or those of the replaced state, and has no outcomes that this one lacks.
     """
 
     at: PathPattern
@@ -58,7 +58,7 @@ class Substitute(SubstituteEnding, frozen=True, kw_only=True):
 
     @property
     def endings(self) -> tuple[SubstituteEnding, ...]:
-        """The script; a single ending is one."""
+        """The endings of the script, or the single ending."""
         return self.script or (
             SubstituteEnding(outcome=self.outcome, after=self.after, outputs=self.outputs, error=self.error),
         )
@@ -74,20 +74,20 @@ class SubstitutesDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Substitutes:
-    """A substitutes document with the file it came from."""
+    """A substitutes document with its file."""
 
     document: SubstitutesDocument
     file: Path
     source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
-    """The state classes that a test gave, by the name written for each; a document brings none."""
+    """The state classes passed by a test, by their names; empty for a document."""
 
     def position(self, index: int, *keys: str | int) -> Position:
-        """Return where an entry, from 0, stands, or a value inside it."""
+        """Return the position of an entry, from 0, or of a value inside it."""
         return self.source.position(("substitutes", index, *keys))
 
     def index_for(self, path: str) -> int | None:
-        """Return the index of the entry that stands in for a node; None where there is none."""
+        """Return the index of the entry that replaces a node; None without one."""
         entries = enumerate(self.document.substitutes)
         return next((index for index, entry in entries if matches(entry.at, path)), None)
 
@@ -116,7 +116,7 @@ def parse_substitutes(text: bytes | str, *, file: Path | str) -> Substitutes:
 
 
 def new_substitutes(entries: Iterable[Substitute], *, name: str = "substitutes") -> Substitutes:
-    """Return substitutes that are made in Python; `name` is shown in place of a file.
+    """Return substitutes built in Python; `name` is shown instead of a file.
 
     Raises:
         DocumentError: as `load_substitutes`.
@@ -140,21 +140,21 @@ def _require_one_kind(source: DocumentSource, index: int, entry: Substitute) -> 
     written = [key for key in ("outcome", "error", "script", "state") if getattr(entry, key) not in (None, ())]
     if len(written) > 1:
         where = source.position(("substitutes", index, written[1]), of_key=True)
-        message = f"this substitute has `{written[0]}` and `{written[1]}` at once"
+        message = f"this substitute has both `{written[0]}` and `{written[1]}`"
         raise DocumentError(message, where=where, hint="keep one of them")
-    beside = ("after", "outputs") if entry.script or entry.state is not None else ()
-    loose = [key for key in beside if getattr(entry, key)]
-    loose += ["with"] if entry.parameters is not None and entry.state is None else []
-    if loose:
-        where = source.position(("substitutes", index, loose[0]), of_key=True)
-        hint = "`with` goes with `state`, `after` and `outputs` with an `outcome`"
-        raise DocumentError(f"`{loose[0]}` has no meaning here", where=where, hint=hint)
+    excluded = ("after", "outputs") if entry.script or entry.state is not None else ()
+    unused = [key for key in excluded if getattr(entry, key)]
+    unused += ["with"] if entry.parameters is not None and entry.state is None else []
+    if unused:
+        where = source.position(("substitutes", index, unused[0]), of_key=True)
+        hint = "`with` requires `state`; `after` and `outputs` require an `outcome`"
+        raise DocumentError(f"`{unused[0]}` has no effect here", where=where, hint=hint)
 
 
 def _require_one_end(source: DocumentSource, keys: tuple[str | int, ...], ending: SubstituteEnding) -> None:
     if (ending.outcome is None) == (ending.error is None):
-        hint = "give one of `outcome` and `error`" + ("" if len(keys) > 2 else ", a `script` or a `state`")
-        raise DocumentError("this substitute does not say how it ends", where=source.position(keys), hint=hint)
+        hint = "set one of `outcome` and `error`" + ("" if len(keys) > 2 else ", a `script` or a `state`")
+        raise DocumentError("this substitute has no ending", where=source.position(keys), hint=hint)
     if ending.error is not None and ending.outputs:
         where = source.position((*keys, "outputs"), of_key=True)
         raise DocumentError("an error has no outputs", where=where, hint="remove `outputs`")

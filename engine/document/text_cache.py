@@ -1,4 +1,4 @@
-"""A cache by text whose memory is bounded by the texts in it, however long each of them is."""
+"""A cache keyed by text, bounded by the total length of its texts."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 _ENTRY = 20
-"""What an entry costs beside its text, in characters."""
+"""Overhead of an entry, in characters."""
 
 
 class TextCache(Generic[T]):
-    """Keeps what was made of texts; those asked for longest ago go first.
+    """Caches values computed from texts; evicts the least recently used ones.
 
     Args:
-        max_characters: Length of all texts together.
+        max_characters: Maximum total length of all texts.
     """
 
     def __init__(self, *, max_characters: int) -> None:
@@ -26,7 +26,7 @@ class TextCache(Generic[T]):
         self._lock = Lock()
 
     def get(self, text: str, make: Callable[[str], T]) -> T:
-        """Return what is known of a text, made by `make` the first time; what that raises is not kept."""
+        """Return the cached value of a text, computed by `make` on first use; exceptions are not cached."""
         with self._lock:
             if text in self._known:
                 self._known.move_to_end(text)

@@ -1,4 +1,4 @@
-"""Recovers a text with invalid YAML: each invalid block is left out and reported."""
+"""Recovers a text with invalid YAML: each invalid block is removed and reported."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from engine.errors import DocumentError
 
 _MOST_BLOCKS = 20
 _MOST_WORK = 2_000_000
-"""Characters that are read again in all: 20 times a text of 100 kB, once one of 2 MB."""
+"""Maximum total number of characters parsed again: 20 passes over 100 kB, one over 2 MB."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecoveredText:
-    """What is left of a text, None where that is nothing; what was wrong, and in what the left-out blocks stood."""
+    """The rest of a text (None if empty), its mistakes, and the containers of the removed blocks."""
 
     source: DocumentSource | None
     mistakes: tuple[DocumentError, ...] = ()
@@ -23,16 +23,16 @@ class RecoveredText:
 
 
 def load_recovering(path: Path) -> RecoveredText:
-    """Read a file around lines that cannot be read.
+    """Read a file without its unreadable lines.
 
     Raises:
-        DocumentError: it is no text, or too large.
+        DocumentError: it is not text, or too large.
     """
     return recover_text(load_text(path), file=str(path))
 
 
 def recover_text(content: bytes | str, *, file: str) -> RecoveredText:
-    """Read a text around lines that cannot be read."""
+    """Read a text without its unreadable lines."""
     mistakes: list[DocumentError] = []
     blocks: list[tuple[int, int]] = []
     text, work = content, 0
@@ -49,7 +49,7 @@ def recover_text(content: bytes | str, *, file: str) -> RecoveredText:
             blocks.append(_blank(lines, first))
             text = "\n".join(lines)
         except DocumentError as error:
-            # Where nothing else is left, what was left out says it all.
+            # If nothing else is left, the removed blocks are the only mistakes.
             return RecoveredText(source=None, mistakes=tuple(mistakes or [error]))
         else:
             gaps = tuple(_around(source.place, *block) for block in blocks)
@@ -57,12 +57,12 @@ def recover_text(content: bytes | str, *, file: str) -> RecoveredText:
 
 
 def _written(lines: list[str], line: int) -> int | None:
-    """Return the line of a mistake; what shows only at the end is of the last line that is not empty."""
+    """Return the line of a mistake; one detected at the end belongs to the last non-empty line."""
     return next((number for number in range(min(line, len(lines) - 1), -1, -1) if lines[number].strip()), None)
 
 
 def _blank(lines: list[str], first: int) -> tuple[int, int]:
-    """Empty a line and those that are indented below it; return its number and its indentation."""
+    """Blank a line and the lines indented below it; return its number and its indentation."""
     indent, last = _indent(lines[first]), first
     while last + 1 < len(lines) and (not lines[last + 1].strip() or _indent(lines[last + 1]) > indent):
         last += 1
@@ -75,7 +75,7 @@ def _indent(line: str) -> int:
 
 
 def _around(place: PositionTree, line: int, indent: int) -> DataPath:
-    """Return the innermost mapping or list that a block at this line and indentation stood in."""
+    """Return the innermost mapping or list that contained a block at this line and indentation."""
     path: DataPath = ()
     while place.children:
         before = [(key, inner) for key, inner in place.children.items() if inner.key_line < line]

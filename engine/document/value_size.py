@@ -1,4 +1,4 @@
-"""How much a value holds: what an evaluation costs follows from the sizes of what it is given.
+"""Sizes of values, which determine the cost of an evaluation.
 
 The weight of a value is the number of values in it, itself included, and one more for every 100
 characters of text.
@@ -18,7 +18,7 @@ from engine.errors import ExpressionError
 
 CHARACTERS_PER_WEIGHT = 100
 MAX_WEIGHT = 20_000
-"""The largest weight of a value that an expression may read."""
+"""Maximum weight of a value that an expression reads."""
 MAX_VALUE_DEPTH = 64
 _MAX_LITERAL = 1_000
 _ENDLESS = 1e15
@@ -26,21 +26,21 @@ _SCALARS = frozenset((int, float, bool, type(None), datetime, timedelta))
 
 
 class ValueSize(NamedTuple):
-    """Upper bounds of what a value may hold."""
+    """Upper bounds of the size of a value."""
 
     weight: float = 1.0
     text: float = 0.0
-    """Characters, where it may be text."""
+    """Number of characters, if it may be text."""
     length: float = 0.0
-    """Items, where it may be a list or mapping."""
+    """Number of items, if it may be a list or mapping."""
     item: ValueSize | None = None
-    """What any key or item may hold; None where there is none."""
+    """Upper bound of any key or item; None without items."""
     literal: str | None = None
-    """The text itself, where it is short and known."""
+    """The text itself, if it is short and known."""
 
     @property
     def inside(self) -> ValueSize:
-        """What any item may hold."""
+        """Upper bound of any item."""
         return self.item or SCALAR
 
 
@@ -54,13 +54,13 @@ def text_size(characters: float, literal: str | None = None) -> ValueSize:
 
 
 def list_size(length: float, item: ValueSize) -> ValueSize:
-    """Return the size of a list of so many items, or of a mapping of half as many."""
+    """Return the size of a list of `length` items, or of a mapping with half as many entries."""
     length = min(length, _ENDLESS)
     return ValueSize(min(1 + length * item.weight, _ENDLESS), 0.0, length, item)
 
 
 def joined_size(one: ValueSize, other: ValueSize) -> ValueSize:
-    """Return the size of both together: texts or lists one behind the other."""
+    """Return the size of the concatenation of texts or lists."""
     text = min(one.text + other.text, _ENDLESS)
     length = min(one.length + other.length, _ENDLESS)
     return ValueSize(min(one.weight + other.weight, _ENDLESS), text, length, _common_item(one, other))
@@ -84,14 +84,14 @@ def _common_item(one: ValueSize, other: ValueSize) -> ValueSize | None:
 
 _SHORT = text_size(100)
 SMALL = ValueSize(1 + 2 * 16 * _SHORT.weight, _SHORT.text, 16.0, _SHORT)
-"""What most values keep to: numbers, short texts, and flat lists and mappings of a few of them."""
+"""A bound that most values satisfy: numbers, short texts, and short flat lists and mappings."""
 
 
 def measure_value(value: object, *, name: str) -> ValueSize:
-    """Return the size of a value; `name` is what messages call it.
+    """Return the size of a value; `name` is its name in messages.
 
     Raises:
-        ExpressionError: it is too large, nested too deeply, or of a type that no document value has.
+        ExpressionError: it is too large, nested too deeply, or not a document value.
     """
     found = _Measuring(name).level([value], 0)
     short = isinstance(value, str) and len(value) <= _MAX_LITERAL
@@ -99,21 +99,21 @@ def measure_value(value: object, *, name: str) -> ValueSize:
 
 
 class _Measuring:
-    """One walk over a value, all that stands equally deep at once; it ends at the largest weight that is allowed."""
+    """One breadth-first walk over a value; it ends at the maximum weight."""
 
     def __init__(self, name: str) -> None:
         self._name = name
         self._weight = 0.0
 
     def level(self, values: Sequence[object], depth: int) -> ValueSize:
-        """Return a size that each of the values keeps to."""
+        """Return an upper bound of the sizes of the values."""
         before = self._weight
         self._count(len(values))
         kinds: set[type] = set(map(type, values)) - _SCALARS
         if not kinds:
             return SCALAR
         if depth > MAX_VALUE_DEPTH:
-            raise self._refused(f"is nested more than {MAX_VALUE_DEPTH} deep")
+            raise self._refused(f"is nested more than {MAX_VALUE_DEPTH} levels deep")
         text = length = slots = 0
         inside: list[object] = []
         for kind in kinds:
@@ -133,7 +133,7 @@ class _Measuring:
         return ValueSize(min(weight, self._weight - before), text, length, item)
 
     def _opened(self, kind: type[object], values: Sequence[object]) -> list[Any]:
-        """Return what is inside each of the values; of mappings the keys and the values are one each."""
+        """Return the items of each value; keys and values of mappings are separate items."""
         if issubclass(kind, list | tuple | set | frozenset):
             return list(values)
         if issubclass(kind, msgspec.Struct):
@@ -142,12 +142,12 @@ class _Measuring:
         if issubclass(kind, Mapping):
             known = cast("Sequence[Mapping[object, object]]", values)
             return [*(each.keys() for each in known), *(each.values() for each in known)]
-        raise self._refused(f"is or holds a {kind.__name__}, which is no document value")
+        raise self._refused(f"is or contains a {kind.__name__}, which is not a document value")
 
     def _count(self, weight: float) -> None:
         self._weight += weight
         if self._weight > MAX_WEIGHT:
-            raise self._refused(f"holds more than {MAX_WEIGHT:,} values")
+            raise self._refused(f"contains more than {MAX_WEIGHT:,} values")
 
     def _refused(self, reason: str) -> ExpressionError:
-        return ExpressionError(f"`{self._name}` {reason}", hint="an expression takes less; hand the value to a state")
+        return ExpressionError(f"`{self._name}` {reason}", hint="pass the value to a state instead")

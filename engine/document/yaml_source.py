@@ -1,10 +1,10 @@
 """Strict YAML 1.2 and JSON text to plain data, with the line and column of every key and value.
 
-What is accepted is the part of YAML 1.2 that means the same to every reader: one UTF-8 document of
+Accepted is the part of YAML 1.2 that every parser reads equally: one UTF-8 document of
 mappings, sequences and scalars of the core schema. Anchors, aliases, tags, merge keys, duplicate
 keys, integers beyond 64 bits and numbers that are not finite are refused, as is text that is too
-large or nested too deeply. Keys are always text. The parser's event stream is read without
-recursion, so hostile text costs no more than its size.
+large or nested too deeply. Keys are always text. The parser's event stream is processed without
+recursion, so the cost of hostile text is linear in its size.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ MAX_DEPTH = 64
 MAX_NODES = 200_000
 MAX_EXPRESSIONS = 20_000
 MAX_EXPRESSION_TEXT = 100_000
-"""Characters of all texts with expressions in them together."""
+"""Maximum total number of characters of texts with expressions."""
 DataPath = tuple[str | int, ...]
 
 _OPENING = ("while parsing a flow", "while scanning a quoted scalar")
-# What is not to be read, and not a complement: the compiler of expressions takes ten times as long for that.
+# A positive class, as a complement takes ten times as long to compile.
 _UNREADABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
 
 
 class PositionTree(msgspec.Struct, gc=False):
-    """Where a key and its value stand, counted from 0, and the places inside the value."""
+    """Position of a key and its value, from 0, and the positions inside the value."""
 
     key_line: int
     key_column: int
@@ -46,19 +46,19 @@ class PositionTree(msgspec.Struct, gc=False):
     column: int
     children: dict[str | int, PositionTree] | None = None
     file: str | None = None
-    """The file it stands in, where that is another than the document's."""
+    """Its file, if it differs from the document's."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DocumentSource:
-    """A document as read: plain data and where each part of it stands in `file`."""
+    """A parsed document: plain data and the position of each part in `file`."""
 
     file: str
     data: object
     place: PositionTree = field(repr=False)
 
     def position(self, path: DataPath, *, of_key: bool = False) -> Position:
-        """Return where the value (or the key) at `path` stands; for a path that is absent, its nearest ancestor."""
+        """Return the position of the value (or the key) at `path`, or of its nearest existing ancestor."""
         place = self.place
         for step in path:
             child = place.children.get(step) if place.children is not None else None
@@ -73,7 +73,7 @@ class DocumentSource:
 
 
 class LineMistake(DocumentError):
-    """What is wrong is the block that begins on `line`, counted from 0; the text may be read without it."""
+    """A mistake in the block that begins on `line`, from 0; the text may be readable without it."""
 
     line: int = 0
 
@@ -88,15 +88,15 @@ def load_source(path: Path) -> DocumentSource:
 
 
 def load_text(path: Path) -> bytes:
-    """Read a file as far as a document may be long.
+    """Read a file up to the maximum document size.
 
     Raises:
-        DocumentError: it cannot be read; `where` is its begin.
+        DocumentError: it cannot be read; `where` is its start.
     """
     start = Position(file=str(path), line=1, column=1)
     try:
         if not stat.S_ISREG(path.stat().st_mode):
-            raise DocumentError("this is not a file", where=start, hint="give the path of a YAML or JSON file")
+            raise DocumentError("this is not a file", where=start, hint="use the path of a YAML or JSON file")
         with path.open("rb") as stream:
             return stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
@@ -117,10 +117,10 @@ def parse_source(content: bytes | str, *, file: str) -> DocumentSource:
 
 
 class StrictReader:
-    """The reading of a text event by event, for who looks at it more closely than its data: iterate, then `source`.
+    """Reads a text event by event, for callers that need more than its data: iterate, then read `source`.
 
-    `said` is the value that the last event was or began. While iterating raises what `parse_source` does. Without
-    `places` the source has none of the items of lists, which take as much memory as their values.
+    `said` is the value that the last event completed or started. Iterating raises the errors of `parse_source`. Without
+    `places` the source has no positions of list items, which take as much memory as their values.
     """
 
     def __init__(self, content: bytes | str, *, file: str, places: bool = True) -> None:
@@ -130,11 +130,11 @@ class StrictReader:
 
     @property
     def said(self) -> object:
-        """The scalar that was read last, or the dict or list that has begun."""
+        """The last scalar, or the dict or list that was started."""
         return self._builder.said
 
     def source(self) -> DocumentSource:
-        """Return the document, when all of it was iterated over."""
+        """Return the document after the iteration is complete."""
         return self._builder.source()
 
     def __iter__(self) -> Iterator[object]:
@@ -173,7 +173,7 @@ def _decode(content: bytes, file: str) -> str:
 
 
 def one_code_point(pair: re.Match[str]) -> str:
-    """Join the two halves in which JSON writes a character that YAML writes with one escape."""
+    """Join the surrogate pair of a JSON escape to one YAML escape."""
     backslashes, high, low = pair.groups()
     code = 0x10000 + ((int(high, 16) - 0xD800) << 10) + (int(low, 16) - 0xDC00)
     return f"{backslashes}\\U{code:08x}"
@@ -225,7 +225,7 @@ def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
         mark = cast("_Mark | None", error.problem_mark or error.context_mark)
         line, column = (mark.line, mark.column) if mark is not None else (0, 0)
         refusal = _syntax_error(error, file, line, column, text)
-        # What is never closed shows only where something else begins.
+        # An unclosed block is detected only where another one begins.
         begins = error.context_mark if (error.context or "").startswith(_OPENING) else None
         refusal.line = begins.line if begins is not None else line
         raise refusal from None
@@ -241,16 +241,16 @@ def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int
     message = error.problem or "this is not YAML"
     hint = error.context
     if here == "\t":
-        message, hint = "a tab stands where YAML wants spaces", "indent with spaces"
+        message, hint = "YAML requires spaces here, not a tab", "indent with spaces"
     elif here in ("{", "}") or "expected ',' or '}'" in message:
-        message, hint = "a brace stands here without its partner", "put text with `${…}` in quotes"
+        message, hint = "unmatched brace", "put text with `${…}` in quotes"
     elif "mapping values are not allowed" in message:
         message, hint = "a second `:` on this line", "put the text in quotes"
     return LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
 
 
 class _Builder:
-    """Puts data and places together from parser events, with a stack instead of recursion."""
+    """Builds data and positions from parser events, with a stack instead of recursion."""
 
     def __init__(self, file: str, *, places: bool) -> None:
         self._file = file
@@ -262,7 +262,7 @@ class _Builder:
         self.said: object = None
         self._root: list[object] = []
         self._root_place = PositionTree(0, 0, 0, 0)
-        # One row per open container: the container, its place, and the pending key of a mapping.
+        # One row per open container: the container, its position, and the pending key of a mapping.
         self._container: dict[str, object] | list[object] | None = None
         self._place = self._root_place
         self._key: tuple[str, int, int] | None = None
@@ -271,7 +271,7 @@ class _Builder:
         ] = []
 
     def take(self, event: _Event) -> bool:
-        """Use one event; True when the stream is over."""
+        """Process one event; return True at the end of the stream."""
         kind = cast("object", type(event))
         if kind is yaml.ScalarEvent:
             self._scalar(event)
@@ -282,13 +282,13 @@ class _Builder:
         elif kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
             self._container, self._place, self._key = self._stack.pop()
         elif kind is yaml.AliasEvent:
-            self._refuse_line(event, f"the alias `*{event.anchor}` is not supported", "write the value out")
+            self._refuse_line(event, f"the alias `*{event.anchor}` is not supported", "write the value in full")
         elif kind is yaml.DocumentStartEvent:
             self._start_document(event)
         return kind is yaml.StreamEndEvent
 
     def source(self) -> DocumentSource:
-        """Return what was built."""
+        """Return the built document."""
         if not self._root:
             _refuse(self._file, 0, 0, "the document is empty")
         return DocumentSource(file=self._file, data=self._root[0], place=self._root_place)
@@ -308,7 +308,7 @@ class _Builder:
             self._refuse(event, f"the document has more than {MAX_NODES} values", "split it with behavior references")
         if event.anchor is not None:
             self._refuse_line(
-                event, f"the anchor `&{event.anchor}` is not supported", "write the value out where it is used"
+                event, f"the anchor `&{event.anchor}` is not supported", "write the value in full where it is used"
             )
         if event.tag is not None:
             self._refuse_line(event, f"the tag `{event.tag}` is not supported", "remove it")
@@ -341,11 +341,11 @@ class _Builder:
         if plain and (key == "" or key == "~"):
             self._refuse_line(event, "a key is empty", "write a name before the `:`")
         if plain and key == "<<":
-            self._refuse_line(event, "the merge key `<<` is not supported", "write the keys out")
+            self._refuse_line(event, "the merge key `<<` is not supported", "write the keys in full")
         if key in container:
             first = cast("dict[str | int, PositionTree]", self._place.children)[key]
             self._refuse_line(
-                event, f"the key `{shorten_scalar(key)}` is repeated; it is first on line {first.key_line + 1}"
+                event, f"the key `{shorten_scalar(key)}` is repeated; it first occurs on line {first.key_line + 1}"
             )
         mark = event.start_mark
         self._key = (key, mark.line, mark.column)
@@ -389,7 +389,7 @@ class _Builder:
             self._refuse_line(event, str(error), "put it in quotes if it is text")
 
     def _refuse_line(self, event: _Event, message: str, hint: str | None = None) -> NoReturn:
-        """Refuse a value, without which the rest of the text may be read."""
+        """Refuse a value; the rest of the text may be readable without it."""
         mark = event.start_mark
         where = Position(file=self._file, line=mark.line + 1, column=mark.column + 1)
         refusal = LineMistake(message, where=where, hint=hint)

@@ -1,4 +1,4 @@
-"""Plain data to YAML 1.2 text that reads back to the same data, byte for byte the same each time."""
+"""Writes plain data as YAML 1.2 text that reads back to the same data; the output is deterministic."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import yaml
 from engine.document.core_schema import plain_scalar
 
 _LINE = 80
-"""Characters up to which plain values stand on one line."""
+"""Maximum line length of plain values."""
 
 
 class _Dumper(yaml.CSafeDumper):
-    """PyYAML's dumper with text quoted wherever YAML 1.1 or 1.2 would read something else."""
+    """PyYAML's dumper that quotes text that YAML 1.1 or 1.2 would read as another type."""
 
     def ignore_aliases(self, data: Any) -> bool:
-        """Write shared values out; the strict reader refuses aliases."""
+        """Write shared values in full; the strict reader refuses aliases."""
         return True
 
     def represent_mapping(self, tag: str, mapping: Any, flow_style: bool | None = None) -> yaml.MappingNode:
-        """Write a mapping of plain values on one line where it fits."""
+        """Write a mapping of plain values on one line if it fits."""
         represent = cast("Callable[..., yaml.MappingNode]", super().represent_mapping)  # pyright: ignore[reportUnknownMemberType]
         node = represent(tag, mapping, flow_style=flow_style)
         pairs = cast("list[tuple[yaml.Node, yaml.Node]]", node.value)
@@ -29,7 +29,7 @@ class _Dumper(yaml.CSafeDumper):
         return node
 
     def represent_sequence(self, tag: str, sequence: Any, flow_style: bool | None = None) -> yaml.SequenceNode:
-        """Write a list of plain values on one line where it fits, and lists of numbers always so."""
+        """Write a list of plain values on one line if it fits, a list of numbers always."""
         represent = cast("Callable[..., yaml.SequenceNode]", super().represent_sequence)  # pyright: ignore[reportUnknownMemberType]
         node = represent(tag, sequence, flow_style=flow_style)
         items = cast("list[yaml.Node]", node.value)
@@ -39,7 +39,7 @@ class _Dumper(yaml.CSafeDumper):
 
 
 def _fits(parts: list[yaml.Node]) -> bool:
-    """Tell whether scalars stand on one line without being broken in their midst."""
+    """Return whether scalars fit on one line without a line break inside."""
     scalars = [part.value for part in parts if isinstance(part, yaml.ScalarNode)]
     return len(scalars) == len(parts) and sum(len(text) + 2 for text in scalars) <= _LINE
 

@@ -21,7 +21,15 @@ ROOT = Path(__file__).parents[2]
 def trials(folder: Path, subject: str, *options: str) -> list[Trial]:
     """Make the trials of one subject; nothing may have gone wrong in any."""
     file = folder / "trials.json"
-    command = [sys.executable, "-P", str(ROOT / "benchmarks" / "crash_recovery.py"), "--subject", subject, "--json", str(file)]
+    command = [
+        sys.executable,
+        "-P",
+        str(ROOT / "benchmarks" / "crash_recovery.py"),
+        "--subject",
+        subject,
+        "--json",
+        str(file),
+    ]
     done = subprocess.run([*command, *options], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return msgspec.json.decode(file.read_bytes(), type=dict[str, list[Trial]])[subject]

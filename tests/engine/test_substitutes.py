@@ -160,12 +160,12 @@ def test_tests_write_them_as_a_mapping(tmp_path: Path) -> None:
         ("{at: root/act/left, state: flow.Lgo}", "flow.Lgo", "there is no state `flow.Lgo`"),
         ("{at: root/act, state: flow.Log}", "flow.Log", "is a concurrency, which a state cannot replace"),
         ("{at: root/act/left, state: test.Give}", "test.Give", "has an outcome `a` without a transition here"),
-        ("{at: root/look}", "{at", "does not say how it ends"),
-        ("{at: root/look, outcome: a, error: b}", "error", "`outcome` and `error` at once"),
-        ("{at: root/look, script: [{}]}", "{}", "does not say how it ends"),
+        ("{at: root/look}", "{at", "has no ending"),
+        ("{at: root/look, outcome: a, error: b}", "error", "both `outcome` and `error`"),
+        ("{at: root/look, script: [{}]}", "{}", "has no ending"),
         ("{at: root/look, error: b, outputs: {x: 1}}", "outputs", "an error has no outputs"),
-        ("{at: root/look, script: [{outcome: a}], after: 1 s}", "after", "`after` has no meaning here"),
-        ("{at: root/look, outcome: a, with: {}}", "with", "`with` has no meaning here"),
+        ("{at: root/look, script: [{outcome: a}], after: 1 s}", "after", "`after` has no effect here"),
+        ("{at: root/look, outcome: a, with: {}}", "with", "`with` has no effect here"),
     ],
 )
 def test_what_does_not_fit_is_told_with_its_place(entry: str, at: str, says: str) -> None:

@@ -1,1 +1,1 @@
-"""Data flow: which userdata keys are defined where, and of which kinds their values are, before a run."""
+"""Data flow: where userdata keys are defined, and the types of their values, before a run."""

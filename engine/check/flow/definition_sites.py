@@ -1,8 +1,8 @@
 """The places that define userdata keys, numbered, so that sets of them are integers.
 
-For each key there are two bits for what is no place: UNDEFINED (nothing has defined the key) and
-ENTRY (it is as it was at the entry of the container that is looked at, where it was defined). After
-them each site has a bit of its own.
+Each key has two bits that are not sites: UNDEFINED (the key is not defined) and ENTRY (the key is
+unchanged since the entry of the analysed container, where it was defined). Each site has its own bit
+after them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class DefinitionSite:
     """One place that defines a key: a declaration, or a node that writes it.
 
     `path` is the node or container; `name` is the output key, or the inner key, that is written.
-    States of one container that write the same output of one class are one site, that of the first.
+    States of one container that write the same output of one class share one site, that of the first.
     """
 
     number: int
@@ -30,7 +30,7 @@ class DefinitionSite:
 
 
 class DefinitionSites:
-    """All keys of a behavior that somebody reads, and all places that define them."""
+    """All keys of a behavior that are read, and all sites that define them."""
 
     def __init__(self, keys: Iterable[str]) -> None:
         self._numbers = {key: number for number, key in enumerate(keys)}
@@ -55,9 +55,9 @@ class DefinitionSites:
         return key in self._numbers
 
     def add(self, key: str, origin: Origin, path: str, name: str, *, group: str = "") -> int:
-        """Number a place and return its bit; 0 for a key that nobody reads.
+        """Register a site and return its bit; 0 for a key that is not read.
 
-        Places of one `group` share a bit: fewer bits go round in a loop, and settle sooner.
+        Sites of one `group` share a bit: with fewer bits the analysis of loops converges sooner.
         """
         number = self._numbers.get(key)
         if number is None:
@@ -74,7 +74,7 @@ class DefinitionSites:
         return 1 << site.number
 
     def shared(self, site: DefinitionSite) -> bool:
-        """Tell whether a site stands for several places."""
+        """Return whether a site represents several places."""
         return site.number in self._shared
 
     def defined_bits(self, key: str) -> int:
@@ -86,7 +86,7 @@ class DefinitionSites:
         return 1 << 2 * self._numbers[key]
 
     def all_bits(self, keys: Iterable[str]) -> int:
-        """Return all bits of some keys; those that nobody reads have none."""
+        """Return all bits of some keys; keys that are not read have none."""
         found = 0
         for key in keys:
             if key in self._numbers:

@@ -1,4 +1,4 @@
-"""What a node does to the facts about userdata keys on its way from entry to one of its ends."""
+"""The effect of a node on the facts about userdata keys, from its entry to one of its outcomes."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from engine.check.flow.definition_sites import DefinitionSites
 
 @dataclass(frozen=True)
 class Effect:
-    """What is written where the key was defined before (`gen`, `kill`), and where it was not (`fresh`, `defines`).
+    """The writes for keys that were defined before (`gen`, `kill`), and that were not (`fresh`, `defines`).
 
-    `keys` are those that may be written. `gen` are the sites they may then come from; keys in
-    `kill` keep nothing of what they were. A write inside a container with a scope of its own is
-    lost where the key is not defined outside, so the two cases differ; they do not in a `plain` effect.
+    `keys` may be written. `gen` are the sites that they may then come from; keys in `kill` lose their
+    previous sites. A write inside a container with its own scope is discarded if the key is not defined
+    outside, so the two cases differ; in a `plain` effect they are equal.
     """
 
     keys: frozenset[str] = frozenset()
@@ -25,11 +25,11 @@ class Effect:
 
     @property
     def plain(self) -> bool:
-        """True when it writes the same whether or not the keys were defined."""
+        """True if the writes do not depend on whether the keys were defined."""
         return self.gen == self.fresh
 
     def after(self, fact: int, sites: DefinitionSites) -> int:
-        """Return what holds behind the node when `fact` holds before it."""
+        """Return the fact after the node, given the fact before it."""
         if not self.keys:
             return fact
         if self.gen == self.fresh:
@@ -44,18 +44,18 @@ class Effect:
         return found
 
     def perhaps(self) -> Effect:
-        """Return the effect of a node that may have stopped anywhere on its way."""
+        """Return the effect of a node that may have been stopped anywhere."""
         return Effect(self.keys, self.gen, 0, self.fresh, 0)
 
     def repeated(self, before: Effect) -> Effect:
-        """Return the effect when `before`, of the same node, may have happened any number of times first."""
+        """Return the effect after any number of repetitions of `before`, an effect of the same node."""
         if not before.keys:
             return self
         gen = self.gen | before.gen & ~self.kill
         return Effect(self.keys | before.keys, gen, self.kill, self.fresh | before.fresh & ~self.kill, self.defines)
 
     def then(self, after: Effect) -> Effect:
-        """Return the effect of this and then of `after`, which writes the same whatever was defined."""
+        """Return the effect of this followed by `after`, which is plain."""
         if not after.keys:
             return self
         lost = after.kill | after.defines
@@ -68,14 +68,14 @@ class Effect:
         )
 
     def hidden(self, own: frozenset[str], sites: DefinitionSites) -> Effect:
-        """Return what of it is seen outside a scope with these keys of its own."""
+        """Return the effect outside a scope that declares these keys."""
         if not self.keys & own:
             return self
         seen = ~sites.all_bits(own)
         return Effect(self.keys - own, self.gen & seen, self.kill & seen, self.fresh & seen, self.defines & seen)
 
     def scoped(self) -> Effect:
-        """Return what of it is seen outside a scope that takes the keys that are not defined outside."""
+        """Return the effect outside a scope that holds the keys that are not defined outside."""
         return Effect(self.keys, self.gen, self.kill) if self.keys else self
 
 
@@ -104,7 +104,7 @@ def combine_effects(effects: Iterable[Effect]) -> Effect:
 
 
 def join_effects(effects: Iterable[Effect]) -> Effect:
-    """Return the effect of one of several ways; `NO_EFFECT` for none."""
+    """Return the effect of one of several alternatives; `NO_EFFECT` for none."""
     found: Effect | None = None
     for effect in effects:
         if found is None:
@@ -121,13 +121,13 @@ def join_effects(effects: Iterable[Effect]) -> Effect:
 
 
 def container_effect(keys: frozenset[str], of_defined: int, of_undefined: int, sites: DefinitionSites) -> Effect:
-    """Return the effect of a container from what holds at one of its ends.
+    """Return the effect of a container from the fact at one of its outcomes.
 
     Args:
-        keys: What may be written inside.
-        of_defined: What holds at the end when every key is as at the entry and defined.
-        of_undefined: What holds there when no key is defined at the entry.
-        sites: The places.
+        keys: The keys that may be written inside.
+        of_defined: The fact at the outcome if every key is defined at the entry.
+        of_undefined: The fact at the outcome if no key is defined at the entry.
+        sites: The definition sites.
     """
     gen = kill = fresh = defines = 0
     for key in keys:

@@ -1,4 +1,4 @@
-"""A container as a graph: where it begins, where each child leads, and what its ends are called."""
+"""A container as a graph: its initial child, the edges of each child, and the names of its outcomes."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from engine.check.graph_components import strong_components
 from engine.document.node_spec import NodeSpec, RemapSpec
 
 Target = int | str
-"""The number of a child, or the name of an end."""
+"""The number of a child, or the name of an outcome."""
 
 
 @dataclass(frozen=True)
 class FlowEdge:
-    """One way out of a child: what it is called, and what has been written on it."""
+    """One outgoing edge of a child: its label and its effect."""
 
     label: str
     effect: Effect
@@ -26,30 +26,30 @@ class FlowEdge:
 
 @dataclass(frozen=True)
 class FlowGraph:
-    """Children by number; `arrows` says for each where its ways lead."""
+    """Children by number; `arrows` are the targets of the edges of each child."""
 
     entries: tuple[int, ...]
     arrows: Sequence[Sequence[tuple[Effect, Target]]]
 
     @cached_property
     def backward(self) -> Mapping[int, Sequence[int]]:
-        """The children that lead to each child."""
+        """The predecessors of each child."""
         found: dict[int, list[int]] = {}
-        for source, ways in enumerate(self.arrows):
-            for _, to in ways:
+        for source, edges in enumerate(self.arrows):
+            for _, to in edges:
                 if isinstance(to, int):
                     found.setdefault(to, []).append(source)
         return found
 
     @cached_property
     def _ranks(self) -> Mapping[int, int]:
-        """The place of each child that can be reached in `order`."""
+        """The index in `order` of each reachable child."""
         return {child: number for number, child in enumerate(self.order())}
 
     def _kept(self, sites: DefinitionSites) -> Mapping[int, int]:
-        """Return what is certainly known before each child on a loop: what one child of the loop alone writes.
+        """Return the certain facts before each child on a loop: keys that only one child of the loop writes.
 
-        Without knowing it beforehand, a chain of loops is gone through once for each of its links.
+        Without them the solver iterates over a chain of loops once for each of its links.
         """
         leads = {child: [to for _, to in self.arrows[child] if isinstance(to, int)] for child in self._ranks}
         found: dict[int, int] = {}
@@ -75,14 +75,14 @@ class FlowGraph:
         return gen & sites.all_bits(key for key, by in writers.items() if len(by) == 1 and key not in several)
 
     def order(self) -> list[int]:
-        """Return the children that can be reached, those before others that can only be reached through them."""
+        """Return the reachable children; a child precedes those reachable only through it."""
         seen = set(self.entries)
         finished: list[int] = []
         for start in self.entries:
             due = [(start, iter(self.arrows[start]))]
             while due:
-                child, ways = due[-1]
-                following = next((to for _, to in ways if isinstance(to, int) and to not in seen), None)
+                child, edges = due[-1]
+                following = next((to for _, to in edges if isinstance(to, int) and to not in seen), None)
                 if following is None:
                     finished.append(child)
                     due.pop()
@@ -92,7 +92,7 @@ class FlowGraph:
         return finished[::-1]
 
     def solve(self, entry: int, sites: DefinitionSites) -> tuple[dict[int, int], dict[str, int]]:
-        """Return what holds before each child that can be reached, and at each end, when `entry` holds at the entry."""
+        """Return the fact before each reachable child and at each outcome, given the fact `entry`."""
         rank = self._ranks
         kept = self._kept(sites)
         before = {child: entry | kept.get(child, 0) for child in self.entries}
@@ -119,33 +119,33 @@ class FlowGraph:
         return before, ends
 
 
-def machine_graph(children: Sequence[NodeAt], initial: str, ways: Mapping[str, Sequence[FlowEdge]]) -> FlowGraph:
-    """Return the graph of a machine; the ways of its children are called by their targets."""
+def machine_graph(children: Sequence[NodeAt], initial: str, edges: Mapping[str, Sequence[FlowEdge]]) -> FlowGraph:
+    """Return the graph of a machine; the edges of its children are labelled with their targets."""
     numbers = {child.name: number for number, child in enumerate(children)}
-    arrows = [[(way.effect, numbers.get(way.label, way.label)) for way in ways[child.path]] for child in children]
+    arrows = [[(edge.effect, numbers.get(edge.label, edge.label)) for edge in edges[child.path]] for child in children]
     return FlowGraph((numbers[initial],) if initial in numbers else (), arrows)
 
 
 def tree_graph(
-    placed: NodeAt, children: Sequence[NodeAt], ways: Mapping[str, Sequence[FlowEdge]], halted: Mapping[str, Effect]
+    placed: NodeAt, children: Sequence[NodeAt], edges: Mapping[str, Sequence[FlowEdge]], halted: Mapping[str, Effect]
 ) -> FlowGraph:
-    """Return the graph of a tree, composite or decorator; all ways are called by statuses.
+    """Return the graph of a tree, composite or decorator; all edges are labelled with statuses.
 
-    `halted` is what a child may have written that is stopped, by its path.
+    `halted` are the possible writes of a halted child, by its path.
     """
     lead = _leads(placed.node, len(children))
     arrows = [
-        [(way.effect, to) for way in ways[child.path] for to in lead(number, way.label)]
+        [(edge.effect, to) for edge in edges[child.path] for to in lead(number, edge.label)]
         for number, child in enumerate(children)
     ]
     if placed.node.while_do_else is not None:
-        # What it runs may be stopped at any time, when the condition says something else.
+        # The active branch may be halted at any time, when the condition changes.
         arrows[1:] = [[*found, (halted[child.path], 0)] for found, child in zip(arrows[1:], children[1:], strict=True)]
     return FlowGraph((0,), arrows)
 
 
 def _leads(node: NodeSpec, count: int) -> Callable[[int, str], tuple[Target, ...]]:
-    """Return where child number i leads after a status; a part that may fail by itself leads to failure as well."""
+    """Return the targets of child number i by status; a part that may fail by itself also leads to failure."""
     if node.sequence is not None or node.selector is not None:
         return _line("success" if node.sequence is not None else "failure", count)
     if node.tree is not None:
@@ -182,7 +182,7 @@ def _line(onward: str, count: int) -> Callable[[int, str], tuple[Target, ...]]:
 
 
 def _branch(status: str, count: int) -> Target:
-    """Return where the condition of an `if_then_else` or `while_do_else` leads; without `else` its failure ends it."""
+    """Return the target of the condition of an `if_then_else` or `while_do_else`; without `else` failure ends it."""
     if status == "success":
         return 1
     return 2 if count > 2 else "failure"
@@ -194,7 +194,7 @@ def _remap(remap: RemapSpec) -> Callable[[int, str], tuple[Target, ...]]:
     def lead(_: int, status: str) -> tuple[Target, ...]:
         if status not in shown:
             return (status,)
-        # What is shown as RUNNING is ticked again from the start.
+        # A status mapped to RUNNING restarts the child.
         ends = {0 if found == "running" else found for found in (shown[status], remap.running)}
         return tuple(sorted(ends, key=str))
 

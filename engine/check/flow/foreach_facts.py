@@ -1,4 +1,4 @@
-"""What holds in the rounds of a foreach: each has a scope of its own, and `collect` appends outside."""
+"""The facts in the rounds of a foreach: each round has its own scope, and `collect` appends outside."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 
 @dataclass(frozen=True)
 class ForEachFacts:
-    """The facts of a foreach: in each round, behind a round that others may follow, and at its ends."""
+    """The facts of a foreach: in each round, after a round with a successor, and at its outcomes."""
 
     before: int | None
-    """None where there is certainly no round."""
+    """None if there is certainly no round."""
     behind: int
     ends: dict[str, int]
 
@@ -35,21 +35,21 @@ def foreach_facts(
     seen: Callable[[Effect], Effect],
     sites: DefinitionSites,
 ) -> ForEachFacts:
-    """Return what holds in a foreach when `entry` holds before it.
+    """Return the facts of a foreach, given the fact `entry` before it.
 
     Args:
         rounds: The container.
-        child: The ways out of its child.
-        entry: What holds outside.
-        onward: The ends of the child after which the next round begins.
+        child: The outgoing edges of its child.
+        entry: The fact outside.
+        onward: The outcomes of the child after which the next round begins.
         collecting: The effect of `collect`.
-        enter: Gives what holds where a round begins, from what holds outside.
-        seen: Gives what is seen of an effect outside the round.
-        sites: The places.
+        enter: Returns the fact at the start of a round from the fact outside.
+        seen: Returns an effect as visible outside the round.
+        sites: The definition sites.
     """
     if not rounds.items and not rounds.times:
         return ForEachFacts(None, 0, {EXHAUSTED: entry})
-    again = [way.effect for way in child if way.label in onward]
+    again = [edge.effect for edge in child if edge.label in onward]
     inside = join_effects(again)
     outside = seen(inside)
     loop, after = entry, 0
@@ -59,9 +59,9 @@ def foreach_facts(
             break
         loop |= after
     broken = 0
-    for way in child:
-        if way.label not in onward:
-            broken |= seen(way.effect).after(loop, sites)
+    for edge in child:
+        if edge.label not in onward:
+            broken |= seen(edge.effect).after(loop, sites)
     before = enter(loop)
     exhausted = after if again and has_round(rounds) else entry | after
     ends = {EXHAUSTED: exhausted, BROKEN: broken} if broken else {EXHAUSTED: exhausted}
@@ -80,7 +80,7 @@ def collect_effect(placed: NodeAt, sites: DefinitionSites) -> Effect:
 
 
 def has_round(rounds: ForEachSpec) -> bool:
-    """Tell whether there is certainly a round."""
+    """Return whether there is certainly a round."""
     if isinstance(rounds.items, list):
         return bool(rounds.items)
     return isinstance(rounds.times, int) and rounds.times > 0

@@ -1,4 +1,4 @@
-"""The userdata keys and parameters that the nodes of a behavior read, and where the document says so."""
+"""The userdata keys and parameters that the nodes of a behavior read, with their document positions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class KeyRead:
     `input`: the state's input key of the same name. `mapped`: through `in:`. `expression`: a name
     in a `${…}`. `collect`: at the end of a round of a foreach. `shared`: by the branches of a concurrency
     container. `post`: in a `${…}` of a post-condition. `keys` lead to the value in the
-    document, from the node inward. A read that is not `required` is left out where there is no value.
+    document, from the node inward. A read that is not `required` is skipped without a value.
     """
 
     placed: NodeAt
@@ -34,7 +34,7 @@ class KeyRead:
 
 
 def key_reads(subject: AnalyzedBehavior) -> Iterator[KeyRead]:
-    """Go through everything that is read, in document order."""
+    """Yield all reads, in document order."""
     for placed in subject.nodes.values():
         yield from _inputs(subject, placed)
         for keys, found in expressions(subject, placed):
@@ -52,18 +52,18 @@ def key_reads(subject: AnalyzedBehavior) -> Iterator[KeyRead]:
 
 
 def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tuple[str | int, ...], Template]]:
-    """Go through the values of a node that hold expressions, with the keys that lead to them."""
+    """Yield the values of a node that contain expressions, with the keys that lead to them."""
     for name, found in subject.given_to(placed).items():
         if isinstance(found, Template) and not found.constant:
             yield ("with", name), found
     for keys, found in conditions(placed).items():
-        # Without names it is the same in every run, which is told elsewhere.
+        # Without names the value is constant, which another check reports.
         if isinstance(found, Template) and found.names:
             yield keys, found
 
 
 def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionError]:
-    """Return what guard and foreach of a node evaluate, compiled, by the keys that lead to it."""
+    """Return the compiled expressions of guard and foreach of a node, by the keys that lead to them."""
     node = placed.node
     found: dict[tuple[str, ...], Template | ExpressionError] = {}
     if node.guard is not None:
@@ -75,7 +75,7 @@ def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionErr
 
 
 def assignments(placed: NodeAt) -> dict[tuple[str, str, str], Template | ExpressionError]:
-    """Return what post-conditions assign, compiled: by `post`, when, and the userdata key, in the order of a run."""
+    """Return the compiled values of post-conditions by `post`, event and userdata key, in run order."""
     post = placed.node.post
     sections = (
         ()
@@ -91,7 +91,7 @@ def assignments(placed: NodeAt) -> dict[tuple[str, str, str], Template | Express
 
 
 def only_name(found: Template | ExpressionError) -> str | None:
-    """Return the name that a value is, where it is nothing but one, `${name}`."""
+    """Return the name if a value is only one, `${name}`; else None."""
     if not isinstance(found, Template) or found.constant or not isinstance(found.value, str):
         return None
     pieces = split_text(found.value)
@@ -104,7 +104,7 @@ def _inputs(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[KeyRead]:
     signature = subject.signature(node)
     declared: Mapping[str, KeySignature] = signature.inputs if signature is not None else {}
     for name, source in node.inputs.items():
-        # A py_trees behaviour is shown what there is; everything else must find what is mapped to it.
+        # For a py_trees behaviour a mapped key may be undefined; for other nodes it must be defined.
         required = node.behavior is not None or (name in declared and declared[name].required)
         yield KeyRead(placed=placed, key=source, by="mapped", name=name, keys=("in", name), required=required)
     for name, key in declared.items():

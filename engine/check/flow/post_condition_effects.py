@@ -1,4 +1,4 @@
-"""What post-conditions of a part of a tree write, and what is known where one of them is evaluated."""
+"""The writes of the post-conditions of a part of a tree, and the facts where they are evaluated."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ _HALTED = ("on_halted",)
 
 
 class PostConditionEffects:
-    """The writes of the post-conditions of one part, in the order in which they are made."""
+    """The writes of the post-conditions of one part, in order of execution."""
 
     def __init__(self, placed: NodeAt, sites: DefinitionSites) -> None:
         self.writes: list[tuple[str, str, Effect]] = []
-        """When, which key, and the effect; keys that nobody reads have none."""
+        """Event, key and effect; keys that are not read have none."""
         for _, when, key in assignments(placed):
             site = sites.add(key, "post", placed.path, f"{when} {key}")
             self.writes.append((when, key, write_effect(key, site, sites)))
 
     def at(self, label: str) -> Effect:
-        """Return the effect behind an end that is called so."""
+        """Return the effect after the outcome with this label."""
         return self._joined(_AFTER.get(label, ()))
 
     @property
@@ -35,7 +35,7 @@ class PostConditionEffects:
 
     @property
     def anywhere(self) -> Effect:
-        """What may be written at all."""
+        """All possible writes."""
         return combine_effects(effect.perhaps() for _, _, effect in self.writes)
 
     def _joined(self, due: Sequence[str]) -> Effect:
@@ -48,29 +48,29 @@ class PostConditionEffects:
 def post_condition_fact(
     read: KeyRead,
     before: int | None,
-    ways: Sequence[FlowEdge],
+    edges: Sequence[FlowEdge],
     halted: Effect,
     post: PostConditionEffects,
     sites: DefinitionSites,
 ) -> int | None:
-    """Return what holds where a post-condition is evaluated; None where the part is never entered.
+    """Return the fact where a post-condition is evaluated; None if the part is never entered.
 
     Args:
-        read: What it reads; its keys say which one it is.
-        before: What holds before the part.
-        ways: The ways out of the part, before its post-conditions.
-        halted: What may be written when it is halted.
+        read: The read; its keys identify the post-condition.
+        before: The fact before the part.
+        edges: The outgoing edges of the part, before its post-conditions.
+        halted: The possible writes if it is halted.
         post: All its post-conditions.
-        sites: The places.
+        sites: The definition sites.
     """
     if before is None:
         return None
     _, when, key = read.keys
     found = 0
     for label, due in _AFTER.items():
-        for way in ways if when in due else ():
-            if way.label == label:
-                found |= _until(way.effect.after(before, sites), str(when), str(key), due, post, sites)
+        for edge in edges if when in due else ():
+            if edge.label == label:
+                found |= _until(edge.effect.after(before, sites), str(when), str(key), due, post, sites)
     if when in _HALTED:
         found |= _until(halted.after(before, sites), str(when), str(key), _HALTED, post, sites)
     return found

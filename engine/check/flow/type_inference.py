@@ -33,13 +33,13 @@ InferredTypes = tuple[InferredType, ...]
 _ROUNDS = 8
 _MOST = 16
 _MOST_USES = 100
-"""Uses of a behavior with different kinds of values that are told apart."""
+"""Maximum number of uses of a behavior with different types that are distinguished."""
 _MOST_CONSTANTS = 32
-"""Values that are told apart for one key; of more, only the types are."""
+"""Maximum number of values that are distinguished for one key; beyond that only the types are."""
 
 
 class BehaviorDataFlows:
-    """The flow of each behavior of a check, and what reaches its keys in the uses made of it."""
+    """The data flow of each behavior of a check, and the types of its keys for each use."""
 
     def __init__(self, made: Mapping[int, DataFlow]) -> None:
         self._flows = made
@@ -50,7 +50,7 @@ class BehaviorDataFlows:
         return self._flows[id(subject)]
 
     def resolver(self, subject: AnalyzedBehavior, given: Mapping[str, InferredTypes]) -> TypeInference:
-        """Return the kinds of the keys of a behavior that is given these initial values."""
+        """Return the types of the keys of a behavior with these initial values."""
         known = self._resolvers.setdefault(id(subject), [])
         for others, resolver in known:
             if others == given:
@@ -63,12 +63,12 @@ class BehaviorDataFlows:
 
 
 class TypeInference:
-    """The kinds of the keys of one behavior, when its own keys are as the document says or as `given`.
+    """The types of the keys of one behavior, with its own keys as in the document or as `given`.
 
     Args:
         flow: The facts about its keys.
-        flows: Those of the behaviors it refers to.
-        given: Kinds of the initial values that a reference passes in.
+        flows: The data flows of the behaviors it refers to.
+        given: Types of the initial values that a reference passes.
     """
 
     def __init__(
@@ -78,19 +78,19 @@ class TypeInference:
         self._flows = flows
         self._given = dict(given or {})
         self._written: dict[str, list[tuple[InferredType, int]]] = {}
-        """By key, each kind that is written to it, with the bits of the places that write it."""
+        """By key, each type that is written to it, with the bits of the sites that write it."""
         self._settle()
 
     def before(self, path: str, key: str) -> tuple[tuple[DefinitionSite, InferredType], ...]:
-        """Return what a key may be when the node at `path` is entered, and where it comes from."""
+        """Return the possible types of a key at the entry of the node at `path`, with their sites."""
         return self._reaching(key, self.flow.before.get(path, 0))
 
     def at_the_end(self, key: str) -> InferredTypes:
-        """Return what a key may be when the behavior has ended."""
+        """Return the possible types of a key at the end of the behavior."""
         return _united(kind for _, kind in self._reaching(key, self.flow.end()))
 
     def of_value(self, value: object, path: str) -> InferredTypes:
-        """Return what a value of a document may become at the node at `path`; none while nothing is known.
+        """Return the possible types of a document value at the node at `path`; none while nothing is known.
 
         Raises:
             ExpressionError: an expression in it fails with the values that reach it.
@@ -106,7 +106,7 @@ class TypeInference:
         return (ListValue(tuple(_one(self.of_value(item, path)) for item in items)),)
 
     def inner(self, path: str) -> TypeInference | None:
-        """Return the kinds inside the behavior that the node at `path` refers to, in the use made of it there."""
+        """Return the types inside the behavior that the node at `path` refers to, for this reference."""
         placed = self.flow.subject.nodes[path]
         referred = self.flow.subject.referred(placed.node)
         if referred is None:
@@ -117,12 +117,12 @@ class TypeInference:
         return self._flows.resolver(referred, given)
 
     def _reaching(self, key: str, fact: int) -> tuple[tuple[DefinitionSite, InferredType], ...]:
-        """Return the kinds that reach, each with the first place that it comes from."""
+        """Return the types that reach the key, each with its first site."""
         found = [(fact & places, kind) for kind, places in self._written.get(key, ()) if fact & places]
         return tuple((self.flow.sites.first(places), kind) for places, kind in found)
 
     def _settle(self) -> None:
-        """Work out all places; those that pass on what reaches them are asked until nothing changes."""
+        """Infer the types of all sites; sites that copy values are iterated until nothing changes."""
         passing: list[DefinitionSite] = []
         for site in self.flow.sites:
             kinds = self._declared(site)
@@ -138,7 +138,7 @@ class TypeInference:
             self._add(site, (ANYTHING,))
 
     def _add(self, site: DefinitionSite, kinds: InferredTypes) -> bool:
-        """Note what a place writes; tell whether that was news."""
+        """Record the types that a site writes; return whether they are new."""
         written = self._written.setdefault(site.key, [])
         bit = 1 << site.number
         news = False
@@ -154,7 +154,7 @@ class TypeInference:
         return news
 
     def _declared(self, site: DefinitionSite) -> InferredTypes | None:
-        """Return the kinds of a place that does not depend on what reaches it, None for others."""
+        """Return the types of a site that does not depend on other sites; None for others."""
         behavior = self.flow.subject.behavior
         if site.origin == "parameter":
             return parameter_types(behavior.parameters[site.key])
@@ -180,7 +180,7 @@ class TypeInference:
         if site.key in self._given:
             return self._given[site.key]
         value = self.flow.subject.behavior.document.userdata[site.key]
-        # Nothing as the initial value of a behavior means that each run, or reference, is to give one.
+        # A null initial value of a behavior means that each run or reference has to set one.
         return (ConstantValue(value) if value is not None else ANYTHING,)
 
     def _passed(self, site: DefinitionSite) -> InferredTypes:
@@ -208,7 +208,7 @@ class TypeInference:
         try:
             return self.of_value(value, path)
         except ExpressionError:
-            return (ANYTHING,)  # said where the value stands
+            return (ANYTHING,)  # reported where the value is written
 
     def _of_text(self, text: str, path: str) -> InferredTypes:
         if "${" not in text:
@@ -234,7 +234,7 @@ class TypeInference:
 
 
 def parameter_types(parameter: ParameterSpec) -> InferredTypes:
-    """Return what a parameter of a behavior may be."""
+    """Return the possible types of a parameter of a behavior."""
     if parameter.choices:
         return tuple(ConstantValue(parameter.normal(choice)) for choice in parameter.choices)
     return (type_of_annotation(parameter.value_type),)

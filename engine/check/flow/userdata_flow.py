@@ -1,8 +1,8 @@
-"""What is known of userdata keys at each node of a behavior: forward data flow over its containers.
+"""Facts about userdata keys at each node of a behavior: forward data flow over its containers.
 
-A container is looked at twice. From the inside out, its effect is summed up for each of its ends.
-From the outside in, these effects tell what holds before each node. Both passes touch every node
-once, and loops of a machine a few times more.
+The analysis has two passes. From the inside out, it summarises the effect of each container for each of
+its outcomes. From the outside in, these effects give the fact before each node. Both passes visit every
+node once, and loops of a machine a few times.
 """
 
 from __future__ import annotations
@@ -21,38 +21,38 @@ from engine.check.flow.post_condition_effects import PostConditionEffects, post_
 from engine.document.node_spec import shared_keys
 
 BEHAVIOR = ""
-"""The path of what the behavior itself declares: its parameters and its initial userdata."""
+"""The path of the declarations of the behavior itself: its parameters and its initial userdata."""
 _STATUSES = ("success", "failure")
 
 
 class DataFlow:
-    """The facts about the keys of one behavior, given the keys that somebody reads."""
+    """The facts about the keys of one behavior, given the keys that are read."""
 
     def __init__(self, subject: AnalyzedBehavior, sites: DefinitionSites) -> None:
         self.subject = subject
         self.sites = sites
         self.before: dict[str, int] = {}
-        """What holds when a node is entered, by path; nodes that cannot be reached are absent."""
+        """The fact at the entry of each node, by path; unreachable nodes are absent."""
         self.inside: dict[str, int] = {}
-        """What holds where a container begins, its own keys included."""
+        """The fact at the start of each container, its own keys included."""
         self.behind: dict[str, int] = {}
-        """What holds at the end of a round of a foreach, inside the round, by its path."""
+        """The fact at the end of a round of each foreach, inside the round, by path."""
         self.graphs: dict[str, FlowGraph] = {}
-        """The children of a container as a graph, where they follow one another."""
+        """The children of each sequential container as a graph."""
         self.anywhere: dict[str, Effect] = {}
-        """What a node may write at all, as it is seen outside."""
-        self.ways: dict[str, list[FlowEdge]] = {}
-        """The ways out of each node, called as its container calls them."""
+        """All possible writes of each node, as visible outside."""
+        self.edges: dict[str, list[FlowEdge]] = {}
+        """The outgoing edges of each node, labelled as in its container."""
         self._end = 0
         self._posts: dict[str, PostConditionEffects] = {}
-        """What the post-conditions of each part of a tree write, by its path."""
+        """The writes of the post-conditions of each part of a tree, by path."""
         self._ended: dict[str, list[FlowEdge]] = {}
-        """The ways out of parts with post-conditions, before these."""
+        """The outgoing edges of parts with post-conditions, before these."""
         self._attempts: dict[str, Effect] = {}
         self._own: dict[str, frozenset[str]] = {}
         self._isolated: dict[str, bool] = {}
         if not sites:
-            self.before = dict.fromkeys(subject.nodes, 0)  # nobody reads anything
+            self.before = dict.fromkeys(subject.nodes, 0)  # no key is read
             return
         self._register()
         for placed in subject.postorder:
@@ -60,15 +60,15 @@ class DataFlow:
         self._spread()
 
     def own_keys(self, path: str) -> frozenset[str]:
-        """Return the keys that a container declares in its own scope, as far as somebody reads them."""
+        """Return the keys that a container declares in its own scope, as far as they are read."""
         return self._own.get(path, frozenset())
 
     def end(self) -> int:
-        """Return what holds when the behavior has ended, however it has."""
+        """Return the fact at the end of the behavior, for any outcome."""
         return self._end
 
     def enter(self, placed: NodeAt, fact: int) -> int:
-        """Return what holds where a container begins when `fact` holds before it."""
+        """Return the fact at the start of a container, given the fact before it."""
         own = self.own_keys(placed.path)
         shared = self.sites.all_bits(shared_keys(placed.node))
         if not own and not shared:
@@ -77,13 +77,13 @@ class DataFlow:
         for key, origin in _declared(placed):
             found |= self.sites.add(key, origin, placed.path, key)
         for child in self.subject.children(placed) if shared else ():
-            # A branch may meet it at any time as another one wrote it.
+            # A branch may read it at any time as written by another one.
             effect = self.anywhere[child.path]
             found |= (effect.gen | effect.fresh) & shared
         return found
 
     def fact_at(self, read: KeyRead) -> int | None:
-        """Return what holds where a key is read; None where nobody gets to."""
+        """Return the fact where a key is read; None if unreachable."""
         if read.by == "post":
             path = read.placed.path
             before, halted = self.before.get(path), self.anywhere[path]
@@ -92,7 +92,7 @@ class DataFlow:
         return facts.get(read.placed.path)
 
     def solve(self, placed: NodeAt, children: Sequence[NodeAt], entry: int) -> tuple[dict[int, int], dict[str, int]]:
-        """Return what holds before each child, by number, and at each end, when `entry` holds before a container."""
+        """Return the fact before each child, by number, and at each outcome, given the fact before a container."""
         if placed.node.foreach is not None:
             return self._rounds(placed, children[0], entry)
         inner = self.enter(placed, entry)
@@ -100,7 +100,7 @@ class DataFlow:
         if graph is not None:
             return graph.solve(inner, self.sites)
         merge = concurrency_ends if placed.node.concurrency is not None else parallel_ends
-        return dict.fromkeys(range(len(children)), inner), merge(placed, children, self.ways, inner, self.sites)
+        return dict.fromkeys(range(len(children)), inner), merge(placed, children, self.edges, inner, self.sites)
 
     def _rounds(self, placed: NodeAt, child: NodeAt, entry: int) -> tuple[dict[int, int], dict[str, int]]:
         rounds = placed.node.foreach
@@ -108,7 +108,7 @@ class DataFlow:
             return {}, {}
         found = foreach_facts(
             rounds,
-            self.ways[child.path],
+            self.edges[child.path],
             entry,
             onward=frozenset(rounds.next) or self.subject.nominal[child.path],
             collecting=collect_effect(placed, self.sites),
@@ -120,7 +120,7 @@ class DataFlow:
         return {0: found.before} if found.before is not None else {}, found.ends
 
     def _register(self) -> None:
-        """Number all places before anything is worked out, for an effect must know what it replaces."""
+        """Register all sites before the analysis: an effect needs the bits that it replaces."""
         document = self.subject.behavior.document
         for key in document.parameters:
             self.sites.add(key, "parameter", BEHAVIOR, key)
@@ -154,7 +154,7 @@ class DataFlow:
             graph = self._graph(placed, children)
             if graph is not None:
                 self.graphs[placed.path] = graph
-            # Of the root nothing is summed up: there is nothing around it.
+            # The root needs no summary: it has no container.
             ends = self._container_ends(placed, children) if placed.parent is not None else {}
         else:
             ends = self._leaf_ends(placed)
@@ -162,13 +162,13 @@ class DataFlow:
             self.anywhere[placed.path] = (
                 join_effects(effect.perhaps() for effect in ends.values()) if writes else NO_EFFECT
             )
-        ways = self._ways(placed, ends, leaf=not children)
+        edges = self._edges(placed, ends, leaf=not children)
         post = self._posts.get(placed.path)
         if post is not None:
-            self._ended[placed.path] = ways
-            ways = [FlowEdge(way.label, way.effect.then(post.at(way.label))) for way in ways]
+            self._ended[placed.path] = edges
+            edges = [FlowEdge(edge.label, edge.effect.then(post.at(edge.label))) for edge in edges]
             self.anywhere[placed.path] = combine_effects((self.anywhere[placed.path], post.anywhere))
-        self.ways[placed.path] = ways
+        self.edges[placed.path] = edges
 
     def _leaf_ends(self, placed: NodeAt) -> dict[str, Effect]:
         node = placed.node
@@ -187,12 +187,12 @@ class DataFlow:
         effect = combine_effects(written.values())
         if node.behaviour is not None:
             return dict.fromkeys(_STATUSES, effect.perhaps())
-        # Of a state or behavior that is missing nobody knows the outcomes; those that are used will do.
+        # The outcomes of a missing state or behavior are unknown; the connected ones are used.
         outcomes = self.subject.outcomes.get(placed.path) or tuple(node.transitions) or _STATUSES
         return dict.fromkeys(outcomes, effect)
 
     def _written(self, placed: NodeAt) -> dict[str, Effect]:
-        """Return the effect of writing each output of a leaf that somebody reads."""
+        """Return the effect of writing each output of a leaf that is read."""
         node = placed.node
         signature = self.subject.signature(node)
         origin: Origin = "reference" if node.behavior is not None else "output"
@@ -201,7 +201,7 @@ class DataFlow:
         for name in names:
             key = node.outputs.get(name, name)
             if key in self.sites:
-                # What only repeats a parameter is another value in each state.
+                # An output that repeats a parameter differs between states.
                 alike = signature is not None and signature.passed_on(name) is None
                 group = f"{placed.parent} {node.state}" if alike else ""
                 found[name] = write_effect(key, self.sites.add(key, origin, placed.path, name, group=group), self.sites)
@@ -219,31 +219,31 @@ class DataFlow:
             label: container_effect(keys, of_defined[label], of_undefined[label], self.sites) for label in of_defined
         }
         if placed.node.foreach is not None:
-            return whole  # each of its rounds has a scope of its own, which is already left
+            return whole  # the scope of each round has already ended
         return {label: self._seen(placed, effect) for label, effect in whole.items()}
 
     def _statuses(self, placed: NodeAt) -> tuple[str, ...]:
         return (*_STATUSES, "skipped") if "skipped" in self.subject.statuses[placed.path] else _STATUSES
 
     def _seen(self, placed: NodeAt, effect: Effect) -> Effect:
-        """Return what is seen of an effect outside the scope of a container, if it has one."""
+        """Return an effect as visible outside the scope of a container, if it has one."""
         if placed.is_part:
             return effect
         seen = effect.hidden(self.own_keys(placed.path), self.sites)
-        # A branch that runs side by side with others keeps everything that is written in it.
+        # The scope of a concurrent branch holds all of its writes.
         return seen if self._isolated[placed.path] else seen.scoped()
 
     def _graph(self, placed: NodeAt, children: Sequence[NodeAt]) -> FlowGraph | None:
         machine = placed.node.sequential
         if machine is not None:
-            return machine_graph(children, machine.initial, self.ways)
+            return machine_graph(children, machine.initial, self.edges)
         if placed.node.concurrency is not None or placed.node.parallel is not None or placed.node.foreach is not None:
             return None
         halted = {path: post.halted for path, post in self._posts.items()}
         halted |= {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
-        return tree_graph(placed, children, self.ways, defaultdict(lambda: NO_EFFECT, halted))
+        return tree_graph(placed, children, self.edges, defaultdict(lambda: NO_EFFECT, halted))
 
-    def _ways(self, placed: NodeAt, ends: dict[str, Effect], *, leaf: bool) -> list[FlowEdge]:
+    def _edges(self, placed: NodeAt, ends: dict[str, Effect], *, leaf: bool) -> list[FlowEdge]:
         node = placed.node
         before = self._earlier_attempts(placed, ends, leaf=leaf)
         stopped = before.perhaps() if leaf else self.anywhere[placed.path]
@@ -291,11 +291,11 @@ class DataFlow:
             if path == "root":
                 self._end = self._joined(placed, fact, ends.values())
         if "root" not in self.subject.inside:
-            effects = [way.effect.after(self.before["root"], self.sites) for way in self.ways["root"]]
+            effects = [edge.effect.after(self.before["root"], self.sites) for edge in self.edges["root"]]
             self._end = self._joined(self.subject.nodes["root"], self.before["root"], effects)
 
     def _joined(self, placed: NodeAt, before: int, ends: Iterable[int]) -> int:
-        """Return what holds behind the root: its own keys are gone, and a timeout may have cut it anywhere."""
+        """Return the fact after the root: its own keys are removed, and a timeout may have stopped it anywhere."""
         found = self.anywhere[placed.path].after(before, self.sites) if diversions(placed.node) else 0
         for end in ends:
             found |= end
@@ -308,7 +308,7 @@ class DataFlow:
 
 
 def _declared(placed: NodeAt) -> list[tuple[str, Origin]]:
-    """Return the keys that a container declares in a scope of its own."""
+    """Return the keys that a container declares in its own scope."""
     found: list[tuple[str, Origin]] = []
     for key in placed.node.userdata:
         found.append((key, "userdata"))

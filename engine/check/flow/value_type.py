@@ -18,7 +18,7 @@ from engine.document.decoding import explain_validation_error
 
 @dataclass(frozen=True)
 class ConstantValue:
-    """A value that stands in the document."""
+    """A constant in the document."""
 
     value: object
 
@@ -48,7 +48,7 @@ InferredType = ConstantValue | TypedValue | ListValue | MappingValue
 
 
 class TypeFit(IntEnum):
-    """Whether values of a kind are accepted by a type: never, depending on the value, always."""
+    """Whether a type accepts values of an inferred type: never, depending on the value, always."""
 
     NO = 0
     MAYBE = 1
@@ -88,22 +88,22 @@ _OF_EXPRESSION: Mapping[ValueType, inspect.Type] = {
 
 @lru_cache(maxsize=4096)
 def type_of(annotation: Any) -> inspect.Type:
-    """Return the type that an annotation means, without its limits."""
+    """Return the type of an annotation, without its limits."""
     return _bare(inspect.type_info(annotation))
 
 
 def type_of_annotation(annotation: Any) -> InferredType:
-    """Return the kind of values that a state declares with an annotation."""
+    """Return the inferred type for an annotation of a state."""
     return TypedValue(type_of(annotation))
 
 
 def type_of_expression(found: ValueType) -> InferredType:
-    """Return the kind of what an expression gives."""
+    """Return the inferred type of the result of an expression."""
     return TypedValue(_OF_EXPRESSION[found])
 
 
 def expression_type(kinds: Sequence[InferredType]) -> ValueType:
-    """Return what an expression may take for granted of a variable with one of these kinds."""
+    """Return the type that an expression may assume for a variable with one of these inferred types."""
     found: list[ValueType] = [_word(kind) for kind in kinds]
     if not found or found.count(found[0]) < len(found):
         return "anything"
@@ -111,26 +111,26 @@ def expression_type(kinds: Sequence[InferredType]) -> ValueType:
 
 
 def is_same_type(one: InferredType, other: InferredType) -> bool:
-    """Tell whether two kinds are one; Python takes true for 1, and 1 for 1.0."""
+    """Return whether two inferred types are equal; in Python true equals 1, and 1 equals 1.0."""
     if isinstance(one, ConstantValue) and isinstance(other, ConstantValue):
         return type(one.value) is type(other.value) and one.value == other.value
     return one == other
 
 
 def without_value(kind: InferredType) -> InferredType:
-    """Return the type of a kind, where more is known of it."""
+    """Return the inferred type without its constant value."""
     return kind if isinstance(kind, TypedValue) else TypedValue(_OF_EXPRESSION[_word(kind)])
 
 
 def type_fit(kind: InferredType, annotation: Any) -> TypeFit:
-    """Tell whether values of a kind are accepted where an annotation declares what is due."""
+    """Return whether values of an inferred type are accepted by an annotation."""
     if isinstance(kind, ConstantValue):
         return TypeFit.NO if describe_misfit(kind.value, annotation) else TypeFit.YES
     return _fit(kind, type_of(annotation))
 
 
 def describe_misfit(value: object, annotation: Any) -> str:
-    """Say what is wrong with a value of a document where an annotation declares what is due; empty when nothing is."""
+    """Return what is wrong with a document value for an annotation; empty if it is valid."""
     try:
         msgspec.convert(value, cast("type[Any]", annotation))
     except msgspec.ValidationError as error:
@@ -139,7 +139,7 @@ def describe_misfit(value: object, annotation: Any) -> str:
 
 
 def describe_inferred_type(kind: InferredType) -> str:
-    """Name a kind in a message."""
+    """Return the name of an inferred type for a message."""
     if isinstance(kind, ConstantValue):
         shown = as_text(kind.value)
         return f"`{shown if len(shown) <= 40 else f'{shown[:37]}…'}`"
@@ -152,7 +152,7 @@ def describe_inferred_type(kind: InferredType) -> str:
 
 
 def describe_type(found: inspect.Type) -> str:
-    """Name a type as authors of documents know it."""
+    """Return the name of a type in the terms of documents."""
     match found:
         case inspect.BoolType():
             return "true or false"
@@ -189,7 +189,7 @@ _PLURALS = {"a number": "numbers", "an integer": "integers", "text": "texts", "t
 
 
 def item_types(kind: InferredType) -> tuple[InferredType, ...]:
-    """Return the kinds of the items of a list; none where it is no list or has no items."""
+    """Return the types of the items of a list; none if it is not a list or is empty."""
     if isinstance(kind, ConstantValue):
         value = kind.value
         return tuple(ConstantValue(item) for item in cast("list[object]", value)) if isinstance(value, list) else ()
@@ -274,7 +274,7 @@ def _fit_constant(value: object, due: inspect.Type) -> TypeFit:
         return _fit_fields({key: ConstantValue(item) for key, item in cast("dict[str, object]", value).items()}, due)
     if isinstance(due, inspect.LiteralType):
         return TypeFit.YES if value in due.values else TypeFit.NO
-    # Limits are not looked at here: the value stands beside expressions, and a run checks them all.
+    # Limits are not checked here: the value contains expressions, and a run checks it completely.
     return min(_fit_type(_type_of_constant(value), due), TypeFit.MAYBE)
 
 

@@ -12,9 +12,9 @@ _SHOWN = 7
 
 
 def witness_path(flow: DataFlow, path: str, bit: int) -> tuple[str, ...]:
-    """Return paths of nodes that lead, one after the other, to the node at `path` with `bit` set at its entry.
+    """Return the sequence of node paths that leads to the node at `path` with `bit` set at its entry.
 
-    The first one is where the bit comes from, or the first node of the behavior.
+    The first one is the origin of the bit, or the first node of the behavior.
     """
     placed = flow.subject.nodes[path]
     inside: tuple[str, ...] = (path,)
@@ -33,7 +33,7 @@ def witness_path(flow: DataFlow, path: str, bit: int) -> tuple[str, ...]:
 
 
 def format_witness_path(steps: tuple[str, ...]) -> str:
-    """Write a route as `a → b → c`, nodes of inner containers with the path from the common container."""
+    """Format a path as `a → b → c`; nodes of inner containers are relative to the common container."""
     common = 0
     parts = [step.split("/") for step in steps]
     while all(len(part) > common + 1 for part in parts) and len({part[common] for part in parts}) == 1:
@@ -45,7 +45,7 @@ def format_witness_path(steps: tuple[str, ...]) -> str:
 
 
 def _within(flow: DataFlow, around: NodeAt, graph: FlowGraph, placed: NodeAt, bit: int) -> tuple[tuple[str, ...], bool]:
-    """Go back through one container: the way there, and whether the bit comes from its first node."""
+    """Search backwards through one container; return the path, and whether the bit comes from its first node."""
     children = flow.subject.children(around)
     numbers = {child.path: number for number, child in enumerate(children)}
     goal = numbers[placed.path]

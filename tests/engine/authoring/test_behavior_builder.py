@@ -294,7 +294,7 @@ def test_parameters_stand_for_their_values() -> None:
     assert made.root.parameters == {"a": "${speed}", "b": "at ${speed}", "c": ["${speed}"], "d": "${speed * 2}"}
 
 
-@pytest.mark.parametrize(("text", "message"), [("1 +", "mismatched input"), ("${speed}", "has its own"), ("", "empty")])
+@pytest.mark.parametrize(("text", "message"), [("1 +", "mismatched input"), ("${speed}", "contains"), ("", "empty")])
 def test_an_expression_is_compiled_where_it_is_written(text: str, message: str) -> None:
     """Not when the behavior runs."""
     with pytest.raises(ExpressionError, match=message) as raised:

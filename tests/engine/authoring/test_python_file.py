@@ -56,7 +56,7 @@ def test_of_several_one_must_be_named(write: Write) -> None:
     """The message lists them; a wrong name brings the nearest."""
     file = write(ONE.format(name="first") + ONE.format(name="second"))
     assert load_python_behavior(f"{file}:second").name == "second"
-    with pytest.raises(DocumentError, match="this file makes first, second"):
+    with pytest.raises(DocumentError, match="this file has several behaviors: first, second"):
         load_python_behavior(file)
     with pytest.raises(DocumentError, match=r"no behavior named `frist` \(.*first"):
         load_python_behavior(f"{file}:frist")
@@ -77,7 +77,7 @@ def test_a_file_may_hold_its_own_states_and_import_its_neighbours(write: Write) 
         ("x = 1\n1 / 0\n", r"\.py:2:1: .*division by zero"),
         ("x = (\n", r"\.py:1:5: .*was never closed"),
         ("import nothing_of_this_name\n", r"\.py:1:1: .*No module named"),
-        ("x = 1\n", "this file makes none"),
+        ("x = 1\n", "this file has no behavior"),
         ("from engine.authoring import expr\nexpr('1 +')\n", r"\.py:2:1: `\$\{1 \+\}`"),
         (
             "from engine.authoring import state\nfrom engine.state import State\nstate(State())\n",

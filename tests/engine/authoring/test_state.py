@@ -112,7 +112,7 @@ def test_expressions_stand_where_values_do() -> None:
 
 def test_parameters_that_do_not_fit_are_refused_where_the_state_is_made() -> None:
     """A struct checks nothing when made; the document would."""
-    with pytest.raises(DocumentError, match=r"the parameters of Draw do not fit: .*> 0") as raised:
+    with pytest.raises(DocumentError, match=r"the parameters of Draw are invalid: .*> 0") as raised:
         state(Draw(speed=-1.0))
     assert "test_state.py" in str(raised.value.where)
 
@@ -124,7 +124,7 @@ def test_parameters_that_do_not_fit_are_refused_where_the_state_is_made() -> Non
         (2**64, "does not fit into 64 bits"),
         ("\ud800", "is not Unicode text"),
         ({1: 2}, "the key 1 is not text"),
-        (object(), "a object cannot stand in a document"),
+        (object(), "a document cannot contain a object"),
         ([{"deep": float("inf")}], "inf is not a finite number"),
     ],
 )

@@ -125,7 +125,7 @@ def test_nothing_is_replaced_when_a_reference_would_not_be_found(tmp_path: Path)
     made = behavior("outer", outcomes=["a"], root=reference(inner), file=str(tmp_path / "here" / "outer.yaml"))
     elsewhere = tmp_path / "outer.yaml"
     elsewhere.write_text("precious", encoding="utf-8")
-    with pytest.raises(DocumentError, match=r"outer\.yaml refers to `inner\.yaml`, which is not there"):
+    with pytest.raises(DocumentError, match=r"outer\.yaml refers to `inner\.yaml`, which does not exist"):
         write_behavior(made, elsewhere)
     assert elsewhere.read_text(encoding="utf-8") == "precious"
     assert write_behavior(made, tmp_path / "here" / "outer.yaml") == (tmp_path / "here" / "outer.yaml",)
@@ -135,7 +135,7 @@ def test_no_behavior_is_written_outside_the_folder(tmp_path: Path) -> None:
     """`../` in a reference does not decide where files appear."""
     rest = behavior("rest", outcomes=["a"], root=state(Give()), file=str(tmp_path / "rest.yaml"))
     made = behavior("work", outcomes=["a"], root=reference(rest), file=str(tmp_path / "a" / "work.yaml"))
-    with pytest.raises(DocumentError, match=r"refers to `\.\./rest\.yaml`, which is not there"):
+    with pytest.raises(DocumentError, match=r"refers to `\.\./rest\.yaml`, which does not exist"):
         write_behavior(made, tmp_path / "b" / "work.yaml")
     write_behavior(rest, tmp_path / "rest.yaml")
     assert write_behavior(made, tmp_path / "b" / "work.yaml") == (tmp_path / "b" / "work.yaml",)

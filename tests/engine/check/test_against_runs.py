@@ -67,10 +67,10 @@ def causes(events: Iterable[Event]) -> list[Cause]:
 def test_a_key_that_a_run_misses_was_found_before(document: Plain) -> None:
     """Every read of an undefined key in a run stands at a node for which the check has said so."""
     findings = checked(document)
-    said = {finding.path for finding in findings if finding.code in UNDEFINED | MAYBE}
+    reported = {finding.path for finding in findings if finding.code in UNDEFINED | MAYBE}
     for seed in SEEDS:
         missed = [cause for cause in causes(events_of(document, seed)) if "is read but not defined" in cause.message]
-        assert {cause.nodes[0].partition(" at ")[0] for cause in missed} <= said
+        assert {cause.nodes[0].partition(" at ")[0] for cause in missed} <= reported
 
 
 @SETTINGS
@@ -102,7 +102,9 @@ def test_a_value_that_does_not_fit_in_a_run_was_found_before(document: Plain) ->
     """Every value that a node does not take stands at a node for which the check has said so."""
     # Nothing as an initial value means that a run is to give one, of whatever kind.
     document["userdata"] = {key: value for key, value in document["userdata"].items() if value is not None}
-    said = {finding.path for finding in checked(document) if finding.code in {"type-mismatch", "maybe-type-mismatch"}}
+    reported = {
+        finding.path for finding in checked(document) if finding.code in {"type-mismatch", "maybe-type-mismatch"}
+    }
     for seed in SEEDS:
         wrong = [cause for cause in causes(events_of(document, seed)) if " fit" in cause.message]
-        assert {cause.nodes[0].partition(" at ")[0] for cause in wrong} <= said
+        assert {cause.nodes[0].partition(" at ")[0] for cause in wrong} <= reported

@@ -59,7 +59,7 @@ def found(folder: Path, *nodes: str, level: TargetLevel = "warning", head: str =
 
 
 @pytest.mark.parametrize(
-    ("node", "told"),
+    ("node", "expected"),
     [
         # In reach or not, by every motion that has a target.
         (f"motion.MovePose robot: left, target: {{xyz: [0.5, 0, 0.3], {DOWN}}}", ""),
@@ -98,10 +98,10 @@ def found(folder: Path, *nodes: str, level: TargetLevel = "warning", head: str =
         ("motion.MoveLinear robot: left, speed_m_s: 1, joints: {entry: folded}", "target-in-collision"),
     ],
 )
-def test_a_target_that_an_arm_cannot_be_at_is_told(tmp_path: Path, node: str, told: str) -> None:
+def test_a_target_that_an_arm_cannot_be_at_is_reported(tmp_path: Path, node: str, expected: str) -> None:
     """With its code, at its place, as a warning."""
     findings = found(tmp_path, node)
-    assert [each.code for each in findings] == ([told] if told else [])
+    assert [each.code for each in findings] == ([expected] if expected else [])
     assert all((each.severity, each.path) == ("warning", "root/n0") for each in findings)
 
 
@@ -137,7 +137,7 @@ def test_it_counts_as_what_the_caller_says(tmp_path: Path) -> None:
     assert found(tmp_path, far, level="off") == ()
 
 
-def test_a_cell_that_cannot_be_built_is_told_once(tmp_path: Path) -> None:
+def test_a_cell_that_cannot_be_built_is_reported_once(tmp_path: Path) -> None:
     """A model that there is not: no arm can be put into it."""
     cell = "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\nrobots: {left: {model: pandra}}\n"
     (tmp_path / "cell.yaml").write_text(cell, encoding="utf-8")
@@ -155,7 +155,7 @@ def test_a_cell_that_cannot_be_built_is_told_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("target", "told"),
+    ("target", "expected"),
     [
         ("{xyz: [0.5, 0, 0.3], xyzw: [0, 0, 0, 0]}", "is not a pose"),
         ("{xyz: [1.0e+300, 0, 0.3], xyzw: [1, 0, 0, 0]}", "out of reach"),
@@ -164,16 +164,16 @@ def test_a_cell_that_cannot_be_built_is_told_once(tmp_path: Path) -> None:
         ("{xyz: [0.5, 0, 0.3], xyzw: [5, 0, 0, 0]}", ""),
     ],
 )
-def test_numbers_that_are_no_place_end_no_check(tmp_path: Path, target: str, told: str) -> None:
-    """They are told like a place out of reach."""
+def test_numbers_that_are_no_place_end_no_check(tmp_path: Path, target: str, expected: str) -> None:
+    """They are reported like a place out of reach."""
     findings = found(tmp_path, f"motion.MovePose robot: left, target: {target}")
-    assert [each.code for each in findings] == (["unreachable-target"] if told else [])
-    assert all(told in each.message for each in findings)
+    assert [each.code for each in findings] == (["unreachable-target"] if expected else [])
+    assert all(expected in each.message for each in findings)
 
 
 @pytest.mark.parametrize("joints", ["[1.0e+300, 0, 0, -1, 0, 1, 0]", "[0, 0]", "[9, 9, 9, 9, 9, 9, 9]"])
 def test_joints_that_the_arm_cannot_have_are_another_finding(tmp_path: Path, joints: str) -> None:
-    """`unreachable-joints` has told of them."""
+    """`unreachable-joints` has reported them."""
     given = f"with: {{robot: left, target: {joints}}}, transitions: {{reached: good, failed: good}}"
     node = f"      n0: {{state: motion.MoveJoints, {given}}}"
     (tmp_path / "cell.yaml").write_text(CELL, encoding="utf-8")

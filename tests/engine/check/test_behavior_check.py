@@ -165,7 +165,7 @@ CASES: dict[str, list[Case]] = {
             new="",
             path="root/go",
             at="go: {state: ar",
-            says="needs the parameter `robot`",
+            says="requires the parameter `robot`",
         ),
         Case(
             good=REFERENCE,
@@ -174,7 +174,7 @@ CASES: dict[str, list[Case]] = {
             new="",
             path="root/sub",
             at="sub: {behavior",
-            says="needs the parameter `share`",
+            says="requires the parameter `share`",
             already=("required-parameter",),
         ),
     ],
@@ -505,7 +505,7 @@ CASES: dict[str, list[Case]] = {
             new="preempt: [left, right]",
             path="root",
             at="right], when",
-            says="`right` has ended when this condition holds (name children that may still be at work",
+            says="this condition preempts `right`, which has already ended when it holds",
         ),
     ],
     "uncovered-combination": [
@@ -634,7 +634,7 @@ def test_a_resource_inside_a_referenced_behavior_counts(tmp_path: Path) -> None:
     text = PARALLEL.replace("{state: arm.Move, with: {robot: left}}", "{behavior: part.yaml, with: {arm: right}}")
     text = text.replace("left: reached", "left: done")
     findings = check_file(written(tmp_path, text, {"part.yaml": part}), CATALOGUE)
-    assert [f.message for f in findings] == ["`left` and `right` run side by side and both command `right`"]
+    assert [f.message for f in findings] == ["`left` and `right` run concurrently and both command `right`"]
 
 
 def test_resources_that_only_a_run_knows_are_not_compared() -> None:
@@ -653,7 +653,7 @@ def test_otherwise_covers_every_combination() -> None:
 
 
 def test_a_child_that_never_ends_leaves_nothing_uncovered() -> None:
-    """All children are never finished together; that the child goes round for ever is told instead."""
+    """All children are never finished together; that the child never ends is reported instead."""
     go = "{state: arm.Move, with: {robot: x}, transitions: {reached: go, failed: go}}"
     endless = f"machine: {{initial: go, states: {{go: {go}}}}}"
     text = PARALLEL.replace("{state: arm.Move, with: {robot: left}}", f"{{{endless}}}")

@@ -33,7 +33,7 @@ poses:
 """
 
 
-def said(folder: Path, cell: str = CELL, entries: str | None = ENTRIES) -> list[str]:
+def finding_texts(folder: Path, cell: str = CELL, entries: str | None = ENTRIES) -> list[str]:
     """Check a cell; returns its findings as they are printed, without the folder."""
     (folder / "cell.yaml").write_text(cell, encoding="utf-8")
     if entries is not None:
@@ -43,7 +43,7 @@ def said(folder: Path, cell: str = CELL, entries: str | None = ENTRIES) -> list[
 
 def test_a_good_cell_has_no_findings(tmp_path: Path) -> None:
     """With entries in the frames that it has, and in that of whatever part is gripped."""
-    assert said(tmp_path) == []
+    assert finding_texts(tmp_path) == []
 
 
 @pytest.mark.parametrize(
@@ -52,18 +52,18 @@ def test_a_good_cell_has_no_findings(tmp_path: Path) -> None:
         (
             "model: panda,",
             "model: pandda,",
-            "6:17: error: no robot model is called pandda (did you mean panda?) [unknown-model]",
+            "6:17: error: there is no robot model `pandda` (did you mean panda?) [unknown-model]",
         ),
         (
             "model: panda_hand",
             "model: panda_hnd",
-            "6:41: error: no gripper model is called panda_hnd (did you mean panda_hand?) [unknown-model]",
+            "6:41: error: there is no gripper model `panda_hnd` (did you mean panda_hand?) [unknown-model]",
         ),
         ("model: panda,", "model: ./mine,", "6:17: error: robot `left`: there is no robot.yaml in "),
         (
             "model: ur10,",
             "model: ur10, driver: {kind: ur_rtd},",
-            "7:39: error: no driver is called ur_rtd (none is installed; `driver: sim` simulates it) [unknown-driver]",
+            "7:39: error: there is no driver `ur_rtd` (none is installed; use `driver: sim`) [unknown-driver]",
         ),
         (
             "linear_axis: 9",
@@ -93,25 +93,27 @@ def test_a_good_cell_has_no_findings(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_is_wrong_with_a_cell_is_told_where_it_stands(tmp_path: Path, old: str, new: str, finding: str) -> None:
+def test_what_is_wrong_with_a_cell_is_reported_where_it_stands(
+    tmp_path: Path, old: str, new: str, finding: str
+) -> None:
     """With a near name, or what there is."""
     assert old in CELL
-    (found,) = said(tmp_path, CELL.replace(old, new))
+    (found,) = finding_texts(tmp_path, CELL.replace(old, new))
     assert found.removeprefix(f"{tmp_path}/").startswith(f"cell.yaml:{finding}")
 
 
-def test_a_broken_model_folder_is_told_at_its_own_document(tmp_path: Path) -> None:
+def test_a_broken_model_folder_is_reported_at_its_own_document(tmp_path: Path) -> None:
     """Where the folder is there, and what it says is not valid."""
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "robot.yaml").write_text("flexcell: 1\nrobott: mine\n", encoding="utf-8")
-    (found,) = said(tmp_path, CELL.replace("model: panda,", "model: ./mine,"))
+    (found,) = finding_texts(tmp_path, CELL.replace("model: panda,", "model: ./mine,"))
     assert found.startswith("mine/robot.yaml:2:1: error: robot `left`: unknown key `robott`")
 
 
 def test_the_entries_of_a_cell_are_checked_with_it(tmp_path: Path) -> None:
     """Frames that the cell has not, and numbers in another unit."""
     entries = ENTRIES.replace("frame: plate", "frame: plat").replace("-0.8, 0, -2.4", "-45, 0, -137")
-    assert said(tmp_path, entries=entries) == [
+    assert finding_texts(tmp_path, entries=entries) == [
         "entries.yaml:2:16: warning: `home`: -137 rad looks like degrees (if so, write "
         "[0, -0.7854, 0, -2.3911, 0, 0.0279, 0.014]) [suspect-unit]",
         "entries.yaml:4:39: error: the cell bench has no frame `plat` (did you mean plate?) [unknown-in-cell]",

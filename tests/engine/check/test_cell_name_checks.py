@@ -47,7 +47,7 @@ ENDS = {
 JOINTS = "target: [0, 0, 0, -1, 0, 1, 0]"
 
 
-def said(folder: Path, state: str, given: str, *, head: str = "", cell: str = CELL) -> list[str]:
+def finding_texts(folder: Path, state: str, given: str, *, head: str = "", cell: str = CELL) -> list[str]:
     """Check one state in a machine; returns `code text| message (hint)` of each finding."""
     main = f"""
 cell: cell.yaml
@@ -95,7 +95,7 @@ def shown(finding: Finding) -> str:
 )
 def test_what_the_cell_has_is_no_finding(tmp_path: Path, state: str, given: str) -> None:
     """Each kind of name, as a world shows it."""
-    assert said(tmp_path, state, given) == []
+    assert finding_texts(tmp_path, state, given) == []
 
 
 @pytest.mark.parametrize(
@@ -183,13 +183,13 @@ def test_what_the_cell_has_is_no_finding(tmp_path: Path, state: str, given: str)
 )
 def test_what_the_cell_lacks_is_an_error_at_the_name(tmp_path: Path, state: str, given: str, message: str) -> None:
     """With what it may have meant, or what it is instead."""
-    (found,) = said(tmp_path, state, given)
+    (found,) = finding_texts(tmp_path, state, given)
     assert found.startswith(f"unknown-in-cell {message}"), found
 
 
 def test_names_that_a_run_may_add_are_warned_of(tmp_path: Path) -> None:
     """An obstacle may have been put by an earlier run; one that this behavior puts is there."""
-    (found,) = said(tmp_path, "scene.AllowContact", "first: left, second: tabel")
+    (found,) = finding_texts(tmp_path, "scene.AllowContact", "first: left, second: tabel")
     assert found == "maybe-unknown-in-cell tabel| the cell bench has no body `tabel` (did you mean table?)"
     main = """
     cell: cell.yaml
@@ -212,12 +212,12 @@ def test_a_parameter_counts_with_its_default_and_all_its_choices(tmp_path: Path)
     """The message says that it is a default."""
     head = "parameters: {arm: {type: string, default: %s%s}}"
     given = f"robot: '${{arm}}', {JOINTS}"
-    assert said(tmp_path, "motion.MoveJoints", given, head=head % ("left", "")) == []
-    (found,) = said(tmp_path, "motion.MoveJoints", given, head=head % ("lefft", ""))
+    assert finding_texts(tmp_path, "motion.MoveJoints", given, head=head % ("left", "")) == []
+    (found,) = finding_texts(tmp_path, "motion.MoveJoints", given, head=head % ("lefft", ""))
     assert found == (
         "unknown-in-cell '${arm| the cell bench has no robot `lefft`, which `${arm}` is by default (did you mean left?)"
     )
-    (found,) = said(tmp_path, "motion.MoveJoints", given, head=head % ("left", ", choices: [left, rigt]"))
+    (found,) = finding_texts(tmp_path, "motion.MoveJoints", given, head=head % ("left", ", choices: [left, rigt]"))
     assert found == (
         "maybe-unknown-in-cell '${arm| the cell bench has no robot `rigt`, which `${arm}` may be (did you mean right?)"
     )
@@ -282,12 +282,12 @@ def test_what_a_reference_is_given_counts_for_what_is_done_with_it_inside(tmp_pa
 def test_nothing_is_said_of_a_robot_whose_model_cannot_be_read(tmp_path: Path) -> None:
     """The check of the cell says it; here its tool and links may be any."""
     cell = CELL.replace("model: panda,", "model: ./mine,")
-    assert said(tmp_path, "hand.Open", "hand: left", cell=cell) == []
-    assert said(tmp_path, "cell.ExpectPart", "part: bolt, frame: left/any", cell=cell) == []
+    assert finding_texts(tmp_path, "hand.Open", "hand: left", cell=cell) == []
+    assert finding_texts(tmp_path, "cell.ExpectPart", "part: bolt, frame: left/any", cell=cell) == []
 
 
 def test_names_are_left_unchecked_where_no_cell_is_named(tmp_path: Path) -> None:
-    """And where it cannot be read, which is told instead."""
+    """And where it cannot be read, which is reported instead."""
     body = f"root: {{machine: {{initial: a, states: {{a: {{state: motion.MoveJoints, with: {{robot: x, {JOINTS}}}, "
     body += "transitions: {reached: good, failed: bad}}}}}\n"
     (tmp_path / "b.yaml").write_text(HEAD + body, encoding="utf-8")

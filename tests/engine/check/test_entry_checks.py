@@ -61,18 +61,18 @@ def test_an_entry_that_was_taught_is_no_finding_any_more(folder: Path) -> None:
     assert missing in flexcell("check", "b.yaml", cwd=folder).out
 
 
-def test_a_store_that_is_not_there_is_told(folder: Path) -> None:
+def test_a_store_that_is_not_there_is_reported(folder: Path) -> None:
     """A mistyped path makes no file."""
-    said = flexcell("check", "b.yaml", "--store", "typo.db", cwd=folder)
-    assert said.code == 2
-    assert "typo.db: there is no such store file" in said.out + said.err
+    result = flexcell("check", "b.yaml", "--store", "typo.db", cwd=folder)
+    assert result.code == 2
+    assert "typo.db: there is no such store file" in result.out + result.err
     assert not (folder / "typo.db").exists()
 
 
 def test_the_start_of_a_run_warns_of_what_its_store_lacks(folder: Path) -> None:
     """It runs all the same: a behavior may write the entry before it needs it."""
-    said = flexcell("run", "b.yaml", "--clock", "virtual", "-q", cwd=folder)
-    assert "there is no joints entry `left_taught`" in said.err
+    result = flexcell("run", "b.yaml", "--clock", "virtual", "-q", cwd=folder)
+    assert "there is no joints entry `left_taught`" in result.err
     _teach(folder / "bench.db")
     assert (
         "left_taught" not in flexcell("run", "b.yaml", "--clock", "virtual", "-q", cwd=folder).err.split("errored")[0]

@@ -1,10 +1,10 @@
-"""Loops in which no time passes: found where nothing in them changes their course, left alone where something does."""
+"""Endless loops in which no time passes are reported, others are not."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from tests.engine.check.checking import findings_in, findings_in_files, message_of, said_of
+from tests.engine.check.checking import code_paths, findings_in, findings_in_files, message_of
 
 LOOK = "{state: flow.Decide, with: {when: '${ready}'}, transitions: {'true': good, 'false': %s}}"
 TELL = "{state: flow.Log, with: {message: again}, transitions: {done: %s}}"
@@ -17,31 +17,31 @@ def machine(initial: str, **states: str) -> str:
     return f"root:\n  machine:\n    initial: {initial}\n    states:\n{lines}"
 
 
-def test_a_loop_that_decides_on_what_it_does_not_write_goes_round_for_ever() -> None:
+def test_a_loop_that_decides_on_what_it_does_not_write_never_ends() -> None:
     """The message names the loop from its first state on."""
     text = HEAD + machine("look", look=LOOK % "tell", tell=TELL % "look")
-    assert said_of(text) == ["instant-loop root/look"]
+    assert code_paths(text) == ["instant-loop root/look"]
     assert message_of(text).startswith("no time passes in the loop look → tell → look,")
-    assert said_of(HEAD + machine("look", look=LOOK % "look")) == ["instant-loop root/look"]
+    assert code_paths(HEAD + machine("look", look=LOOK % "look")) == ["instant-loop root/look"]
 
 
 def test_a_state_that_waits_makes_the_loop_one_that_waits() -> None:
     """Time passes at each round."""
     wait = "{state: flow.Wait, with: {duration_s: 1}, transitions: {done: look}}"
-    assert said_of(HEAD + machine("look", look=LOOK % "wait", wait=wait)) == []
+    assert code_paths(HEAD + machine("look", look=LOOK % "wait", wait=wait)) == []
 
 
-def test_a_loop_that_counts_is_left_alone() -> None:
+def test_a_loop_that_counts_is_not_reported() -> None:
     """It writes what it decides on."""
     count = "{state: flow.SetValue, with: {value: '${tries + 1}'}, out: {value: tries}, transitions: {done: look}}"
     look = "{state: flow.Decide, with: {when: '${tries < 3}'}, transitions: {'true': count, 'false': good}}"
-    assert said_of("userdata: {tries: 0}\n" + machine("count", count=count, look=look)) == []
+    assert code_paths("userdata: {tries: 0}\n" + machine("count", count=count, look=look)) == []
 
 
 def test_a_closed_guard_leads_on_at_once() -> None:
     """Whatever the state behind it would do."""
     wait = "{state: flow.Wait, with: {duration_s: 1}, guard: {when: '${ready}', to: tell}, transitions: {done: good}}"
-    assert said_of(HEAD + machine("wait", wait=wait, tell=TELL % "wait")) == ["instant-loop root/wait"]
+    assert code_paths(HEAD + machine("wait", wait=wait, tell=TELL % "wait")) == ["instant-loop root/wait"]
 
 
 def test_a_container_ends_at_once_where_a_way_through_instant_states_leads() -> None:
@@ -55,9 +55,9 @@ def test_a_container_ends_at_once_where_a_way_through_instant_states_leads() -> 
         " transitions: {over: look}}"
     )
     for text in (inner, tree, each, both):
-        assert said_of(HEAD + machine("look", look=LOOK % "inner", inner=text)) == ["instant-loop root/look"]
+        assert code_paths(HEAD + machine("look", look=LOOK % "inner", inner=text)) == ["instant-loop root/look"]
     slow = both.replace("flow.Log, with: {message: a}", "flow.Wait, with: {duration_s: 1}")
-    assert said_of(HEAD + machine("look", look=LOOK % "inner", inner=slow)) == []
+    assert code_paths(HEAD + machine("look", look=LOOK % "inner", inner=slow)) == []
 
 
 def test_a_behavior_that_ends_at_once_is_part_of_a_loop(tmp_path: Path) -> None:

@@ -25,17 +25,17 @@ robots:
         ("small", "[0.1, '${angle}']", ""),
         ("small", "{entry: home}", ""),
         ("elsewhere", "[0, 0]", ""),
-        ("left", "[0, -0.8]", "`target`: `left` has 7 joints, not 2 (give one angle for each, in radians)"),
-        ("'${arm}'", "[0]", "`target`: `small` has 2 joints, not 1 (give one angle for each, in radians)"),
+        ("left", "[0, -0.8]", "`target`: `left` has 7 joints, not 2 (write one angle in radians for each joint)"),
+        ("'${arm}'", "[0]", "`target`: `small` has 2 joints, not 1 (write one angle in radians for each joint)"),
         (
             "left",
             "[0, -0.8, 0, 0.5, 0, 1.6, 0.8]",
-            "`target`: joint 4 of `left` cannot be at 0.5 rad (it turns from -3.072 to -0.0698 rad)",
+            "`target`: joint 4 of `left`: 0.5 rad is outside the joint limits (the limits are -3.072 to -0.0698 rad)",
         ),
         ("left", "[0, -45, 0, -137, 0, 90, 45]", ""),
     ],
 )
-def test_angles_that_the_arm_cannot_have_are_told(tmp_path: Path, robot: str, target: str, finding: str) -> None:
+def test_angles_that_the_arm_cannot_have_are_reported(tmp_path: Path, robot: str, target: str, finding: str) -> None:
     """Their number, and the first one beyond its limits; degrees are another finding."""
     main = f"""
     cell: cell.yaml
@@ -52,5 +52,5 @@ def test_angles_that_the_arm_cannot_have_are_told(tmp_path: Path, robot: str, ta
             transitions: {{reached: good, failed: bad}}
     """
     found = findings_in_files(tmp_path, main=main, cell=CELL)
-    told = [f"{each.message} ({each.hint})" for each in found if each.code == "unreachable-joints"]
-    assert told == ([finding] if finding else [])
+    reported = [f"{each.message} ({each.hint})" for each in found if each.code == "unreachable-joints"]
+    assert reported == ([finding] if finding else [])

@@ -1,4 +1,4 @@
-"""Numbers that seem to be degrees or millimetres are told, with what they would be in the unit that is due."""
+"""Numbers that seem to be degrees or millimetres are reported, with what they would be in the unit that is due."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ root:
         (
             "gripper.Move",
             "gripper: left, width_m: 0.04, speed_m_s: 100",
-            "`speed_m_s`: 100 m/s looks like millimetres a second",
+            "`speed_m_s`: 100 m/s looks like millimetres per second",
             "if so, write 0.1",
         ),
     ],
 )
-def test_a_number_that_is_too_large_for_its_unit_is_told(state: str, given: str, message: str, hint: str) -> None:
+def test_a_number_that_is_too_large_for_its_unit_is_reported(state: str, given: str, message: str, hint: str) -> None:
     """Once for a list, with the whole list as it may be meant."""
     (found,) = findings_in(MACHINE % ("", state, given))
     assert (found.code, found.message, found.hint) == ("suspect-unit", message, hint)
@@ -54,7 +54,7 @@ def test_a_number_that_is_too_large_for_its_unit_is_told(state: str, given: str,
         "robot: left, target: ['${angle}', 0]",
     ],
 )
-def test_what_an_arm_can_do_is_not_told(given: str) -> None:
+def test_what_an_arm_can_do_is_not_reported(given: str) -> None:
     """Some joints turn more than once around."""
     head = "parameters: {angle: {type: number, default: 1, unit: rad}}"
     assert findings_in(MACHINE % (head if "angle" in given else "", "motion.MoveJoints", given)) == ()

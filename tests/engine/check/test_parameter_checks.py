@@ -12,7 +12,7 @@ from engine.state import State
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
 from states.motion.move_pose import MovePose
-from tests.engine.check.checking import findings_in, findings_in_files, message_of, said_of
+from tests.engine.check.checking import code_paths, findings_in, findings_in_files, message_of
 
 LINE = """
 root:
@@ -26,15 +26,15 @@ root:
 def test_values_that_do_not_go_together_are_found() -> None:
     """A line takes either a duration or a speed."""
     assert message_of(LINE % "offset_m: [0, 0, 0.1]") == "give either `duration_s` or `speed_m_s`"
-    assert said_of(LINE % "offset_m: [0, 0, 0.1], duration_s: 1, speed_m_s: 1") == ["bad-parameter root/line"]
-    assert said_of(LINE % "offset_m: [0, 0, 0.1], duration_s: 1") == []
+    assert code_paths(LINE % "offset_m: [0, 0, 0.1], duration_s: 1, speed_m_s: 1") == ["bad-parameter root/line"]
+    assert code_paths(LINE % "offset_m: [0, 0, 0.1], duration_s: 1") == []
 
 
 def test_a_value_is_tried_with_the_defaults_of_the_behavior() -> None:
     """A default that the state refuses is found, at the value and not at the default."""
     head = "parameters: {v: {type: number, default: %s, unit: m/s}}\n"
     text = LINE % "offset_m: [0, 0, 0.1], speed_m_s: '${v}'"
-    assert said_of(head % "0.1" + text) == []
+    assert code_paths(head % "0.1" + text) == []
     (finding,) = findings_in(head % "-0.1" + text)
     assert (finding.code, finding.message) == ("bad-parameter", "parameter `speed_m_s`: -0.1: expected number > 0.0")
 
@@ -50,7 +50,7 @@ def test_a_class_that_breaks_when_it_is_made_does_not_break_the_check() -> None:
         conditions: [{good: {a: reached}}]
         otherwise: bad
     """
-    assert said_of(text) == ["bad-parameter root/a"]
+    assert code_paths(text) == ["bad-parameter root/a"]
 
 
 @pytest.mark.parametrize(
@@ -66,8 +66,8 @@ def test_a_class_that_breaks_when_it_is_made_does_not_break_the_check() -> None:
 def test_a_parameter_is_handed_on_with_its_unit_and_limits(declared: str, expected: list[str]) -> None:
     """Compared with those of the state; only where the value is nothing but the parameter."""
     head = f"parameters: {{v: {{type: number, default: 0.5, {declared}}}}}\n"
-    assert said_of(head + LINE % "offset_m: [0, 0, 0.1], speed_m_s: '${v}'") == expected
-    assert said_of(head + LINE % "offset_m: [0, 0, 0.1], speed_m_s: '${v * 2.0}'") == []
+    assert code_paths(head + LINE % "offset_m: [0, 0, 0.1], speed_m_s: '${v}'") == expected
+    assert code_paths(head + LINE % "offset_m: [0, 0, 0.1], speed_m_s: '${v * 2.0}'") == []
 
 
 def test_units_and_limits_are_compared_through_references(tmp_path: Path) -> None:
@@ -85,11 +85,11 @@ def test_units_and_limits_are_compared_through_references(tmp_path: Path) -> Non
     assert [f.code for f in findings_in_files(tmp_path, main=main, part=part)] == ["range-too-wide", "unit-mismatch"]
 
 
-def test_a_parameter_that_nobody_uses_is_told_when_there_is_no_error() -> None:
-    """A mistyped use is enough to be told of."""
+def test_a_parameter_that_nobody_uses_is_reported_when_there_is_no_error() -> None:
+    """A mistyped use is enough to be reported."""
     head = "parameters: {v: {type: number, default: 0.5, unit: m/s}}\n"
-    assert said_of(head + LINE % "offset_m: [0, 0, 0.1], duration_s: 1") == ["unused-parameter root"]
-    assert said_of(head + LINE % "offset_m: [0, 0, 0.1], duration_s: '${vv}'") == ["undeclared-name root/line"]
+    assert code_paths(head + LINE % "offset_m: [0, 0, 0.1], duration_s: 1") == ["unused-parameter root"]
+    assert code_paths(head + LINE % "offset_m: [0, 0, 0.1], duration_s: '${vv}'") == ["undeclared-name root/line"]
 
 
 CELL = """
@@ -111,7 +111,7 @@ poses: {left_pick: {xyz: [0, 0, 0]}}
     [
         ("left_home", ""),
         ("left_hoem", "there is no joints entry `left_hoem` (did you mean left_home?)"),
-        ("left_pick", "there is no joints entry `left_pick` (there is a pose entry of that name)"),
+        ("left_pick", "there is no joints entry `left_pick` (the kind of `left_pick` is pose)"),
         ("${place}", "there is no joints entry `left_pick`"),
     ],
 )
@@ -135,7 +135,7 @@ def test_an_entry_is_looked_for_in_the_cell_of_the_behavior_by_its_kind(tmp_path
     assert all(says in str(finding) for finding in findings)
 
 
-def test_a_cell_that_cannot_be_read_is_told_beside_everything_else(tmp_path: Path) -> None:
+def test_a_cell_that_cannot_be_read_is_reported_beside_everything_else(tmp_path: Path) -> None:
     """At the key that names it."""
     main = "cell: nowhere.yaml\n" + LINE % "offset_m: [0, 0, 0.1]"
     findings = findings_in_files(tmp_path, main=main)
@@ -150,7 +150,7 @@ def test_states_mark_the_fields_that_name_entries(state: type[State], kind: str)
 
 
 def test_an_entry_that_the_behavior_writes_itself_is_not_missing(tmp_path: Path) -> None:
-    """Recorded, learned from and followed in one run; a mistyped recording is told, although its name stands alone."""
+    """Recorded, learned from and followed in one run; a mistyped recording is still reported."""
     main = """
     cell: cell.yaml
     root:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.engine.check.checking import message_of, said_of
+from tests.engine.check.checking import code_paths, message_of
 
 WAIT = """
 userdata: {ready: true, parts: []}
@@ -50,12 +50,12 @@ root: {foreach: {%s, child: {state: flow.Wait, with: {duration_s: 1}}}}
 )
 def test_a_setting_of_a_node(extra: str, expected: str | None) -> None:
     """What is wrong with it, if anything."""
-    assert said_of(WAIT % extra) == ([f"{expected} root/wait"] if expected else [])
+    assert code_paths(WAIT % extra) == ([f"{expected} root/wait"] if expected else [])
 
 
 def test_a_condition_without_braces_is_text() -> None:
     """The hint puts them around it."""
-    assert message_of(WAIT % "guard: {when: 'ready', to: bad}") == "the guard takes true or false, and gets 'ready'"
+    assert message_of(WAIT % "guard: {when: 'ready', to: bad}") == "the guard expects true or false, but gets 'ready'"
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_a_condition_without_braces_is_text() -> None:
 )
 def test_the_rounds_of_a_foreach(rounds: str, expected: str | None) -> None:
     """A list, or a whole number, and outcomes that the child has."""
-    assert said_of(EACH % rounds) == ([expected] if expected else [])
+    assert code_paths(EACH % rounds) == ([expected] if expected else [])
 
 
 def test_an_outcome_may_come_from_a_guard_timeout_or_error() -> None:
@@ -87,7 +87,8 @@ def test_an_outcome_may_come_from_a_guard_timeout_or_error() -> None:
         conditions: [{good: {wait: done}}]
     """
     for extra in ("timeout: {after: 1, to: late}", "on_error: late", "guard: {when: '${1 > 2}', to: late}"):
-        assert "uncovered-combination root" in said_of(text % extra)
+        assert "uncovered-combination root" in code_paths(text % extra)
     assert (
-        said_of(EACH.replace("{duration_s: 1}}", "{duration_s: 1}, on_error: late}") % "times: 1, next: [late]") == []
+        code_paths(EACH.replace("{duration_s: 1}}", "{duration_s: 1}, on_error: late}") % "times: 1, next: [late]")
+        == []
     )

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.check import check_behavior
 from engine.document import parse_behavior
-from tests.engine.check.checking import said_of
+from tests.engine.check.checking import code_paths
 from tests.engine.fake_states import CATALOGUE
 from tests.engine.run_document import HEAD, run_document
 
@@ -85,11 +85,11 @@ def _hanging(conditions: str) -> str:
 def test_a_child_that_never_ends_may_be_preempted() -> None:
     """Then all have finished at last, which needs an answer; without that it is the condition that decides alone."""
     loop = "no-path-to-outcome root/mover/a"
-    assert loop in said_of(_hanging("{good: {camera: done}}"))
-    assert "uncovered-combination root" not in said_of(_hanging("{bad: {mover: never}}, {good: {camera: done}}"))
-    assert "uncovered-combination root" in said_of(_hanging("{preempt: [mover], when: {camera: done}}"))
+    assert loop in code_paths(_hanging("{good: {camera: done}}"))
+    assert "uncovered-combination root" not in code_paths(_hanging("{bad: {mover: never}}, {good: {camera: done}}"))
+    assert "uncovered-combination root" in code_paths(_hanging("{preempt: [mover], when: {camera: done}}"))
     covered = "{preempt: [mover], when: {camera: done}}, {good: {camera: done}}"
-    assert "uncovered-combination root" not in said_of(_hanging(covered))
+    assert "uncovered-combination root" not in code_paths(_hanging(covered))
 
 
 def test_what_a_preempted_branch_was_to_write_may_be_missing_behind_otherwise() -> None:
@@ -111,6 +111,6 @@ def test_what_a_preempted_branch_was_to_write_may_be_missing_behind_otherwise() 
           use: {state: flow.Wait, with: {duration_s: "${pause_s}"}, transitions: {done: good}}
     """
     deciding = "{some: {camera: done, writer: done}}"
-    assert said_of(text.replace("CONDITIONS", deciding)) == []
+    assert code_paths(text.replace("CONDITIONS", deciding)) == []
     preempting = f"{deciding}, {{preempt: [writer], when: {{camera: done}}}}"
-    assert said_of(text.replace("CONDITIONS", preempting)) == ["maybe-type-mismatch root/use"]
+    assert code_paths(text.replace("CONDITIONS", preempting)) == ["maybe-type-mismatch root/use"]

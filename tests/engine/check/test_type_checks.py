@@ -21,7 +21,7 @@ from engine.check.flow.value_type import (
 )
 from engine.messages import Pose
 from states.motion.motion_target import EntryTarget, JointTarget
-from tests.engine.check.checking import findings_in_files, message_of, said_of
+from tests.engine.check.checking import code_paths, findings_in_files, message_of
 
 
 @pytest.mark.parametrize(
@@ -100,14 +100,14 @@ def machine(initial: str, **states: str) -> str:
 def test_an_initial_value_of_the_wrong_kind_is_named_with_its_key() -> None:
     """Both kinds, and where the value comes from."""
     text = "userdata: {pause: long}\n" + machine("wait", wait=WAIT % '"${pause}"')
-    said = "takes a number, and gets `long` from the initial value of `pause`"
-    assert message_of(text) == f"the parameter `duration_s` of `flow.Wait` {said}"
+    expected = "expects a number, but gets `long` from the initial value of `pause`"
+    assert message_of(text) == f"the parameter `duration_s` of `flow.Wait` {expected}"
 
 
 def test_what_a_state_writes_is_followed_to_its_reader() -> None:
     """`gripper.Grasp` writes whether it holds something, which is no duration."""
     text = machine("grasp", grasp=GRASP % ("bad", "bad"), wait=WAIT % '"${held}"')
-    assert message_of(text).endswith("takes a number, and gets true or false from `held` of `root/grasp`")
+    assert message_of(text).endswith("expects a number, but gets true or false from `held` of `root/grasp`")
 
 
 def test_of_two_states_alike_the_one_is_named_that_the_value_comes_from() -> None:
@@ -123,9 +123,9 @@ def test_a_value_that_comes_on_one_way_only_is_a_warning_with_that_way() -> None
     grasp = GRASP % ("wait", "look")
     look = "{state: gripper.CheckHeld, with: {gripper: left}, transitions: {held: wait, lost: bad}}"
     text = "userdata: {width_m: unknown}\n" + machine("grasp", grasp=grasp, look=look, wait=WAIT % '"${width_m}"')
-    assert said_of(text) == ["maybe-type-mismatch root/wait"]
+    assert code_paths(text) == ["maybe-type-mismatch root/wait"]
     assert message_of(text).endswith(
-        "may get `unknown` from the initial value of `width_m` on the way grasp → look → wait"
+        "may get `unknown` from the initial value of `width_m` on the path grasp → look → wait"
     )
 
 
@@ -133,8 +133,8 @@ def test_a_value_that_is_put_into_a_key_keeps_its_kind() -> None:
     """`flow.SetValue` hands on what it is given, be it an expression of other keys."""
     put = "{state: flow.SetValue, with: {value: %s}, out: {value: pause}, transitions: {done: wait}}"
     head = "userdata: {count: 1, pause: none}\n"
-    assert said_of(head + machine("put", put=put % '"${count * 2}"', wait=WAIT % '"${pause}"')) == []
-    assert said_of(head + machine("put", put=put % '"${string(count)}"', wait=WAIT % '"${pause}"')) == [
+    assert code_paths(head + machine("put", put=put % '"${count * 2}"', wait=WAIT % '"${pause}"')) == []
+    assert code_paths(head + machine("put", put=put % '"${string(count)}"', wait=WAIT % '"${pause}"')) == [
         "type-mismatch root/wait"
     ]
 
@@ -145,7 +145,7 @@ def test_a_counter_is_a_number_however_often_it_is_counted() -> None:
     wait = '{state: flow.Wait, with: {duration_s: "${count}"}, transitions: {done: look}}'
     look = '{state: flow.Decide, with: {when: "${count}"}, transitions: {"true": put, "false": good}}'
     text = "userdata: {count: 0}\n" + machine("put", put=put, wait=wait, look=look)
-    assert message_of(text).endswith("takes true or false, and gets an integer from `value` of `root/put`")
+    assert message_of(text).endswith("expects true or false, but gets an integer from `value` of `root/put`")
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_an_expression_that_fails_with_the_kinds_it_gets_is_found(expression: st
     text += machine(
         "say", say=f"{{state: flow.Log, with: {{message: '{expression} ${{speed}}'}}, transitions: {{done: good}}}}"
     )
-    assert says in message_of(text) if says else said_of(text) == []
+    assert says in message_of(text) if says else code_paths(text) == []
 
 
 def test_a_guard_takes_a_truth_value_and_a_foreach_a_list() -> None:
@@ -179,9 +179,9 @@ def test_a_guard_takes_a_truth_value_and_a_foreach_a_list() -> None:
     wait = '{state: flow.Wait, with: {duration_s: 1}, guard: {when: "${count}", to: bad}, transitions: {done: good}}'
     guard = text % f"machine: {{initial: w, states: {{w: {wait}}}}}"
     each = 'foreach: {items: "${count}", child: {state: flow.Log, with: {message: "${string(item)}"}}}'
-    assert message_of(guard) == "the guard takes true or false, and gets `1` from the initial value of `count`"
+    assert message_of(guard) == "the guard expects true or false, but gets `1` from the initial value of `count`"
     head = "flexcell: 1\nname: t\noutcomes: [exhausted, broken]\n"
-    assert message_of(head + text % each).startswith("`items` takes a list of values, and gets `1`")
+    assert message_of(head + text % each).startswith("`items` expects a list of values, but gets `1`")
     assert message_of(head + text % each.replace("items", "times").replace("count", "count == 1")).startswith("`times`")
 
 
@@ -189,13 +189,13 @@ def test_the_items_of_a_list_are_what_a_round_reads() -> None:
     """One of them is no number."""
     each = "foreach: {items: [1, 2, three], as: pause, child: {state: flow.Wait, with: {duration_s: '${pause}'}}}"
     text = f"flexcell: 1\nname: t\noutcomes: [exhausted, broken]\nroot:\n  {each}\n"
-    assert message_of(text).endswith("takes a number, and may get `three` from `pause` of the rounds of `root`")
+    assert message_of(text).endswith("expects a number, but may get `three` from `pause` of the rounds of `root`")
 
 
 def test_a_list_or_mapping_with_expressions_is_looked_into() -> None:
     """A list of joint angles takes no text."""
     text = "userdata: {name: a}\n" + machine("move", move=MOVE % "[0, '${name}']")
-    assert message_of(text).endswith("takes EntryTarget or a list of numbers, and gets a list with `0`, `a`")
+    assert message_of(text).endswith("expects EntryTarget or a list of numbers, but gets a list with `0`, `a`")
 
 
 PART = """
@@ -217,8 +217,8 @@ def test_what_a_reference_passes_in_is_followed_to_its_reader(tmp_path: Path) ->
     )
     (finding,) = findings_in_files(tmp_path, part=PART, main=main)
     assert (finding.code, finding.path) == ("type-mismatch", "root/sub")
-    said = "takes text, at `root/say` of `part.yaml`, and gets `4` through `label`"
-    assert finding.message == f"the parameter `message` of `flow.Log` {said}"
+    expected = "expects text, at `root/say` of `part.yaml`, but gets `4` through `label`"
+    assert finding.message == f"the parameter `message` of `flow.Log` {expected}"
 
 
 def test_what_a_reference_gives_back_has_the_kind_it_has_inside(tmp_path: Path) -> None:
@@ -238,7 +238,7 @@ def test_a_parameter_of_a_reference_takes_its_declared_type(tmp_path: Path) -> N
     (finding,) = findings_in_files(tmp_path, part=PART, main=main)
     assert (
         finding.message
-        == "the parameter `pause` of `part.yaml` takes an integer, and gets a number from the parameter `p`"
+        == "the parameter `pause` of `part.yaml` expects an integer, but gets a number from the parameter `p`"
     )
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.engine.check.checking import findings_in, findings_in_files, message_of, said_of
+from tests.engine.check.checking import code_paths, findings_in, findings_in_files, message_of
 
 READ = "{state: store.ReadEntry, with: {kind: record, name: x}, out: {value: part}"
 USE = '{state: flow.Log, with: {message: "${part.name}"}'
 
 
-def test_a_key_that_one_outcome_leaves_unwritten_is_told_with_the_way_there() -> None:
+def test_a_key_that_one_outcome_leaves_unwritten_is_reported_with_the_way_there() -> None:
     """The way leads from the first node to the reader past everything that would write the key."""
     text = f"""
     root:
@@ -21,8 +21,8 @@ def test_a_key_that_one_outcome_leaves_unwritten_is_told_with_the_way_there() ->
           wait: {{state: flow.Wait, with: {{duration_s: 1}}, transitions: {{done: use}}}}
           use: {USE}, transitions: {{done: good}}}}
     """
-    assert said_of(text) == ["maybe-undefined-key root/use"]
-    assert message_of(text).endswith("nothing defines it on the way read → wait → use")
+    assert code_paths(text) == ["maybe-undefined-key root/use"]
+    assert message_of(text).endswith("it is not defined on the path read → wait → use")
 
 
 def test_the_way_goes_through_the_containers_around_the_reader() -> None:
@@ -41,7 +41,7 @@ def test_the_way_goes_through_the_containers_around_the_reader() -> None:
                 use: {USE}, transitions: {{done: ready}}}}
             transitions: {{ready: good}}
     """
-    assert message_of(text).endswith("on the way read → inner/wait → inner/use")
+    assert message_of(text).endswith("on the path read → inner/wait → inner/use")
 
 
 def test_an_initial_value_defines_a_key_on_every_way() -> None:
@@ -55,7 +55,7 @@ def test_an_initial_value_defines_a_key_on_every_way() -> None:
           read: {READ}, transitions: {{found: use, missing: use}}}}
           use: {USE}, transitions: {{done: good}}}}
     """
-    assert said_of(text) == []
+    assert code_paths(text) == []
 
 
 def test_a_loop_defines_what_is_written_in_its_first_round() -> None:
@@ -69,7 +69,7 @@ def test_a_loop_defines_what_is_written_in_its_first_round() -> None:
           use: {USE}, transitions: {{done: again}}}}
           again: {{state: gripper.CheckHeld, with: {{gripper: left}}, transitions: {{held: use, lost: read}}}}
     """
-    assert said_of(text) == []
+    assert code_paths(text) == []
 
 
 def test_what_an_inner_container_writes_is_lost_at_its_end() -> None:
@@ -115,7 +115,7 @@ def test_a_branch_keeps_what_its_machines_write_until_it_ends() -> None:
             transitions: {{ended: late}}
           late: {USE}, transitions: {{done: good}}}}
     """
-    assert said_of(text) == ["undefined-key root/late"]
+    assert code_paths(text) == ["undefined-key root/late"]
 
 
 def test_a_condition_says_which_branches_have_certainly_written() -> None:
@@ -135,13 +135,13 @@ def test_a_condition_says_which_branches_have_certainly_written() -> None:
             transitions: {{ready: use, lost: bad, late: bad}}
           use: {{state: store.WriteEntry, with: {{kind: record, name: x}}, in: {{value: part}}, transitions: {{written: good, conflict: bad}}}}
     """  # noqa: E501
-    assert said_of(text) == []
-    assert said_of(text.replace("lost: bad", "lost: use")) == ["maybe-type-mismatch root/use"]
-    assert said_of(text.replace("late: bad", "late: use")) == ["maybe-type-mismatch root/use"]
+    assert code_paths(text) == []
+    assert code_paths(text.replace("lost: bad", "lost: use")) == ["maybe-type-mismatch root/use"]
+    assert code_paths(text.replace("late: bad", "late: use")) == ["maybe-type-mismatch root/use"]
 
 
 def test_branches_that_write_or_read_one_key_get_in_each_others_way() -> None:
-    """Both are told; keys that are not declared outside are each branch's own."""
+    """Both are reported; keys that are not declared outside are each branch's own."""
     text = """
     userdata: {count: 0}
     root:
@@ -151,7 +151,7 @@ def test_branches_that_write_or_read_one_key_get_in_each_others_way() -> None:
           b: {state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}}
         conditions: [{good: {a: done, b: done}}]
     """
-    assert said_of(text) == ["parallel-writers root/b", "sibling-read root/b"]
+    assert code_paths(text) == ["parallel-writers root/b", "sibling-read root/b"]
     own = """
     root:
       concurrency:
@@ -162,7 +162,7 @@ def test_branches_that_write_or_read_one_key_get_in_each_others_way() -> None:
           b: {state: flow.SetValue, with: {value: 1}, out: {value: count}}
         conditions: [{good: {a: done, b: done}}]
     """
-    assert said_of(own) == []
+    assert code_paths(own) == []
 
 
 SHARED = """
@@ -178,15 +178,15 @@ SHARED = """
 
 
 def test_shared_keys_are_meant_to_be_written_by_branches_and_read_by_others() -> None:
-    assert said_of(SHARED) == []
+    assert code_paths(SHARED) == []
     own = SHARED.replace("userdata: {count: 0}", "").replace("shared:", "userdata: {count: 0}\n        shared:")
-    assert said_of(own) == []
+    assert code_paths(own) == []
 
 
 def test_a_shared_key_is_defined_around_the_branches() -> None:
-    said = said_of(SHARED.replace("userdata: {count: 0}", ""))
-    assert set(said) == {"maybe-undefined-key root", "maybe-undefined-key root/a", "maybe-undefined-key root/b"}
-    assert said_of(SHARED.replace("shared: [count]", "shared: [count, cuont]")) == ["undefined-key root"]
+    reported = code_paths(SHARED.replace("userdata: {count: 0}", ""))
+    assert set(reported) == {"maybe-undefined-key root", "maybe-undefined-key root/a", "maybe-undefined-key root/b"}
+    assert code_paths(SHARED.replace("shared: [count]", "shared: [count, cuont]")) == ["undefined-key root"]
 
 
 def test_what_a_branch_shares_may_be_of_another_kind_for_the_others() -> None:
@@ -194,8 +194,8 @@ def test_what_a_branch_shares_may_be_of_another_kind_for_the_others() -> None:
     adding = '{state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}}'
     text = SHARED.replace(f"b: {adding}", "%s").replace('value: "${count + 1}"', "value: [1]")
     reads = "b: {state: flow.Wait, with: {duration_s: '${count}'}}"
-    assert said_of(text % reads) == ["maybe-type-mismatch root/b"]
-    assert said_of(text.replace("shared: [count]", "") % reads) == ["sibling-read root/b"]
+    assert code_paths(text % reads) == ["maybe-type-mismatch root/b"]
+    assert code_paths(text.replace("shared: [count]", "") % reads) == ["sibling-read root/b"]
 
 
 def test_a_parallel_of_a_tree_has_branches_too() -> None:
@@ -213,7 +213,7 @@ def test_a_parallel_of_a_tree_has_branches_too() -> None:
                 - {state: flow.Log, with: {message: "${string(count)}"}, name: b}
             transitions: {success: good}
     """
-    assert said_of(text) == ["sibling-read root/tree/parallel/b"]
+    assert code_paths(text) == ["sibling-read root/tree/parallel/b"]
 
 
 def test_each_round_of_a_foreach_has_a_scope_of_its_own() -> None:
@@ -234,10 +234,10 @@ def test_each_round_of_a_foreach_has_a_scope_of_its_own() -> None:
             transitions: {exhausted: use, broken: bad}
           use: {state: flow.Log, with: {message: "${names[0]}"}, transitions: {done: good}}
     """
-    assert said_of(text) == ["maybe-undefined-key root/use"]
-    assert said_of(text.replace('items: "${parts}"', "items: [a, b]").replace("parameters", "userdata")) == []
-    assert said_of(text.replace("${names[0]}", "${part}")) == ["undefined-key root/use"]
-    assert said_of(text.replace("collect: {name:", "collect: {nmae:"))[0] == "undefined-key root/each"
+    assert code_paths(text) == ["maybe-undefined-key root/use"]
+    assert code_paths(text.replace('items: "${parts}"', "items: [a, b]").replace("parameters", "userdata")) == []
+    assert code_paths(text.replace("${names[0]}", "${part}")) == ["undefined-key root/use"]
+    assert code_paths(text.replace("collect: {name:", "collect: {nmae:"))[0] == "undefined-key root/each"
 
 
 def test_a_tree_goes_on_where_a_status_leads() -> None:
@@ -250,8 +250,8 @@ def test_a_tree_goes_on_where_a_status_leads() -> None:
           - {USE}}}
     """
     head = "flexcell: 1\nname: test\noutcomes: [success, failure]\n"
-    assert said_of(head + tree.replace("\n    ", "\n") % "sequence") == []
-    assert said_of(head + tree.replace("\n    ", "\n") % "selector") == ["undefined-key root/selector/Log"]
+    assert code_paths(head + tree.replace("\n    ", "\n") % "sequence") == []
+    assert code_paths(head + tree.replace("\n    ", "\n") % "selector") == ["undefined-key root/selector/Log"]
 
 
 def test_a_timeout_may_come_before_anything_is_written() -> None:
@@ -267,7 +267,7 @@ def test_a_timeout_may_come_before_anything_is_written() -> None:
           read: {READ}, transitions: {{found: use, missing: bad}}, timeout: {{after: 1 s, to: use}}}}
           use: {USE}, transitions: {{done: good}}}}
     """
-    assert said_of(text) == ["maybe-undefined-key root/use"]
+    assert code_paths(text) == ["maybe-undefined-key root/use"]
 
 
 def test_an_unknown_state_may_write_anything() -> None:
@@ -280,7 +280,7 @@ def test_an_unknown_state_may_write_anything() -> None:
           read: {{state: camera.Find, transitions: {{done: use}}}}
           use: {USE}, transitions: {{done: good}}}}
     """
-    assert said_of(text) == ["unknown-state root/read"]
+    assert code_paths(text) == ["unknown-state root/read"]
 
 
 def test_a_reference_gives_back_only_what_out_names(tmp_path: Path) -> None:

@@ -118,7 +118,7 @@ def test_cells_and_entries_are_checked_as_documents_of_their_own(tmp_path: Path)
     said = flexcell("check", "cell.yaml", "e.yaml", "b.yaml", cwd=tmp_path)
     assert (said.code, said.out) == (
         2,
-        "cell.yaml:4:24: error: no robot model is called pandda (did you mean panda?) [unknown-model]\n",
+        "cell.yaml:4:24: error: there is no robot model `pandda` (did you mean panda?) [unknown-model]\n",
     )
     said = flexcell("check", "e.yaml", "b.yaml", "--cell", "cell.yaml", cwd=tmp_path)
     assert [line.partition(": ")[2] for line in said.out.splitlines()] == [

@@ -92,9 +92,9 @@ def test_what_a_person_must_choose_is_left_and_named(file: Path) -> None:
     said = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert (said.code, file.read_text(encoding="utf-8")) == (2, UNDECIDED)
     assert "x.yaml:10:7: not fixed, to choose: Connect `false` to" in said.out
-    assert ": error: outcome `false` of `wait` leads nowhere" in said.out
+    assert ": error: outcome `false` of `wait` is not connected" in said.out
     likely = flexcell("check", "x.yaml", "--fix-likely", cwd=file.parent)
-    assert (likely.code, "fixed: outcome `false` of `wait` leads nowhere: Connect `false` to" in likely.out) == (
+    assert (likely.code, "fixed: outcome `false` of `wait` is not connected: Connect `false` to" in likely.out) == (
         0,
         True,
     )

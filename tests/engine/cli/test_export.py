@@ -63,8 +63,12 @@ def test_the_same_behavior_runs_from_python_and_from_yaml(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "name", "message"),
     [
-        ("export", "cell_work.py", "this file makes rest, work, wrong (name one: cell_work.py:NAME)"),
-        ("export", "cell_work.py:wrk", "this file makes no behavior named `wrk`"),
+        (
+            "export",
+            "cell_work.py",
+            "this file has several behaviors: rest, work, wrong (select one: cell_work.py:NAME)",
+        ),
+        ("export", "cell_work.py:wrk", "this file has no behavior named `wrk`"),
         ("export", "cell_work.yaml", "this is no Python file (give FILE.py:NAME)"),
         ("export", "cell_work.py:wrong", "cell_work.py:13:38: error:"),
         ("run", "cell_work.py:wrong", "cell_work.py:13:38: error:"),

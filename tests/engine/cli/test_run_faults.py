@@ -84,5 +84,5 @@ def test_a_bad_fault_document_is_exit_code_2(folder: Path) -> None:
     """Nothing is started; the line says where and what to do."""
     said = _run(folder, "- {at: root, hang: {}, late: 1 s}")
     assert (said.code, said.err) == (
-        2, "flexcell: faults.yaml:3:14: this fault is `late` and `hang` at once (make it two faults)\n",
+        2, "flexcell: faults.yaml:3:14: this fault has both `late` and `hang` (split it into two faults)\n",
     )  # fmt: skip

@@ -48,23 +48,23 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     ),
     "unknown world": ("kind: mujoco", "kind: gazebo", "gazebo", "'gazebo'"),
     "unknown store": ("kind: sqlite", "kind: mongo", "mongo", "'mongo'"),
-    "no world": ("world: {kind: mujoco}\n", "", "left", "robot `left` is simulated, and the cell has no world"),
+    "no world": ("world: {kind: mujoco}\n", "", "left", "robot `left` is simulated, but the cell has no world"),
     "capital in a name": ("left:", "Left:", "Left", "Lower-case letters"),
     "unknown driver word": ("model: panda,", "model: panda, driver: real,", "real", "known: sim"),
     "driver without kind": ("model: panda,", "model: panda, driver: {host: x},", "{host", "has no `kind`"),
     "color word": ('"#aabbcc"', "red", "red", "#rrggbb"),
-    "person named as a robot": ("anna:", "left:", "left", "`left` is a person and a robot"),
-    "person named as a part": ("anna:", "can:", "can", "`can` is a person and a part"),
-    "person named as a fixture": ("anna:", "table:", "table", "`table` is a person and a fixture"),
+    "person named as a robot": ("anna:", "left:", "left", "`left` is both a person and a robot"),
+    "person named as a part": ("anna:", "can:", "can", "`can` is both a person and a part"),
+    "person named as a fixture": ("anna:", "table:", "table", "`table` is both a person and a fixture"),
     "hand out of reach": (
         "[0, -0.6, 0.1]",
         "[0, -0.1, 0.1]",
         "[0, -0.1",
-        "0.762 m from the shoulder (it reaches 0.050",
+        "0.762 m from the shoulder (its reach is 0.050",
     ),
     "hand in the shoulder": ("[0, -0.6, 0.1]", "[0, -0.8, 0.41]", "[0, -0.8", "cannot rest 0.010 m"),
-    "same name twice": ("can:", "table:", "table", "`table` is a fixture and a part"),
-    "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not run `modules`"),
+    "same name twice": ("can:", "table:", "table", "`table` is both a fixture and a part"),
+    "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not support `modules`"),
 }
 
 
@@ -116,7 +116,7 @@ def test_a_store_may_be_on_a_server(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("store", "says"),
     [
-        ("{kind: mongodb, uri: 'mongodb://cell:secret@db'}", "the address of the store has a password in it"),
+        ("{kind: mongodb, uri: 'mongodb://cell:secret@db'}", "the `uri` of the store contains a password"),
         ("{kind: mongodb, uri: 'http://db'}", "uri"),
         ("{kind: mongodb, uri: 'mongodb://db', database: 'a b'}", "database"),
         ("{kind: mongo, uri: 'mongodb://db'}", "kind"),
@@ -168,5 +168,5 @@ def test_a_person_needs_a_world(tmp_path: Path) -> None:
     file.write_text(
         "flexcell: 1\ncell: a\npeople:\n  anna: {shoulder: [0, 0, 0], hand_rests: [0, 0, 0.3]}\n", encoding="utf-8"
     )
-    with pytest.raises(DocumentError, match="person `anna` is simulated, and the cell has no world"):
+    with pytest.raises(DocumentError, match="person `anna` is simulated, but the cell has no world"):
         load_cell(file)

@@ -47,7 +47,7 @@ def steps(text: str, variables: Mapping[str, object]) -> float:
 )
 def test_what_may_take_too_long_with_these_values_is_refused(text: str, variables: Mapping[str, object]) -> None:
     """Nested searches, nested and chained maps, doubling, patterns, and plainly large values."""
-    with pytest.raises(ExpressionError, match=r"steps|holds more than") as refusal:
+    with pytest.raises(ExpressionError, match=r"steps|contains more than") as refusal:
         compile_template(text).evaluate(variables)
     assert "state" in str(refusal.value)
 

@@ -31,16 +31,16 @@ def test_a_document_says_what_goes_wrong_where_and_when(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("fault", "message"),
     [
-        ("{at: root}", "3:3: this fault does not say what goes wrong (add one of `late`, `hang`"),
-        ("{late: 1, hang: {}}", "3:13: this fault is `late` and `hang` at once (make it two faults)"),
+        ("{at: root}", "3:3: this fault has no kind (add one of `late`, `hang`"),
+        ("{late: 1, hang: {}}", "3:13: this fault has both `late` and `hang` (split it into two faults)"),
         ("{late: 1 day}", "3:10: `late`: not in the allowed form"),
         ("{probability: 1.5, late: 1}", "`probability`: expected number <= 1.0 (Above 0, at most 1)"),
         ("{request: 0, late: 1}", "`request`: expected integer >= 1 (The n-th matching request of a state, from 1)"),
         ("{lost: both}", "`lost`: there is no choice 'both' (known: answer, request)"),
         ("{error: {by: abort}}", "the key `message` is missing"),
         ("{hang: {ignore: true}}", "unknown key `ignore` (did you mean ignore_cancel?)"),
-        ("{crash: {}}", "3:4: a crash has either `at_event` or `on_request` (give one of them)"),
-        ("{times: 2, crash: {at_event: 4}}", "3:4: `times` has no meaning beside `at_event` (remove `times`)"),
+        ("{crash: {}}", "3:4: a crash has either `at_event` or `on_request` (set one of them)"),
+        ("{times: 2, crash: {at_event: 4}}", "3:4: `times` has no effect with `at_event` (remove `times`)"),
     ],
 )
 def test_a_breach_is_reported_at_its_place(fault: str, message: str) -> None:

@@ -43,7 +43,7 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     "no repetition": ("times: 2", "times: 0", "0", "expected integer >= 1"),
     "mistyped key": ("times: 2", "tmes: 2", "tmes", "unknown key `tmes`"),
     "no kind": ("state: a.B, ", "", "left:", "this node has no kind"),
-    "two kinds": ("state: a.B", "state: a.B, behavior: b.yaml", "behavior", "`state`, `behavior` at once"),
+    "two kinds": ("state: a.B", "state: a.B, behavior: b.yaml", "behavior", "several kinds: `state`, `behavior`"),
     "slash in a name": ("left: {state", "le/ft: {state", "le/ft", "`le/ft`: not in the allowed form"),
     "two outcomes in a condition": (
         "done: {left: ok}",
@@ -62,7 +62,7 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "{done: {left: ok}}",
         "{preempt: [left]}",
         "preempt",
-        "a condition with `preempt` says when",
+        "a condition with `preempt` requires `when`",
     ),
     "preempt without names": (
         "{done: {left: ok}}",
@@ -81,7 +81,7 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "{done: {left: ok}}",
         "{done: [left]}",
         "done",
-        "`done`: a list, expected a mapping",
+        "`done`: expected a mapping, got a list",
     ),
     "number as outcome": ("ok}", "1}", "1}", "only `at_least` is a number"),
     "number that is no count": ("ok}", "ok, right: 2}", "2}", "only `at_least` is a number"),
@@ -89,13 +89,13 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     "count beyond the children": ("left: ok}", "left: ok, at_least: 2}", "2}", "there are only 1 children"),
     "no count": ("left: ok}", "left: ok, at_least: 0}", "0}", "expected integer >= 1"),
     "unknown parameter type": ("type: number", "type: float", "float", "there is no choice 'float'"),
-    "reserved parameter name": ("speed:", "in:", "in:", "`in` is a word of the expression language"),
+    "reserved parameter name": ("speed:", "in:", "in:", "`in` is a reserved word of the expression language"),
     "parameter and userdata": ("root:", "userdata: {speed: 1}\nroot:", "speed: 1}", "a parameter and a userdata key"),
     "a success outside a tree": (
         "retry: {times",
         "success: [done]\n        retry: {times",
         "success: [done]",
-        "`success` of a node stands only inside a tree",
+        "`success` of a node is only allowed inside a tree",
     ),
     "a guard without target": (
         "retry: {times",

@@ -1,4 +1,4 @@
-"""Every structural mistake of a document is told where it stands, and none hides the others."""
+"""Every structural mistake of a document is reported where it stands, and none hides the others."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def lines_of(mistakes: tuple[DocumentError, ...]) -> list[int]:
 
 @settings(deadline=None)
 @given(st.data())
-def test_as_many_mistakes_as_there_are_are_told_each_on_its_line_and_nothing_follows_from_them(
+def test_as_many_mistakes_as_there_are_are_reported_each_on_its_line_and_nothing_follows_from_them(
     data: st.DataObject,
 ) -> None:
     """In different nodes of a document that nothing else is wrong with."""
@@ -123,7 +123,7 @@ def test_the_check_goes_on_around_a_mistake() -> None:
 
 
 @pytest.mark.parametrize("key", ["root", "machine", "states", "parameters"])
-def test_a_mistyped_key_is_told_and_read_as_it_was_meant(key: str) -> None:
+def test_a_mistyped_key_is_reported_and_read_as_it_was_meant(key: str) -> None:
     """What stands below it is looked at, too."""
     text = behavior_of(["{state: test.Give, tarnsitions: {}, timeout: {after: soon, to: bad}}"])
     survey = survey_behavior(Path("x.yaml"), text.replace(f"{key}:", f"{key[:-1]}:", 1))
@@ -138,29 +138,32 @@ def test_the_places_below_a_mistyped_key_are_right() -> None:
     assert [(each.position.line, each.position.column) for each in findings] == [(10, 5), (11, 37)]
 
 
-def test_a_key_that_resembles_another_one_by_chance_is_only_told() -> None:
+def test_a_key_that_resembles_another_one_by_chance_is_only_reported() -> None:
     """What stands there is nothing that it could mean."""
     text = behavior_of(["{state: test.Give, outs: 5, transitions: {a: NEXT, b: bad, c: bad}}"])
     assert [each.message for each in survey_behavior(Path("x.yaml"), text).mistakes] == ["unknown key `outs`"]
 
 
 @pytest.mark.parametrize(
-    ("condition", "told"),
+    ("condition", "expected"),
     [
         ("{good: {at_least: 1}}", ["there are only 0 children in this condition"]),
-        ("{good: {one: 3}}", ["`one`: 3 is no outcome"]),
-        ("{good: {one: 3, at_least: 2}}", ["`one`: 3 is no outcome", "there are only 0 children in this condition"]),
-        ("{good: {one: 3, two: done}}", ["`one`: 3 is no outcome"]),
+        ("{good: {one: 3}}", ["`one`: 3 is not an outcome"]),
+        (
+            "{good: {one: 3, at_least: 2}}",
+            ["`one`: 3 is not an outcome", "there are only 0 children in this condition"],
+        ),
+        ("{good: {one: 3, two: done}}", ["`one`: 3 is not an outcome"]),
         ("{good: {one: a}}, {bad: {at_least: 1}}, {bad: {two: 1}}", ["there are only 0 children", "`two`: 1 is no"]),
-        ("{preempt: [one]}", ["a condition with `preempt` says when"]),
+        ("{preempt: [one]}", ["a condition with `preempt` requires `when`"]),
         ("{preempt: [one], good: {two: done}}", ["a condition decides an outcome or has `preempt`, not both"]),
-        ("{preempt: [one], when: {two: 3}}", ["`two`: 3 is no outcome"]),
+        ("{preempt: [one], when: {two: 3}}", ["`two`: 3 is not an outcome"]),
         ("{preempt: [one], when: {}}", ["`when`: expected mapping of length >= 1"]),
         ("{good: {one: a}, bad: {one: b}}, {preempt: [one, one], when: {two: done}}", ["one outcome", "is repeated"]),
     ],
 )
-def test_a_condition_of_which_nothing_is_left_is_left_out(condition: str, told: list[str]) -> None:
-    """Each mistake in it is told, and the check goes on around it."""
+def test_a_condition_of_which_nothing_is_left_is_left_out(condition: str, expected: list[str]) -> None:
+    """Each mistake in it is reported, and the check goes on around it."""
     text = f"""flexcell: 1
 name: many
 outcomes: [good, bad]
@@ -173,10 +176,10 @@ root:
 """
     survey = survey_behavior("many.yaml", text)
     findings = [each.message for each in check_survey(survey, "many.yaml", CATALOGUE)]
-    for message in told:
+    for message in expected:
         assert any(message in each for each in findings), findings
     assert "there is no state `test.Wrote`" in findings
-    assert len(findings) == len(told) + 1
+    assert len(findings) == len(expected) + 1
 
 
 def test_a_run_is_refused_with_the_first_and_knows_the_others() -> None:
@@ -189,7 +192,7 @@ def test_a_run_is_refused_with_the_first_and_knows_the_others() -> None:
     assert [each.message for each in refusal.value.others] == ["`s1`: expected mapping, got integer"]
 
 
-def test_the_mistakes_of_behaviors_that_are_referred_to_are_told_in_their_files(tmp_path: Path) -> None:
+def test_the_mistakes_of_behaviors_that_are_referred_to_are_reported_in_their_files(tmp_path: Path) -> None:
     """Missing and unreadable files among them, each once."""
     reference = "{behavior: NAME.yaml, transitions: {good: NEXT, bad: bad}}"
     names = ["inner", "inner", "none", "torn"]
@@ -207,7 +210,7 @@ def test_the_mistakes_of_behaviors_that_are_referred_to_are_told_in_their_files(
         load_behavior(outer)
 
 
-def test_of_another_version_only_that_is_told() -> None:
+def test_of_another_version_only_that_is_reported() -> None:
     text = behavior_of(["5"]).replace("flexcell: 1", "flexcell: 2")
     assert [each.message for each in survey_behavior(Path("x.yaml"), text).mistakes] == [
         "`flexcell`: there is no choice 2"
@@ -218,7 +221,7 @@ def test_of_another_version_only_that_is_told() -> None:
     "node", ["5", "{}", "{state: test.Give, x: 1}", "{sequence: [{state: test.Give}]}", "{machine: {states: {a: 5}}}"]
 )
 def test_ten_thousand_mistakes_are_bounded(node: str) -> None:
-    """Some of them are told, in a time that does not depend on how many there are."""
+    """Some of them are reported, in a time that does not depend on how many there are."""
     text = behavior_of([node] * 10_000)
     began_s = time.process_time()
     survey = survey_behavior(Path("x.yaml"), text)

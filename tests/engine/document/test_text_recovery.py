@@ -33,7 +33,7 @@ SLIPS: tuple[Callable[[str], str], ...] = (
 
 @settings(deadline=None)
 @given(st.data())
-def test_each_line_that_cannot_be_read_is_told_and_nothing_follows_from_it(data: st.DataObject) -> None:
+def test_each_line_that_cannot_be_read_is_reported_and_nothing_follows_from_it(data: st.DataObject) -> None:
     """What is wrong may only show on the next line."""
     nodes = data.draw(st.lists(st.sampled_from(KINDS), min_size=1, max_size=6))
     wrong = data.draw(st.sets(st.integers(0, len(nodes) - 1), min_size=1))
@@ -47,7 +47,7 @@ def test_each_line_that_cannot_be_read_is_told_and_nothing_follows_from_it(data:
     assert [str(each) for each in findings if each.code != "invalid-document"] == []
 
 
-def test_what_else_is_wrong_is_told() -> None:
+def test_what_else_is_wrong_is_reported() -> None:
     """With the structural mistakes, in the order of the file."""
     text = behavior_of(
         [
@@ -72,7 +72,7 @@ def test_a_block_goes_with_its_line() -> None:
         "        with:\n          outcome: a\n        with:\n          outcome: b\n        transitions",
     )
     recovered = recover_text(torn, file="x.yaml")
-    assert [each.message for each in recovered.mistakes] == ["the key `with` is repeated; it is first on line 13"]
+    assert [each.message for each in recovered.mistakes] == ["the key `with` is repeated; it first occurs on line 13"]
     assert recovered.gaps == (("root", "machine", "states", "s0"),)
     survey = survey_behavior(Path("x.yaml"), torn)
     assert lines_of(survey.mistakes) == [15]
@@ -89,7 +89,7 @@ def test_where_nothing_is_left_the_mistakes_are_all_there_is(text: str) -> None:
 
 @settings(deadline=None, max_examples=200)
 @given(st.text(st.sampled_from("ab:-{}[]'\"*&!|>#%@ \n\t,?0")), st.integers(0, 400))
-def test_any_text_put_anywhere_is_told_and_never_raises(text: str, at: int) -> None:
+def test_any_text_put_anywhere_is_reported_and_never_raises(text: str, at: int) -> None:
     whole = behavior_of(list(KINDS))
     place = min(at, len(whole))
     survey = survey_behavior(Path("x.yaml"), whole[:place] + text + whole[place:])

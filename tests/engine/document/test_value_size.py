@@ -52,11 +52,11 @@ def test_weight_counts_values_and_text() -> None:
 @pytest.mark.parametrize(
     ("value", "says"),
     [
-        ([0] * (MAX_WEIGHT + 1), "holds more than"),
-        ([[0] * 1_000] * 1_000, "holds more than"),
-        ("x" * 100 * MAX_WEIGHT, "holds more than"),
-        (object(), "no document value"),
-        ([object()], "no document value"),
+        ([0] * (MAX_WEIGHT + 1), "contains more than"),
+        ([[0] * 1_000] * 1_000, "contains more than"),
+        ("x" * 100 * MAX_WEIGHT, "contains more than"),
+        (object(), "not a document value"),
+        ([object()], "not a document value"),
     ],
 )
 def test_what_is_too_large_or_no_value_of_a_document_is_refused(value: object, says: str) -> None:

@@ -61,7 +61,7 @@ def test_what_a_person_must_choose_is_left_with_the_choices(text: str) -> None:
     made = repaired(text)
     assert (made.text, made.fixed) == (text, ())
     titles = {finding.message: [fix.title for fix in fixes] for finding, fixes in made.left}
-    assert len(titles["outcome `b` of `first` leads nowhere"]) > 1
+    assert len(titles["outcome `b` of `first` is not connected"]) > 1
 
 
 def test_an_outcome_called_like_one_that_leads_out_is_connected_to_it() -> None:

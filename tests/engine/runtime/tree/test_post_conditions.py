@@ -95,5 +95,5 @@ def test_a_value_that_cannot_be_had_is_an_error_of_the_part() -> None:
 def test_post_conditions_stand_in_trees_only() -> None:
     """Elsewhere a transition leads to a state that writes."""
     state = "{state: test.Act, post: {always: {x: 1}}, transitions: {yes: x, no: x}}"
-    with pytest.raises(DocumentError, match="`post` of a node stands only inside a tree"):
+    with pytest.raises(DocumentError, match="`post` of a node is only allowed inside a tree"):
         tree_plan(f"machine: {{initial: a, states: {{a: {state}}}}}")

@@ -82,8 +82,8 @@ def test_in_a_loop_it_counts_anew() -> None:
     [
         ("success_count: 3", "there are only 2 children"),
         ("failure_count: 3", "there are only 2 children"),
-        ("success_count: 1, policy: one", "`policy` does not go with thresholds"),
-        ("success_count: 1, synchronise: false", "`synchronise` does not go with thresholds"),
+        ("success_count: 1, policy: one", "`policy` cannot be combined with thresholds"),
+        ("success_count: 1, synchronise: false", "`synchronise` cannot be combined with thresholds"),
         ("success_count: 0", "success_count"),
     ],
 )
