@@ -1,4 +1,4 @@
-"""CartAdmitDMP: a Cartesian primitive followed while pressing as wanted, and what a pass has learned (RCL 4.3.7)."""
+"""CartAdmitDMP: follows a Cartesian primitive with a desired force and learns the offsets of each pass (RCL 4.3.7)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Errors:
 
 
 class ForceMotions:
-    """Answers CartAdmitDMP."""
+    """Serves CartAdmitDMP."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -92,7 +92,7 @@ class ForceMotions:
 
 
 def learned_offsets(goal: CartAdmitDMP, task: ForceTask, record: ForceRecord) -> CartOffsets:
-    """Return what the next pass adds: the whole offset of this one over the phase, in the kernels that are wanted."""
+    """Return the offsets for the next pass: the total offset of this pass over the phase, in the requested kernels."""
     duration_s = task.trajectory.duration_s
     phase = phase_at(record.shares() * duration_s / goal.dmp.tau, goal.dmp.a_x)
     given = _given(goal)
@@ -102,7 +102,7 @@ def learned_offsets(goal: CartAdmitDMP, task: ForceTask, record: ForceRecord) ->
 
 
 def force_errors(task: ForceTask, record: ForceRecord) -> _Errors:
-    """Return how far the force was from the wanted one along the active axes, over the record."""
+    """Return the deviation from the desired force along the active axes, over the record."""
     axes = [axis for axis in range(3) if task.admittance.active[axis] > 0.0]
     if not axes or len(record.shares()) == 0:
         return _Errors(rms_n=0.0, max_n=0.0)

@@ -1,4 +1,4 @@
-"""Carries out a planned trajectory as the goal of a skill, with the feedback and result that its kind gives."""
+"""Executes a planned trajectory as the goal of a joint or tool motion skill, with its feedback and result."""
 
 from __future__ import annotations
 
@@ -56,5 +56,5 @@ async def follow_tool(
 
 
 def publish_pose_feedback(runner: MotionRunner, handle: ActiveGoal[CartMotionFeedback], motion: Motion) -> None:
-    """Give feedback: the measured pose of the tool and how far the motion is."""
+    """Publish feedback: the measured pose of the tool and the progress of the motion."""
     handle.feedback(CartMotionFeedback(pose=runner.measured_pose(), progress=motion.progress))
