@@ -27,8 +27,8 @@ class ArmStatusPublisher:
         self._topic = bus.topic(f"{name}/status", ArmStatus)
         self._topic.provide(self.now)
         bus.advertise_service(ReadArm, self._read, namespace=name)
-        self._runner.changed = self.tell
-        self.tell()
+        self._runner.changed = self.publish
+        self.publish()
 
     def now(self) -> ArmStatus:
         """Return the current status."""
@@ -44,7 +44,7 @@ class ArmStatusPublisher:
             wrench=to_wrench(sample.wrench if sample is not None else np.zeros(6)),
         )
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish the status if it differs from the last published one."""
         runner = self._runner
         key = (runner.mode, runner.activity, self._error(), runner.port.settings)

@@ -66,18 +66,21 @@ class ForceMotions:
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
 
-        def tell(motion: Motion) -> None:
+        def publish_feedback(motion: Motion) -> None:
             wrench = to_wrench(runner.port.sample().wrench)
             handle.feedback(CartAdmitFeedback(wrench=wrench, pose=runner.measured_pose(), progress=motion.progress))
 
-        def left(duration_s: float) -> CartAdmitResult:
+        def failed_result(duration_s: float) -> CartAdmitResult:
             pose = runner.measured_pose()
             return CartAdmitResult(
                 offsets=None, pose=pose, force_error_rms_n=0.0, force_error_max_n=0.0, duration_s=duration_s
             )
 
         ended = await runner.carry_out(
-            lambda: runner.port.track_force(task, tolerance=runner.tolerance), handle, tell, left=left
+            lambda: runner.port.track_force(task, tolerance=runner.tolerance),
+            handle,
+            publish_feedback,
+            failed_result=failed_result,
         )
         record = ForceRecord.from_bytes(ended.report.data) if ended.report.data else None
         passed = record is not None and len(record.shares()) > 0 and not handle.cancel_requested

@@ -124,7 +124,10 @@ class FreeMotions:
                 return motion
 
             ended = await runner.carry_out(
-                start, handle, lambda motion: handle.feedback(self._feedback(motion.phase, motion)), left=shown.result
+                start,
+                handle,
+                lambda motion: handle.feedback(self._feedback(motion.phase, motion)),
+                failed_result=shown.result,
             )
             return shown.result(ended.duration_s)
         finally:
@@ -230,11 +233,11 @@ class _MotionDisplay:
 
     def __init__(
         self,
-        tell: Callable[[MotionPhase, AdaptiveMotion | None], None],
+        publish: Callable[[MotionPhase, AdaptiveMotion | None], None],
         runner: MotionRunner,
         preview: PathPreviewPublisher,
     ) -> None:
-        self._tell = tell
+        self._publish = publish
         self._runner = runner
         self._preview = preview
         self.motion: AdaptiveMotion | None = None
@@ -245,7 +248,7 @@ class _MotionDisplay:
             self._preview.mark("moving")
         elif phase != "planning":
             self._preview.mark("blocked", reason)
-        self._tell(phase, self.motion)
+        self._publish(phase, self.motion)
 
     def follows(self, leg: PathSegment) -> None:
         """Show the path."""

@@ -58,7 +58,7 @@ class GuidingMotions:
                 sampling.append(asyncio.create_task(demonstration.run(), name=f"demonstration on {runner.name}"))
             return stream
 
-        def tell(stream: MotionStream) -> None:
+        def publish_feedback(stream: MotionStream) -> None:
             countdown[0].look()
             if demonstration.full:
                 stream.finish()
@@ -67,7 +67,7 @@ class GuidingMotions:
             )
 
         try:
-            ended = await runner.carry_out(start, handle, tell, mode="guiding")
+            ended = await runner.carry_out(start, handle, publish_feedback, mode="guiding")
         finally:
             self._stream = None
             for count in countdown:

@@ -71,7 +71,7 @@ class JogMotions:
         runner = self._runner
         guard = self._guard(goal.scene, lambda commanded, _: commanded)
 
-        def tell() -> None:
+        def publish_feedback() -> None:
             handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
 
         width = runner.model.dof
@@ -84,14 +84,14 @@ class JogMotions:
             to_command=lambda commanded: commanded,
             guard=guard,
         )
-        ended = await self._jog("joint_velocity", run, guard, handle, tell)
+        ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
 
     async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[ToolJogFeedback]) -> CartMotionResult:
         runner = self._runner
         guard = self._guard(goal.scene, self._joint_velocity)
 
-        def tell() -> None:
+        def publish_feedback() -> None:
             handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
 
         def to_command(velocity: Row) -> Row:
@@ -99,7 +99,7 @@ class JogMotions:
             return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
 
         run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
-        ended = await self._jog("tool_twist", run, guard, handle, tell)
+        ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
 
     def _guard(self, rule: JogCollisionOptions, to_joints: ToJoints) -> JogGuard | None:
@@ -118,7 +118,7 @@ class JogMotions:
         run: JogRun,
         guard: JogGuard | None,
         handle: ActiveGoal[Any],
-        tell: Callable[[], None],
+        publish_feedback: Callable[[], None],
     ) -> MotionCompletion:
         runner = self._runner
         runner.require_ready(handle)
@@ -131,7 +131,7 @@ class JogMotions:
 
             def look(_stream: object) -> None:
                 run.look()
-                tell()
+                publish_feedback()
 
             self._run = run
             try:

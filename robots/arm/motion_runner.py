@@ -239,15 +239,15 @@ class MotionRunner:
         self,
         start: Callable[[], M],
         handle: ActiveGoal[Any],
-        tell: Callable[[M], None],
+        publish_feedback: Callable[[M], None],
         *,
         words: str = "the arm",
         mode: ArmMode = "moving",
-        left: Callable[[float], object] | None = None,
+        failed_result: Callable[[float], object] | None = None,
     ) -> MotionCompletion:
         """Start a motion and return its completion; also returns for a canceled goal, with the arm at rest.
 
-        `left` creates the result of a failed motion from its duration in seconds: where it left the arm.
+        `failed_result` creates the result of a failed motion, with where it left the arm, from its duration in seconds.
 
         Raises:
             SkillFailed: the motion could not be started, failed, or was stopped by another command.
@@ -260,11 +260,11 @@ class MotionRunner:
         self.error = ""
         self._begin(motion, mode, handle.address.rpartition("/")[2])
         try:
-            await supervise_goal(motion, handle, tell=lambda: tell(motion), device=self.name, words=words)
+            await supervise_goal(motion, handle, tell=lambda: publish_feedback(motion), device=self.name, words=words)
         except (SkillFailed, RobotError) as error:
             self.error = describe_cause(cause_of(error))
-            if left is not None and isinstance(error, SkillFailed):
-                error.result = left(self.clock.now_s() - started_s)
+            if failed_result is not None and isinstance(error, SkillFailed):
+                error.result = failed_result(self.clock.now_s() - started_s)
             raise
         finally:
             self._end()
