@@ -34,33 +34,33 @@ class AdaptiveMotion:
     from there, else tries again after the next change. A hold persists through all of that; a cancel ends it.
 
     Args:
-        leg: The first path, which starts at the set point; or the reason why there is none yet: the motion then
+        segment: The first path, which starts at the set point; or the reason why there is none yet: the motion then
             starts by waiting.
         runner: The arm's motion runner.
-        finder: Plans and checks paths.
+        planner: Plans and checks paths.
         workspace: Notifies of scene changes.
         adaptation: Whether to monitor the path, and how long to wait.
-        shown: The listener of the motion.
+        listener: Notified of phase and path changes.
     """
 
     def __init__(
         self,
-        leg: PathSegment | str,
+        segment: PathSegment | str,
         *,
         runner: MotionRunner,
-        finder: PathPlanner,
+        planner: PathPlanner,
         workspace: Workspace,
         adaptation: Adaptation,
-        shown: AdaptiveMotionListener,
+        listener: AdaptiveMotionListener,
     ) -> None:
         self._runner = runner
-        self._finder = finder
+        self._planner = planner
         self._workspace = workspace
-        self._monitor = PathMonitor(runner, finder, workspace)
+        self._monitor = PathMonitor(runner, planner, workspace)
         self._reservation = PathReservation(runner, workspace, made=adaptation.watch)
         self._waiting = BlockedPathPolicy(runner.clock, patience_s=adaptation.patience_s)
         self._adaptation = adaptation
-        self._shown = shown
+        self._listener = listener
         self._clock = runner.clock
         self._changed = asyncio.Event()
         self._phase_waiters: list[asyncio.Future[None]] = []
@@ -71,16 +71,16 @@ class AdaptiveMotion:
         self.tally = AdaptiveMotionReport()
         self.phase: MotionPhase = "moving"
         self.reason = ""
-        self._leg: PathSegment | None = None
+        self._segment: PathSegment | None = None
         self._inner: Motion | None = None
         self._end: asyncio.Future[MotionReport] | None = None
-        if isinstance(leg, PathSegment):
-            self._follow(leg)
+        if isinstance(segment, PathSegment):
+            self._follow(segment)
         else:
             self._halted, self.phase = True, "planning"
         self._unwatch = workspace.watch(self._notice) if adaptation.watch else _no_operation
         self._task = asyncio.create_task(
-            self._run("" if isinstance(leg, PathSegment) else leg), name=f"adaptive motion of {runner.name}"
+            self._run("" if isinstance(segment, PathSegment) else segment), name=f"adaptive motion of {runner.name}"
         )
 
     @property
@@ -159,10 +159,10 @@ class AdaptiveMotion:
 
     async def _pass(self) -> str | None:
         """Follow the path; return None when the motion has ended, or why it was stopped."""
-        inner, end, leg = self._inner, self._end, self._leg
+        inner, end, segment = self._inner, self._end, self._segment
         assert inner is not None
         assert end is not None
-        assert leg is not None
+        assert segment is not None
         self._enter("moving", "")
         self._reservation.update(self._passed_s)
         while not end.done():
@@ -176,7 +176,7 @@ class AdaptiveMotion:
             if not self._adaptation.watch:
                 continue
             try:
-                collision = await self._answer(self._monitor.ahead(leg, from_s=self._passed_s))
+                collision = await self._answer(self._monitor.ahead(segment, from_s=self._passed_s))
             except QuerySuperseded:
                 continue
             if collision is not None and not end.done():
@@ -280,8 +280,8 @@ class AdaptiveMotion:
                 if beside := await self._answer(monitor.beside()):
                     return beside
                 blocked = "no path found yet"
-                if self._inner is not None and self._leg is not None:
-                    blocked = await self._answer(monitor.rest_of(self._leg, from_s=self._passed_s))
+                if self._inner is not None and self._segment is not None:
+                    blocked = await self._answer(monitor.rest_of(self._segment, from_s=self._passed_s))
                 if not blocked:
                     return await self._resume(reused=reused)
                 if waiting.may_search:
@@ -300,7 +300,7 @@ class AdaptiveMotion:
     def _begin_search(self) -> asyncio.Future[PathSegment | PlanRefusal]:
         self._attempts += 1
         start = self._runner.port.sample().desired_rad
-        return asyncio.ensure_future(self._finder.find(start, attempt=self._attempts - 1))
+        return asyncio.ensure_future(self._planner.find(start, attempt=self._attempts - 1))
 
     async def _follow_new_path(self, blocked: str, search: asyncio.Future[PathSegment | PlanRefusal]) -> str:
         """Follow a new path from here once it is planned; return the reason of a failure, empty on success."""
@@ -321,7 +321,7 @@ class AdaptiveMotion:
         self._inner = self._end = None
         if self._held or self._cancelled:
             return f"; {_HELD}"
-        if self._leg is not None:
+        if self._segment is not None:
             self.tally.replans += 1
             _log.info("%s follows a new path", self._runner.name)
         self._follow(segment)
@@ -344,15 +344,15 @@ class AdaptiveMotion:
         ends = () if self._end is None else (self._end,)
         return await await_answer(question, unless=(self._cancelling, *ends))
 
-    def _follow(self, leg: PathSegment) -> None:
+    def _follow(self, segment: PathSegment) -> None:
         """Start to follow a path; raises RobotError if the arm rejects it."""
         runner = self._runner
-        self._inner = inner = runner.port.follow(leg.trajectory, tolerance=runner.tolerance)
+        self._inner = inner = runner.port.follow(segment.trajectory, tolerance=runner.tolerance)
         self._end = asyncio.ensure_future(inner.report())
-        self._leg, self._halted = leg, False
+        self._segment, self._halted = segment, False
         self._detected_late = self._replan_failure = ""
-        self._reservation.renew(leg.trajectory)
-        self._shown.follows(leg)
+        self._reservation.renew(segment.trajectory)
+        self._listener.follows(segment)
 
     @property
     def _cancelled(self) -> bool:
@@ -361,7 +361,7 @@ class AdaptiveMotion:
     @property
     def _passed_s(self) -> float:
         """Elapsed time of the current path, in seconds of its own time."""
-        return self.progress * self._leg.trajectory.duration_s if self._leg is not None else 0.0
+        return self.progress * self._segment.trajectory.duration_s if self._segment is not None else 0.0
 
     async def _next_change(self, end: asyncio.Future[MotionReport] | None, *, timeout_s: float | None = None) -> None:
         """Return at the next change, when `end` is done, or after `timeout_s`."""
@@ -377,7 +377,7 @@ class AdaptiveMotion:
             if phase == "waiting" and reason != self.reason:
                 _log.info("%s waits: %s", self._runner.name, reason)
             self.phase, self.reason = phase, reason
-            self._shown.entered(phase, reason)
+            self._listener.entered(phase, reason)
         if phase in ("moving", "waiting"):
             self._checking = False
         waiters, self._phase_waiters = self._phase_waiters, []

@@ -26,6 +26,6 @@ class AdaptiveMotionListener(Protocol):
         """The motion has entered another phase."""
         ...
 
-    def follows(self, leg: PathSegment) -> None:
+    def follows(self, segment: PathSegment) -> None:
         """The motion follows this path from now on."""
         ...

@@ -64,10 +64,10 @@ class FreeMotions:
     async def _plan_motion(self, goal: PlanMotion, handle: ActiveGoal[PlanFeedback]) -> PlannedMotion:
         runner = self._runner
         start = self._joints(goal.start, handle) if goal.start else runner.port.sample().desired_rad
-        finder = self._finder(self._goal(goal.target, handle), goal.options)
+        planner = self._new_planner(self._goal(goal.target, handle), goal.options)
         handle.accept()
         began_s = runner.clock.now_s()
-        planning = asyncio.ensure_future(self._plan_observed(lambda: finder.find(np.array(start))))
+        planning = asyncio.ensure_future(self._plan_observed(lambda: planner.find(np.array(start))))
         try:
             while not (await asyncio.wait((planning,), timeout=FEEDBACK_S))[0]:
                 handle.feedback(PlanFeedback(elapsed_s=runner.clock.now_s() - began_s))
@@ -80,8 +80,8 @@ class FreeMotions:
         return self._planned(segment, goal.options, planning_s=runner.clock.now_s() - began_s)
 
     async def _move_free(self, goal: MoveFree, handle: ActiveGoal[FreeMotionFeedback]) -> FreeMotionResult:
-        finder = self._finder(self._goal(goal.target, handle), goal.options)
-        return await self._go(finder, finder, goal.adaptation, handle)
+        planner = self._new_planner(self._goal(goal.target, handle), goal.options)
+        return await self._go(planner, planner, goal.adaptation, handle)
 
     async def _execute_plan(self, goal: ExecutePlan, handle: ActiveGoal[FreeMotionFeedback]) -> FreeMotionResult:
         plan = goal.plan
@@ -99,8 +99,8 @@ class FreeMotions:
                 hint="plan again from the current joints",
             )
         options = msgspec.structs.replace(goal.options, speed=plan.speed)
-        onward = self._finder(JointGoal(joints_rad=(rows[-1],)), options)
-        first = self._finder(PathGoal(waypoints_rad=rows), options)
+        onward = self._new_planner(JointGoal(joints_rad=(rows[-1],)), options)
+        first = self._new_planner(PathGoal(waypoints_rad=rows), options)
         return await self._go(first, onward, goal.adaptation, handle)
 
     async def _go(
@@ -111,30 +111,30 @@ class FreeMotions:
         handle.feedback(self._feedback("planning"))
         workspace.require()
         try:
-            leg = await runner.planned(handle, lambda start: self._first_leg(first, onward, start, adaptation))
-            shown = _MotionDisplay(
+            segment = await runner.planned(handle, lambda start: self._first_segment(first, onward, start, adaptation))
+            display = _MotionDisplay(
                 lambda phase, motion: handle.feedback(self._feedback(phase, motion)), runner, self._preview
             )
 
             def start() -> AdaptiveMotion:
                 motion = AdaptiveMotion(
-                    leg, runner=runner, finder=onward, workspace=workspace, adaptation=adaptation, shown=shown
+                    segment, runner=runner, planner=onward, workspace=workspace, adaptation=adaptation, listener=display
                 )
-                shown.motion = motion
+                display.motion = motion
                 return motion
 
             ended = await runner.carry_out(
                 start,
                 handle,
                 lambda motion: handle.feedback(self._feedback(motion.phase, motion)),
-                failed_result=shown.result,
+                failed_result=display.result,
             )
-            return shown.result(ended.duration_s)
+            return display.result(ended.duration_s)
         finally:
             workspace.release()
             self._preview.clear()
 
-    async def _first_leg(
+    async def _first_segment(
         self, first: PathPlanner, onward: PathPlanner, start: Array, adaptation: Adaptation
     ) -> PathSegment | str:
         """Return a path that is free now, or the reason to wait for one.
@@ -144,14 +144,14 @@ class FreeMotions:
         """
         await self._workspace.ready()
         await self._workspace.fresh()
-        finder, reason = first, ""
+        planner, reason = first, ""
         patient = adaptation.watch and adaptation.patience_s > 0.0
         for _ in range(_TRIES):
-            segment = await finder.find(start)
+            segment = await planner.find(start)
             if isinstance(segment, PlanRefusal):
-                if finder is first and first is not onward and adaptation.watch:
+                if planner is first and first is not onward and adaptation.watch:
                     # A given plan that is blocked by now is handled like any other scene change.
-                    finder = onward
+                    planner = onward
                     continue
                 if patient and segment.reason in TRANSIENT_REASONS and not await onward.is_permanently_blocked(start):
                     return segment.message
@@ -162,7 +162,7 @@ class FreeMotions:
             if not adaptation.watch:
                 return segment
             # Asks the monitoring process, so that it is running when the arm moves.
-            check = await finder.check(segment, from_s=0.0, margin_m=finder.margin_m)
+            check = await planner.check(segment, from_s=0.0, margin_m=planner.margin_m)
             if check.blocked_at_s is None:
                 return segment
             reason = describe_contacts(check.pairs)
@@ -182,7 +182,7 @@ class FreeMotions:
         finally:
             self._workspace.release()
 
-    def _finder(self, goal: PlanningGoal, options: PlanOptions) -> PathPlanner:
+    def _new_planner(self, goal: PlanningGoal, options: PlanOptions) -> PathPlanner:
         settings = self._runner.port.settings
         at = (settings.tool_xyz_m, settings.tool_xyzw)
         tool = None if at == NO_FRAME else Pose(xyz=at[0], xyzw=at[1], frame="tool")
@@ -206,14 +206,14 @@ class FreeMotions:
             raise GoalRejected(f"the joints {joints} are not finite", where=handle.address)
         return row
 
-    def _planned(self, leg: PathSegment, options: PlanOptions, *, planning_s: float) -> PlannedMotion:
+    def _planned(self, segment: PathSegment, options: PlanOptions, *, planning_s: float) -> PlannedMotion:
         return PlannedMotion(
             robot=self._runner.name,
-            waypoints=leg.plan.waypoints_rad,
+            waypoints=segment.plan.waypoints_rad,
             speed=options.speed,
-            duration_s=leg.trajectory.duration_s,
-            tool_path=compute_tool_path(self._runner, sample_trajectory(leg.trajectory)),
-            found_by=leg.plan.stats.found_by,
+            duration_s=segment.trajectory.duration_s,
+            tool_path=compute_tool_path(self._runner, sample_trajectory(segment.trajectory)),
+            found_by=segment.plan.stats.found_by,
             planning_s=planning_s,
         )
 
@@ -250,9 +250,9 @@ class _MotionDisplay:
             self._preview.mark("blocked", reason)
         self._publish(phase, self.motion)
 
-    def follows(self, leg: PathSegment) -> None:
+    def follows(self, segment: PathSegment) -> None:
         """Show the path."""
-        self._preview.show(leg.trajectory, state="moving")
+        self._preview.show(segment.trajectory, state="moving")
 
     def result(self, duration_s: float) -> FreeMotionResult:
         """Return the arm's joints and the statistics of the motion."""

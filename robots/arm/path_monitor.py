@@ -31,9 +31,9 @@ class PredictedCollision:
 class PathMonitor:
     """Checks the paths of one arm for one goal."""
 
-    def __init__(self, runner: MotionRunner, finder: PathPlanner, workspace: Workspace) -> None:
+    def __init__(self, runner: MotionRunner, planner: PathPlanner, workspace: Workspace) -> None:
         self._runner = runner
-        self._finder = finder
+        self._planner = planner
         self._workspace = workspace
         self._changed_s: dict[str, float] = {}
 
@@ -48,13 +48,13 @@ class PathMonitor:
         stale = self._workspace.stale_reason
         return f"the occupancy map is not valid: {stale}" if stale else ""
 
-    async def ahead(self, leg: PathSegment, *, from_s: float) -> PredictedCollision | None:
+    async def ahead(self, segment: PathSegment, *, from_s: float) -> PredictedCollision | None:
         """Return the collision on the remaining path that the arm follows; None if it is free."""
-        return await self._predict(self._finder.check(leg, from_s=from_s, margin_m=self._finder.margin_m))
+        return await self._predict(self._planner.check(segment, from_s=from_s, margin_m=self._planner.margin_m))
 
-    async def along(self, leg: PathSegment) -> PredictedCollision | None:
+    async def along(self, segment: PathSegment) -> PredictedCollision | None:
         """Return the collision on a path that was just planned; None if it is free."""
-        return await self._predict(self._finder.confirm(leg))
+        return await self._predict(self._planner.confirm(segment))
 
     async def _predict(self, query: Coroutine[object, object, PathCheck]) -> PredictedCollision | None:
         if self.unobserved_reason:
@@ -75,13 +75,13 @@ class PathMonitor:
             return None
         return PredictedCollision(reason=describe_contacts(check.pairs), at_s=check.blocked_at_s)
 
-    async def rest_of(self, leg: PathSegment, *, from_s: float) -> str:
+    async def rest_of(self, segment: PathSegment, *, from_s: float) -> str:
         """Return why a resting arm cannot follow its remaining path with the planned margin; empty if it can.
 
         Raises:
             RobotError: the planning process has ended.
         """
-        check = await self._finder.check(leg, from_s=from_s, margin_m=leg.margin_m)
+        check = await self._planner.check(segment, from_s=from_s, margin_m=segment.margin_m)
         return "" if check.blocked_at_s is None else describe_contacts(check.pairs)
 
     async def beside(self) -> str:
@@ -90,7 +90,7 @@ class PathMonitor:
         recent = {name for name, at_s in self._changed_s.items() if now_s - at_s < _RECENT_S}
         if not recent:
             return ""
-        pairs = await self._finder.beside(self._runner.port.sample().position_rad, within_m=_APART_M)
+        pairs = await self._planner.beside(self._runner.port.sample().position_rad, within_m=_APART_M)
         for _, name in pairs:
             if name.partition("/")[0].partition("~")[0] in recent or name in recent:
                 return f"{describe_names(name)} moves within {_APART_M * 100:.0f} cm of the arm"

@@ -95,13 +95,13 @@ class PathPlanner:
             await self._ask(start, self._options.margin_m, self._options.time_s, 0, permanent=True), PlanRefusal
         )
 
-    async def check(self, leg: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
+    async def check(self, segment: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `find` does."""
-        return await self._workspace.planners.check_path(self._check_request(leg.way, from_s, margin_m))
+        return await self._workspace.planners.check_path(self._check_request(segment.way, from_s, margin_m))
 
-    async def confirm(self, leg: PathSegment) -> PathCheck:
+    async def confirm(self, segment: PathSegment) -> PathCheck:
         """Return where a path that was just planned is blocked in the current scene; raises as `find` does."""
-        return await self._workspace.planners.confirm_path(self._check_request(leg.way, 0.0, self.margin_m))
+        return await self._workspace.planners.confirm_path(self._check_request(segment.way, 0.0, self.margin_m))
 
     async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
         """Return the pairs within a distance of the arm at `joints` (n,); raises as `find` does."""

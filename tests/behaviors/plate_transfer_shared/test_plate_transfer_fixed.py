@@ -61,7 +61,7 @@ def test_an_obstacle_over_the_place_that_stays_is_the_reason_after_the_patience(
     )
     result = tried.run(tmp_path)
     assert result.outcome == "blocked"
-    assert "no way was free for 3 s: plate would touch crate" in causes(result)
+    assert "no path is free for 3 s: plate would touch crate" in causes(result)
     assert tried.last("plate").xyz[2] > 0.75
 
 

@@ -96,7 +96,7 @@ def test_a_hand_that_stays_over_the_place_is_waited_for_and_then_named(tmp_path:
     )
     result = waited.run(tmp_path)
     assert result.outcome == "blocked"
-    assert "no way was free for 4 s" in causes(result)
+    assert "no path is free for 4 s" in causes(result)
     assert "an obstacle seen by the cameras" in causes(result)
     assert waited.left[-3:] == [f"{TRANSFER} blocked", "root/carry blocked", "root blocked"]
     assert waited.last("plate").xyz[2] > 0.75
