@@ -1,4 +1,4 @@
-"""Robots, simulated and real: whatever answers skills on the bus."""
+"""Robots, simulated and real: devices that serve skills on the bus."""
 
-# First of all, so that the types of every module in here are made ready as it is imported.
+# Must be the first import: it prepares the types of every module of this package at import time.
 import engine  # noqa: F401  # pyright: ignore[reportUnusedImport]

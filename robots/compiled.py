@@ -1,6 +1,6 @@
-"""Compiles numeric functions to machine code on first import, kept in a cache where one can be written.
+"""Compiles numeric functions to machine code on first import and caches the result where a cache is writable.
 
-Import a module of compiled functions only where it is used: numba takes a third of a second.
+Import a module of compiled functions only where it is used: importing numba takes a third of a second.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 def _load_numba() -> Any:
-    """Return numba, loaded without scipy's linear algebra: a third of what it takes to load a compiled function.
+    """Return numba, loaded without scipy's linear algebra, which is a third of the load time of a compiled function.
 
-    numba asks for it before the first function, to know whether `np.correlate` and `np.convolve` may use BLAS.
-    Functions with `@`, `np.dot` or `np.linalg` load it when they are compiled, as ever.
+    numba loads it before the first function, to check whether `np.correlate` and `np.convolve` may use BLAS.
+    Functions with `@`, `np.dot` or `np.linalg` load it when they are compiled.
     """
     numba: Any = import_module("numba")
     algebra: Any = import_module("numba.np.linalg")
@@ -37,17 +37,17 @@ def _refuse_blas() -> None:
     raise ImportError("not needed yet")
 
 
-# numba ships no usable types for its decorators; the decorator below gives back the plain function's type.
+# numba ships no usable types for its decorators; the decorator below returns the plain function's type.
 _numba: Any = _load_numba()
 
 
 def compiled(*signatures: str) -> Callable[[_F], _F]:
-    """Return a decorator that compiles a function, which then runs without holding the interpreter lock.
+    """Return a decorator that compiles a function, which then runs without the global interpreter lock.
 
-    With `signatures` (numba's notation) it is compiled when its module is imported, so that no call is
-    slow; without, when another compiled function first needs it. Arithmetic keeps the order that is
-    written down, so that results repeat. Functions that call one another belong in one file: the cache
-    notices changes of a function's own file only.
+    With `signatures` (numba's notation) the function is compiled when its module is imported, so that no
+    call is slow; without, when another compiled function first needs it. Arithmetic keeps the order of the
+    source, so that results are reproducible. Functions that call one another belong in one file: the cache
+    detects changes of a function's own file only.
     """
 
     def decorate(function: _F) -> _F:

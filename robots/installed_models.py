@@ -1,4 +1,4 @@
-"""The models and planners that come with this package: the entry point `standard` of `flexcell.models`."""
+"""The built-in models and planners: the entry point `standard` of `flexcell.models`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robots.planning.planner_names import PLANNERS
 
 
 class InstalledModels:
-    """The built-in model folders, and those that a cell names by their path."""
+    """The built-in model folders and those that a cell references by path."""
 
     def robots(self) -> tuple[str, ...]:
         """Return the names of the built-in arms."""
@@ -27,7 +27,7 @@ class InstalledModels:
         return PLANNERS
 
     def summary(self, cell: Cell, robot: str) -> RobotSummary:
-        """Return what a robot of the cell offers; raises CellError or DocumentError where its model is wrong."""
+        """Return the capabilities of a robot of the cell; raises CellError or DocumentError for an invalid model."""
         model = model_of_entry(cell.document.robots[robot], cell.resolve)
         return RobotSummary(
             base_link=model.base_link,
@@ -38,8 +38,8 @@ class InstalledModels:
         )
 
     def drawn(self, cell: Cell) -> StaticCell:
-        """Return the cell as it is drawn, in which arms can be put to targets."""
-        # A check that has no target needs no collision library.
+        """Return the static cell, in which targets of the arms are checked for reachability."""
+        # A check without targets needs no collision library.
         from robots.planning.search.reachability import ReachabilityChecker
 
         return ReachabilityChecker(cell)

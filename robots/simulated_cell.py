@@ -1,4 +1,4 @@
-"""The world of a cell document with skill servers on its arms and grippers: the entry point `mujoco`."""
+"""The simulated world of a cell document with skill servers for its arms and grippers: the entry point `mujoco`."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from robots.workspace.world_snapshot import WorldPoseReader
 def new_world(
     cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None, new_stop_line: NewStopLine | None = None
 ) -> SimWorld:
-    """Return the simulated world of a cell, not yet open; its robots answer the motion and gripper skills.
+    """Return the simulated world of a cell, not yet open; its robots serve the motion and gripper skills.
 
-    In real time it takes STOP on a line of `new_stop_line`, where there is one.
+    In real time it receives STOP on a line of `new_stop_line`, if given.
 
     Raises:
         CellError: a model is unknown, or a size or gripper does not fit.
@@ -52,7 +52,7 @@ def new_world(
 
 
 def _live_scene(scene: SimScene, world: SimWorld) -> LiveScene:
-    # Coal is loaded by who needs a scene, not by every cell that is opened.
+    # Imported here, so that Coal is loaded only when a scene is needed, not by every cell that is opened.
     from robots.planning.scene.cell_planning_scene import planning_scene
 
     parts = tuple(part.name for part in scene.parts)
@@ -74,7 +74,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
 
 
 def _outputs(cell: Cell, world: SimWorld, name: str, model: RobotModel) -> OutputServices | None:
-    """Return the outputs of an arm that has some; raises CellError where the cell names one that it has not."""
+    """Return the outputs of an arm, None without any; raises CellError where the cell names a missing output."""
     uses = cell.document.robots[name].outputs
     for use, output in uses.items():
         if output >= model.digital_outputs:

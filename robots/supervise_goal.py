@@ -1,4 +1,4 @@
-"""Carries a goal through its motion: feedback on the way, hold, resume and cancel, and how the motion ended."""
+"""Supervises the motion of a goal: feedback, hold, resume, cancel and the result of the motion."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ FEEDBACK_S = 0.05
 async def supervise_goal(
     motion: Motion, handle: ActiveGoal[Any], *, tell: Callable[[], None], device: str, words: str
 ) -> None:
-    """Return once `motion` is over and its device at rest; so it is with a cancelled goal.
+    """Return once `motion` has ended and its device is at rest, also for a canceled goal.
 
-    `tell` gives feedback, also at the end; `device` is the bus name of what moves and `words` what people call it.
+    `tell` publishes feedback, also at the end; `device` is the bus name of the moving device and `words` its name
+    in messages.
 
     Raises:
-        SkillFailed: the device stopped by itself, or was stopped by somebody else than the goal's sender.
-        CancelledError: this task was cancelled; the device is at rest all the same.
+        SkillFailed: the device stopped by itself, or was stopped by a party other than the goal's sender.
+        CancelledError: this task was cancelled; the device is at rest nevertheless.
     """
     handle.on_cancel(motion.cancel)
     handle.on_hold(motion.hold)
@@ -35,14 +36,14 @@ async def supervise_goal(
     finally:
         await _at_rest(motion, report)
     tell()
-    _judge(report.result(), handle, device=device, words=words)
+    _check_report(report.result(), handle, device=device, words=words)
 
 
 async def _at_rest(motion: Motion, report: asyncio.Future[MotionReport]) -> None:
-    """Bring the motion to its end and wait for it, however often this task is cancelled meanwhile."""
+    """Cancel the motion and wait for its end, even if this task is cancelled repeatedly meanwhile."""
     cancelled: asyncio.CancelledError | None = None
     if not report.done():
-        # A device that takes no more commands is lost, and its report says so.
+        # A device that no longer takes commands is lost; its report gives the reason.
         with suppress(RobotError):
             motion.cancel()
     while not report.done():
@@ -54,9 +55,9 @@ async def _at_rest(motion: Motion, report: asyncio.Future[MotionReport]) -> None
         raise cancelled
 
 
-def _judge(report: MotionReport, handle: ActiveGoal[Any], *, device: str, words: str) -> None:
+def _check_report(report: MotionReport, handle: ActiveGoal[Any], *, device: str, words: str) -> None:
     if report.end is MotionEnd.FAILED:
         cause = RobotError(report.reason or "the port gives no reason", where=device)
         raise SkillFailed(f"{words} stopped before the goal", where=handle.address) from cause
     if report.end is MotionEnd.CANCELED and not handle.cancel_requested:
-        raise SkillFailed(f"{words} was told to stop", where=handle.address)
+        raise SkillFailed(f"{words} was stopped by another command", where=handle.address)

@@ -1,4 +1,4 @@
-"""The server of the tool on a simulated arm: gripper, hand or magnet."""
+"""Creates the server of the tool on a simulated arm: gripper, hand or magnet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an adapting motion tells: what it took so far, what it does now, which way it goes."""
+"""Statistics of an adaptive motion, and the listener interface for its phases and paths."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robots.arm.path_planner import PathSegment
 
 @dataclass(kw_only=True)
 class AdaptiveMotionReport:
-    """What a motion took so far; `blocked` says why it was given up, if it was."""
+    """Statistics of a motion so far; `blocked` is the reason if it was given up, else empty."""
 
     stops: int = 0
     replans: int = 0
@@ -20,12 +20,12 @@ class AdaptiveMotionReport:
 
 
 class AdaptiveMotionListener(Protocol):
-    """Who is told what the motion does."""
+    """Receives phase and path changes of a motion."""
 
     def entered(self, phase: MotionPhase, reason: str) -> None:
-        """It does something else now."""
+        """The motion has entered another phase."""
         ...
 
-    def follows(self, leg: PathSegment) -> None:
-        """It goes this way from now on."""
+    def follows(self, segment: PathSegment) -> None:
+        """The motion follows this path from now on."""
         ...

@@ -24,14 +24,14 @@ from engine.skills.arm_control import (
 from robots.arm.arm_status import ArmStatusPublisher, to_control_settings
 from robots.arm.motion_runner import MotionRunner
 
-# How long a device may take to come out of its reflex, and how often that is looked at.
-_RECOVERY_S, _LOOK_S = 1.0, 0.01
+# Longest time a device may take to recover from its reflex, and the polling period.
+_RECOVERY_S, _POLL_S = 1.0, 0.01
 
 
 class ArmControlServices:
-    """Answers the control services by putting settings into force in the port.
+    """Serves the control services by applying settings to the port.
 
-    While a run holds the arm, all but the speed override and the recovery are refused to others.
+    While a run holds the lease on the arm, other clients may call only the speed override and the recovery.
     """
 
     def __init__(self, runner: MotionRunner, report: ArmStatusPublisher) -> None:
@@ -51,11 +51,11 @@ class ArmControlServices:
         bus.advertise_service(SetLoad, self._set_load, namespace=name, commands=name)
         bus.advertise_service(SetCollisionBehavior, self._set_collision_behavior, namespace=name, commands=name)
         bus.topic(f"{name}/speed_override", SpeedOverride).provide(self._speed)
-        self._tell_speed()
+        self._publish_speed()
 
     async def _set_speed_override(self, request: SetSpeedOverride) -> ControlSettings:
         settings = self._configure(speed_override=request.share)
-        self._tell_speed()
+        self._publish_speed()
         return settings
 
     async def _set_controller(self, request: SetController) -> ControlSettings:
@@ -77,9 +77,9 @@ class ArmControlServices:
         runner = self._runner
         if runner.busy:
             raise SkillFailed(
-                f"the arm is busy with {runner.activity or 'a goal'}, which means the present tool centre point",
+                f"the arm is busy with {runner.activity or 'a goal'}, which uses the current tool center point",
                 where=runner.name,
-                hint="set the frame when it has ended",
+                hint="set the frame after it has ended",
             )
         return self._configure(tool_xyz_m=request.xyz_m, tool_xyzw=request.xyzw)
 
@@ -101,7 +101,7 @@ class ArmControlServices:
         return self._report.now()
 
     async def _until_recovered(self) -> None:
-        """Return when the arm is measured without a reflex: a device may take a moment."""
+        """Return when the arm reports no reflex; a device may take some time."""
         runner = self._runner
         patience_s = runner.clock.now_s() + _RECOVERY_S
         while runner.port.sample().reflex:
@@ -109,12 +109,12 @@ class ArmControlServices:
                 raise SkillFailed(
                     f"the arm has not recovered within {_RECOVERY_S:g} s",
                     where=runner.name,
-                    hint="clear what pushes it, then try again",
+                    hint="remove the external load, then try again",
                 )
-            await runner.clock.sleep(_LOOK_S)
+            await runner.clock.sleep(_POLL_S)
 
     def _configure(self, **changes: Any) -> ControlSettings:
-        """Put changed settings into force; SkillFailed where the arm cannot have them."""
+        """Apply changed settings; raises SkillFailed where the arm rejects them."""
         runner = self._runner
         settings = msgspec.structs.replace(runner.port.settings, **changes)
         try:
@@ -124,7 +124,7 @@ class ArmControlServices:
         runner.changed()
         return to_control_settings(runner.port.settings)
 
-    def _tell_speed(self) -> None:
+    def _publish_speed(self) -> None:
         if self._bus is not None:
             self._bus.topic(f"{self._runner.name}/speed_override", SpeedOverride).publish(self._speed())
 

@@ -24,10 +24,10 @@ Loaded = Callable[[], Awaitable[None]]
 
 
 class ArmPlanner:
-    """Makes trajectories that start at a set point at rest; all of it raises RobotError with the reason.
+    """Plans trajectories that start at a set point at rest; every method raises RobotError with the reason.
 
-    One plan is made at a time; the arm's actions are exclusive, so none waits for another. Plans that need
-    inverse kinematics begin when `loaded` returns.
+    Computes one plan at a time; the arm's actions are exclusive, so none waits for another. Plans that need
+    inverse kinematics start when `loaded` returns.
     """
 
     def __init__(self, kinematics: ArmKinematics, *, clock: Clock, loaded: Loaded) -> None:
@@ -35,42 +35,42 @@ class ArmPlanner:
         self._inverse = InverseKinematicsSolver(kinematics)
         self._clock = clock
         self._loaded = loaded
-        # A plan whose goal was cancelled is not waited for, but its thread goes on using the kinematics.
-        self._alone = threading.Lock()
+        # Nobody waits for a plan whose goal was canceled, but its thread still uses the kinematics.
+        self._lock = threading.Lock()
 
     def prepare(self) -> None:
-        """Load what the first pose or line would otherwise wait for; see decision 0013 for how long that takes."""
+        """Load the modules that the first pose or line would otherwise wait for; decision 0013 gives the times."""
         self._inverse.prepare()
 
     async def to_joints(self, start: Array, goal: Array, *, speed: float) -> JointTrajectory:
         """Plan a joint motion to a configuration."""
-        return self._followable(await self._run(partial(self._to_joints, start, goal, speed)))
+        return self._checked(await self._run(partial(self._to_joints, start, goal, speed)))
 
     async def to_pose(
         self, start: Array, goal: RigidTransform, *, speed: float, match: PoseMatch = PoseMatch.POSE
     ) -> JointTrajectory:
-        """Plan a joint motion to the nearest configuration that puts the tool at `goal`, or what counts of it."""
+        """Plan a joint motion to the nearest configuration that brings the tool to the part of `goal` in `match`."""
         await self._loaded()
-        return self._followable(await self._run(partial(self._to_pose, start, goal, speed, match)))
+        return self._checked(await self._run(partial(self._to_pose, start, goal, speed, match)))
 
     async def along_line(self, start: Array, goal: RigidTransform, *, duration_s: float) -> JointTrajectory:
         """Plan a straight line of the tool to `goal` (world)."""
         await self._loaded()
         line = partial(plan_line, self._kinematics, start, goal, duration_s=duration_s)
-        return self._followable(await self._run(line))
+        return self._checked(await self._run(line))
 
     async def make(self, plan: Callable[[ArmKinematics], T]) -> T:
-        """Make another plan; only motions, of which one is planned at a time, may use the kinematics it is given."""
+        """Run a custom plan on the planner's kinematics; for motions only, of which one is planned at a time."""
         await self._loaded()
         made = await self._run(partial(plan, self._kinematics))
         if isinstance(made, JointTrajectory):
-            self._followable(made)
+            self._checked(made)
         elif isinstance(made, ForceTask):
-            self._followable(made.trajectory)
+            self._checked(made.trajectory)
         return made
 
-    def _followable(self, trajectory: JointTrajectory) -> JointTrajectory:
-        """Return what the robot's own controller would take, whose axes may be coupled; refuse the rest."""
+    def _checked(self, trajectory: JointTrajectory) -> JointTrajectory:
+        """Return the trajectory if the robot's own controller (possibly coupled axes) would accept it; else raise."""
         model = self._kinematics.model
         check_device_range(model.joint_map, model.arm_joints, trajectory)
         return trajectory
@@ -88,13 +88,13 @@ class ArmPlanner:
         return self._to_joints(start, joints, speed)
 
     async def _run(self, plan: Callable[[], T]) -> T:
-        # What overflows is refused in words by the checks of each plan; numpy need not warn of it.
+        # The checks of each plan reject overflow with a message; numpy warnings are redundant.
         with np.errstate(all="ignore"):
             if self._clock.virtual:
-                # A thread would let virtual time depend on how fast this machine plans.
+                # A thread would make virtual time depend on the planning speed of this machine.
                 return plan()
-            return await asyncio.to_thread(self._made_alone, plan)
+            return await asyncio.to_thread(self._plan_locked, plan)
 
-    def _made_alone(self, plan: Callable[[], T]) -> T:
-        with self._alone:
+    def _plan_locked(self, plan: Callable[[], T]) -> T:
+        with self._lock:
             return plan()

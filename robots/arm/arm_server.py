@@ -1,4 +1,4 @@
-"""One arm as a robot of the cell: answers the motion skills over an `ArmPort`, simulated or real."""
+"""One arm as a robot of the cell: serves the motion skills over an `ArmPort`, simulated or real."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from robots.workspace.workspace import Workspace
 
 
 class SkillGroup(Protocol):
-    """Some of an arm's skills; made once an arm, around its `MotionRunner`."""
+    """A group of an arm's skills; created once per arm, around its `MotionRunner`."""
 
     def register(self, bus: SkillBus) -> None:
         """Advertise them under the arm's name."""
@@ -44,19 +44,19 @@ class SkillGroup(Protocol):
 
 
 class ArmServer:
-    """Implements `engine.robot.Robot`; one motion goal at a time, the gripper on the arm beside it.
+    """Implements `engine.robot.Robot`; executes one motion goal at a time, the gripper in parallel.
 
     Args:
         name: Bus namespace and resource of the arm.
-        model: The kind of arm.
+        model: Model of the arm.
         base: Pose of the arm's base link in the world.
-        port: What moves it; connected by its owner before this robot is entered.
-        clock: Decides where plans are made.
+        port: Commands the arm; connected by its owner before this robot is entered.
+        clock: Virtual time plans inline, real time in a thread.
         gripper: The gripper, hand or magnet on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
-        tolerance: How closely the port must follow.
-        workspace: The space it shares with others; without one it has no collision-free motions, and
-            nothing is known of what it holds.
+        tolerance: Following tolerance of the port.
+        workspace: The workspace shared with other arms; without one the arm has no collision-free motions and
+            does not track attached parts.
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class ArmServer:
 
     @property
     def status(self) -> DeviceStatus:
-        """MOVING while a goal is carried out by arm or gripper."""
+        """MOVING while the arm or gripper executes a goal."""
         runner = self._runner
         fingers_move = self._gripper is not None and self._gripper.moving
         if runner.status is DeviceStatus.READY and (runner.moving or fingers_move):
@@ -122,7 +122,7 @@ class ArmServer:
             self._gripper.register(bus)
 
     def description(self) -> RobotDescription:
-        """Return what this arm is: limits, base and the URDF's text."""
+        """Return the description of this arm: limits, base pose and URDF text."""
         model, limits = self._runner.model, self._runner.model.limits
         return RobotDescription(
             name=self.name,
@@ -145,28 +145,28 @@ class ArmServer:
         )
 
     def grips(self) -> dict[str, GraspCommand]:
-        """What the gripper was told to grasp and hold, by its name; empty when nothing."""
+        """The grasp command that the gripper executes or holds, by the gripper's name; empty without one."""
         gripper = self._gripper
         return {} if gripper is None or gripper.grip is None else {gripper.name: gripper.grip}
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
-        """Judge by `grips` from now on whether the gripper holds what it was told to grasp."""
+        """Restore the grasp commands by which the gripper checks whether it holds its part."""
         if self._gripper is not None:
             self._gripper.grip = grips.get(self._gripper.name)
 
     def world_lost(self, reason: str) -> None:
-        """Take no goals, and say why."""
+        """Reject goals with this reason."""
         self._runner.lose(reason)
 
     def world_restored(self) -> None:
-        """Take goals again."""
+        """Accept goals again."""
         self._runner.find()
 
     async def stop(self) -> None:
-        """Cancel what arm and gripper do; return when the arm is measured at rest.
+        """Cancel the motions of arm and gripper; return when the arm is measured at rest.
 
         Raises:
-            RobotError: it still moves, or is out of reach.
+            RobotError: the arm still moves, or is not reachable.
         """
         runner = self._runner
         runner.brake()
@@ -174,7 +174,7 @@ class ArmServer:
             if self._gripper is not None:
                 await self._gripper.stop()
         finally:
-            # The arm brakes first and is waited for, whatever becomes of the fingers.
+            # The arm brakes first and is awaited, even if stopping the fingers fails.
             await runner.stop()
         if runner.status is not DeviceStatus.DISCONNECTED:
             await runner.confirm_rest()
@@ -190,7 +190,7 @@ class ArmServer:
             )
         runner.status = DeviceStatus.READY
         if not runner.clock.virtual:
-            # In virtual time nobody waits for a wall clock: what is needed is loaded when it is.
+            # In virtual time nobody waits for wall time, so modules load on first use.
             runner.loading.begin()
         return self
 
@@ -198,7 +198,7 @@ class ArmServer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            # What is out of reach was told when it was lost; there is nothing to bring to rest from here.
+            # The loss of an unreachable arm was reported when it happened; it cannot be stopped from here.
             if not self._runner.lost_reason:
                 await self.stop()
         finally:

@@ -1,4 +1,4 @@
-"""What an arm does and how it behaves, for who asks and on `<arm>/status` at every change."""
+"""Serves the status of an arm on request and publishes it on `<arm>/status` at every change."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from robots.port.wrench import to_wrench
 
 
 class ArmStatusPublisher:
-    """Answers ReadArm and publishes `<arm>/status`."""
+    """Serves ReadArm and publishes `<arm>/status`."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
         self._topic: Topic[ArmStatus] | None = None
-        self._told: tuple[object, ...] = ()
+        self._published: tuple[object, ...] = ()
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the service and the topic under the arm's name."""
@@ -27,11 +27,11 @@ class ArmStatusPublisher:
         self._topic = bus.topic(f"{name}/status", ArmStatus)
         self._topic.provide(self.now)
         bus.advertise_service(ReadArm, self._read, namespace=name)
-        self._runner.changed = self.tell
-        self.tell()
+        self._runner.changed = self.publish
+        self.publish()
 
     def now(self) -> ArmStatus:
-        """Return the present status."""
+        """Return the current status."""
         runner = self._runner
         connected = runner.mode != "disconnected"
         sample = runner.port.sample() if connected else None
@@ -44,20 +44,20 @@ class ArmStatusPublisher:
             wrench=to_wrench(sample.wrench if sample is not None else np.zeros(6)),
         )
 
-    def tell(self) -> None:
-        """Publish the status if it is another than the last one told."""
+    def publish(self) -> None:
+        """Publish the status if it differs from the last published one."""
         runner = self._runner
         key = (runner.mode, runner.activity, self._error(), runner.port.settings)
-        if self._topic is not None and key != self._told:
-            self._told = key
+        if self._topic is not None and key != self._published:
+            self._published = key
             self._topic.publish(self.now())
 
     def _error(self) -> str:
-        """Why the last motion failed, or why the arm has stopped by itself."""
+        """Return why the last motion failed, or why the arm stopped by itself."""
         runner = self._runner
         if runner.error or runner.mode != "reflex":
             return runner.error
-        # A restored arm has stopped in an earlier life, of which the runner knows nothing.
+        # A restored arm stopped before the restart, so the runner has no error.
         return runner.port.reflex_reason
 
     async def _read(self, request: ReadArm) -> ArmStatus:
@@ -65,5 +65,5 @@ class ArmStatusPublisher:
 
 
 def to_control_settings(settings: ArmSettings) -> ControlSettings:
-    """Return the settings of a port as the message that is published."""
+    """Convert the settings of a port to the published message."""
     return ControlSettings(**msgspec.structs.asdict(settings))

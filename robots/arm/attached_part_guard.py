@@ -1,4 +1,4 @@
-"""Asks of ways of one arm that nobody looked for whether what the arm holds would touch anything on them."""
+"""Checks unplanned trajectories of one arm for collisions of its attached parts."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from robots.workspace.workspace import Workspace
 
 
 class AttachedPartGuard:
-    """Checks ways of an arm, in the planning scene as it is when they begin.
+    """Checks trajectories of an arm in the planning scene at their start.
 
     Args:
-        arm: Its name.
-        workspace: Whose scene and planners.
+        arm: Name of the arm.
+        workspace: Provides the scene and the planners.
     """
 
     def __init__(self, arm: str, workspace: Workspace) -> None:
         self._arm = arm
         self._workspace = workspace
 
-    async def require_free(self, way: JointTrajectory) -> None:
-        """Return when what the arm holds touches nothing on the way but what it may; at once where it holds nothing.
+    async def require_free(self, trajectory: JointTrajectory) -> None:
+        """Return when the attached parts have only allowed contacts along the trajectory; at once without any.
 
         Raises:
-            PathBlocked: it does; the message names both and says where.
-            RobotError: the process that looks has ended.
-            CellError: the scene is wrong.
+            PathBlocked: a collision; the message names both objects and the position on the trajectory.
+            RobotError: the planning process has ended.
+            CellError: the scene is invalid.
         """
         workspace = self._workspace
         if not workspace.holds(self._arm):
@@ -36,12 +36,12 @@ class AttachedPartGuard:
         scene = workspace.attached_check_scene_for(self._arm)
         if scene is None:
             return
-        request = AttachedPartCheckRequest(scene=scene, arm=self._arm, way=SampledTrajectory.of(way))
+        request = AttachedPartCheckRequest(scene=scene, arm=self._arm, way=SampledTrajectory.of(trajectory))
         check = await workspace.planners.check_attached_parts(request)
         if check.blocked_at_s is not None:
-            share = check.blocked_at_s / way.duration_s if way.duration_s else 0.0
+            share = check.blocked_at_s / trajectory.duration_s if trajectory.duration_s else 0.0
             raise PathBlocked(
-                f"{describe_contacts(check.pairs)} after {share:.0%} of the way",
+                f"{describe_contacts(check.pairs)} after {share:.0%} of the path",
                 where=self._arm,
-                hint="choose another way or another place, or allow the two to touch",
+                hint="choose another path or goal, or allow this contact",
             )

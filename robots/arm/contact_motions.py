@@ -1,4 +1,4 @@
-"""The guarded move: straight on until the environment pushes back."""
+"""The guarded move: a straight line that ends at a contact force."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NO_DIRECTION = 1e-6
 
 
 class ContactMotions:
-    """Answers MoveUntilContact."""
+    """Serves MoveUntilContact."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -36,40 +36,39 @@ class ContactMotions:
         runner = self._runner
         runner.require_ready(handle)
         start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
-        way = self._way(goal, start, handle)
-        end = RigidTransform(xyz=start.xyz + goal.distance_m * way, xyzw=start.xyzw)
+        direction = self._direction(goal, start, handle)
+        end = RigidTransform(xyz=start.xyz + goal.distance_m * direction, xyzw=start.xyzw)
         duration_s = PEAK_SPEED * goal.distance_m / goal.speed_m_s
         trajectory = await runner.planned(
             handle, lambda joints: runner.planner.along_line(joints, end, duration_s=duration_s)
         )
         began = runner.measured_tool()
         ended = await runner.carry_out(
-            lambda: self._follow(trajectory, goal.force_n, way),
+            lambda: self._follow(trajectory, goal.force_n, direction),
             handle,
             lambda motion: publish_pose_feedback(runner, handle, motion),
         )
-        there, wrench = runner.measured_tool(), runner.port.sample().wrench
+        measured, wrench = runner.measured_tool(), runner.port.sample().wrench
         return ContactResult(
             contact=ended.report.contact,
-            pose=there.to_pose(WORLD),
-            travelled_m=float((there.xyz - began.xyz) @ way),
-            force_n=float(-wrench[:3] @ way),
+            pose=measured.to_pose(WORLD),
+            travelled_m=float((measured.xyz - began.xyz) @ direction),
+            force_n=float(-wrench[:3] @ direction),
             wrench=to_wrench(wrench),
             duration_s=ended.duration_s,
         )
 
-    def _way(self, goal: MoveUntilContact, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]) -> Array:
-        """Return the unit vector of the way in the world, (3,)."""
-        direction = np.array(goal.direction)
+    def _direction(self, goal: MoveUntilContact, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]) -> Array:
+        """Return the unit vector of the motion in the world, (3,)."""
         length = math.hypot(*goal.direction)
         if not math.isfinite(length) or length < _NO_DIRECTION:
             raise GoalRejected(
-                f"{goal.direction} is no direction", where=handle.address, hint="[0, 0, -1] goes down in the world"
+                f"{goal.direction} is not a direction", where=handle.address, hint="[0, 0, -1] points down in the world"
             )
-        return self._runner.frames.axes(goal.frame, tool=tool) @ (direction / length)
+        return self._runner.frames.axes(goal.frame, tool=tool) @ (np.array(goal.direction) / length)
 
-    def _follow(self, trajectory: JointTrajectory, force_n: float, way: Array) -> Motion:
+    def _follow(self, trajectory: JointTrajectory, force_n: float, direction: Array) -> Motion:
         runner = self._runner
-        x, y, z = (-way).tolist()
+        x, y, z = (-direction).tolist()
         until = ContactCondition(force_n=force_n, direction=(x, y, z))
         return runner.port.follow(trajectory, tolerance=runner.tolerance, until=until)

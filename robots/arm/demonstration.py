@@ -1,4 +1,4 @@
-"""Samples where an arm is led: joints, tool poses and wrenches over time, as an entry of kind `trajectory`."""
+"""Records a hand-guided demonstration: joints, tool poses and wrenches over time, as an entry of kind `trajectory`."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from robots.arm.motion_runner import MotionRunner
 from robots.arm.tool_frames import WORLD
 
 MOST_SAMPLES = 30_000
-"""What still fits into one entry of the store."""
-# Digits kept: a microradian, a micrometre, a micronewton.
+"""Maximum number of samples that fit into one entry of the store."""
+# Decimal places kept: microradian, micrometer, micronewton.
 _DIGITS = 6
 
 
 class DemonstrationRecorder:
-    """Records while its goal is not held; `run` until cancelled, then `trajectory`.
+    """Records while its goal is not held: call `run`, cancel it, then read `trajectory`.
 
     Args:
-        runner: The arm.
-        handle: The goal that leads it.
-        sample_s: Time between two samples.
+        runner: The arm's motion runner.
+        handle: The guiding goal.
+        sample_s: Sampling period.
     """
 
     def __init__(self, runner: MotionRunner, handle: ActiveGoal[Any], *, sample_s: float) -> None:
@@ -37,12 +37,12 @@ class DemonstrationRecorder:
 
     @property
     def count(self) -> int:
-        """Samples so far."""
+        """Number of samples so far."""
         return len(self._times)
 
     @property
     def full(self) -> bool:
-        """True when no more samples are taken."""
+        """True when the recorder takes no more samples."""
         return self.count >= MOST_SAMPLES
 
     async def run(self) -> None:
@@ -55,7 +55,7 @@ class DemonstrationRecorder:
             await clock.sleep(due_s - clock.now_s())
 
     def take(self) -> None:
-        """Take a sample, unless the goal is held or the device has measured nothing since the last one."""
+        """Take a sample, unless the goal is held or the device has no new measurement since the last one."""
         sample = self._runner.port.sample()
         last_s, self._device_s = self._device_s, sample.time_s
         if self._handle.status is GoalStatus.HELD or self.full:
@@ -71,7 +71,7 @@ class DemonstrationRecorder:
         self._wrenches.append(_rounded(sample.wrench.tolist()))
 
     def trajectory(self) -> Trajectory:
-        """Return what was recorded; there are at least two samples."""
+        """Return the recorded trajectory; requires at least two samples."""
         return Trajectory(
             times_s=tuple(self._times),
             joints=tuple(self._joints),

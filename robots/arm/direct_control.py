@@ -1,4 +1,4 @@
-"""Direct joint control: set points from a topic, while every other goal is rejected (RCL 4.3.8, table 9)."""
+"""Direct joint control: follows set points from a topic and rejects every other goal (RCL 4.3.8, table 9)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WORDS = "direct joint control"
 
 
 class DirectControl:
-    """Answers SwitchDirectControl and listens to `<arm>/direct_joints`."""
+    """Serves SwitchDirectControl and subscribes to `<arm>/direct_joints`."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -25,7 +25,7 @@ class DirectControl:
         self._stream: MotionStream | None = None
 
     def register(self, bus: SkillBus) -> None:
-        """Advertise the service under the arm's name; refused to others while a run holds the arm."""
+        """Advertise the service under the arm's name; while a run holds the lease on the arm, only it may call it."""
         name = self._runner.name
         self._bus = bus
         bus.advertise_service(SwitchDirectControl, self._switch, namespace=name, commands=name)
@@ -33,7 +33,7 @@ class DirectControl:
 
     @property
     def on(self) -> bool:
-        """True while set points are taken."""
+        """True while the arm follows set points."""
         return self._stream is not None and self._runner.reserved_for == _WORDS
 
     async def _switch(self, request: SwitchDirectControl) -> SwitchResult:
@@ -44,7 +44,7 @@ class DirectControl:
     def _turn_on(self, watchdog_s: float) -> SwitchResult:
         runner = self._runner
         if self.on:
-            return SwitchResult(success=True, message=f"{_WORDS} is on already")
+            return SwitchResult(success=True, message=f"{_WORDS} is already on")
         reason, hint = runner.obstacle()
         if runner.busy:
             reason, hint = f"the arm is busy with {runner.activity or 'a goal'}", "wait for its end or cancel it"
@@ -57,7 +57,7 @@ class DirectControl:
         self._stream = stream
         runner.occupy(stream, mode="direct", activity=SwitchDirectControl.skill_name(), reserved_for=_WORDS)
         if self._bus is not None:
-            # Whoever holds the arm turned it on; what he leaves behind must not lead the arm.
+            # The lease holder turned it on; the stream must not command the arm after the lease ends.
             self._bus.leases.when_freed(runner.name, stream.cancel)
         return SwitchResult(success=True, message=f"{_WORDS} is on")
 
@@ -77,8 +77,8 @@ class DirectControl:
             return
         try:
             if not are_numbers(command.position_rad):
-                raise RobotError(f"{command.position_rad!r} are no joint angles", where=self._runner.name)
+                raise RobotError(f"{command.position_rad!r} are not joint angles", where=self._runner.name)
             self._stream.send(command.position_rad)
         except RobotError as error:
-            # The publisher cannot be told; the arm comes to rest when nothing better follows.
-            _log.warning("%s/direct_joints: %s; it is left out", self._runner.name, error)
+            # A topic has no reply to the publisher; the watchdog stops the arm if no valid command follows.
+            _log.warning("%s/direct_joints: %s; command ignored", self._runner.name, error)

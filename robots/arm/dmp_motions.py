@@ -1,4 +1,4 @@
-"""Movement primitives of one arm: carried out in joints or of the tool, and learned (RCL 4.3.5, 4.3.6)."""
+"""Dynamic movement primitives of one arm: executed in joint or tool space, and learned (RCL 4.3.5, 4.3.6)."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _STORE, _KIND = "store", "trajectory"
 
 
 class DmpMotions:
-    """Answers JointDMP, CartDMP, LearnJointDmp and LearnCartDmp."""
+    """Serves JointDMP, CartDMP, LearnJointDmp and LearnCartDmp."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
         self._bus: SkillBus | None = None
 
     def register(self, bus: SkillBus) -> None:
-        """Advertise the skills under the arm's name; learning moves nothing and is open to all."""
+        """Advertise the skills under the arm's name; learning moves nothing and needs no lease."""
         name = self._runner.name
         self._bus = bus
         bus.advertise_action(JointDMP, self._joint_dmp, namespace=name, exclusive=name)
@@ -93,11 +93,11 @@ class DmpMotions:
         names = self._runner.model.arm_joints
         if recorded.names and recorded.names != names:
             raise SkillFailed(
-                f"the recording is of the joints {', '.join(recorded.names)}",
+                f"the recording has the joints {', '.join(recorded.names)}",
                 where=self._runner.name,
                 hint=f"this arm has {', '.join(names)}",
             )
-        # A motion may be planned meanwhile, with the planner's own kinematics.
+        # The planner may use its own kinematics for a motion at the same time.
         kinematics = self._runner.kinematics.twin()
         return await self._learned(
             lambda: learn_joint_dmp(
@@ -112,7 +112,7 @@ class DmpMotions:
 
     async def _learn_cart_dmp(self, request: LearnCartDmp) -> LearnedCartDmp:
         recorded = await self._recording(request)
-        # A motion may be planned meanwhile, with the planner's own kinematics.
+        # The planner may use its own kinematics for a motion at the same time.
         kinematics = self._runner.kinematics.twin()
 
         def learn() -> LearnedCartDmp:
@@ -122,7 +122,7 @@ class DmpMotions:
         return await self._learned(learn)
 
     async def _learned(self, learn: Callable[[], L]) -> L:
-        """Learn beside the planner: a motion that is planned meanwhile does not wait for it."""
+        """Learn in parallel to the planner, so that no motion waits for it."""
         runner = self._runner
         try:
             with np.errstate(all="ignore"):
@@ -131,9 +131,9 @@ class DmpMotions:
             raise SkillFailed(error.message, where=runner.name, hint=error.hint) from None
         except (ArithmeticError, ValueError) as error:
             raise SkillFailed(
-                f"no primitive can be learned with these numbers: {error}",
+                f"no primitive can be learned from these numbers: {error}",
                 where=runner.name,
-                hint="look for a value in the recording or a gain that is far too great or too small",
+                hint="check the recording and the gains for values that are too large or too small",
             ) from error
 
     async def _recording(self, request: LearnJointDmp | LearnCartDmp) -> Trajectory:
@@ -144,7 +144,7 @@ class DmpMotions:
 
 
 def frame_of(runner: MotionRunner, dmp: CartDmp, handle: ActiveGoal[Any]) -> RigidTransform:
-    """Return where in the world the frame lies that a primitive is given in; GoalRejected where it is not known."""
+    """Return the world pose of the frame of a primitive; raises GoalRejected for an unknown frame."""
     return runner.target(Pose(xyz=(0.0, 0.0, 0.0), frame=dmp.frame), handle)
 
 
@@ -152,7 +152,7 @@ def with_poses(recorded: Trajectory, kinematics: ArmKinematics) -> Trajectory:
     """Return the recording with the tool poses of its joints, in the world.
 
     Raises:
-        RobotError: it is of another number of joints.
+        RobotError: the number of joints differs from the arm's.
     """
     if any(len(joints) != kinematics.dof for joints in recorded.joints[:1]):
         raise RobotError(f"the recording has {len(recorded.joints[0])} joints", hint=f"this arm has {kinematics.dof}")

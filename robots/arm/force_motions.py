@@ -1,4 +1,4 @@
-"""CartAdmitDMP: a Cartesian primitive followed while pressing as wanted, and what a pass has learned (RCL 4.3.7)."""
+"""CartAdmitDMP: follows a Cartesian primitive with a desired force and learns the offsets of each pass (RCL 4.3.7)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Errors:
 
 
 class ForceMotions:
-    """Answers CartAdmitDMP."""
+    """Serves CartAdmitDMP."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -66,18 +66,21 @@ class ForceMotions:
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
 
-        def tell(motion: Motion) -> None:
+        def publish_feedback(motion: Motion) -> None:
             wrench = to_wrench(runner.port.sample().wrench)
             handle.feedback(CartAdmitFeedback(wrench=wrench, pose=runner.measured_pose(), progress=motion.progress))
 
-        def left(duration_s: float) -> CartAdmitResult:
+        def failed_result(duration_s: float) -> CartAdmitResult:
             pose = runner.measured_pose()
             return CartAdmitResult(
                 offsets=None, pose=pose, force_error_rms_n=0.0, force_error_max_n=0.0, duration_s=duration_s
             )
 
         ended = await runner.carry_out(
-            lambda: runner.port.track_force(task, tolerance=runner.tolerance), handle, tell, left=left
+            lambda: runner.port.track_force(task, tolerance=runner.tolerance),
+            handle,
+            publish_feedback,
+            failed_result=failed_result,
         )
         record = ForceRecord.from_bytes(ended.report.data) if ended.report.data else None
         passed = record is not None and len(record.shares()) > 0 and not handle.cancel_requested
@@ -92,7 +95,7 @@ class ForceMotions:
 
 
 def learned_offsets(goal: CartAdmitDMP, task: ForceTask, record: ForceRecord) -> CartOffsets:
-    """Return what the next pass adds: the whole offset of this one over the phase, in the kernels that are wanted."""
+    """Return the offsets for the next pass: the total offset of this pass over the phase, in the requested kernels."""
     duration_s = task.trajectory.duration_s
     phase = phase_at(record.shares() * duration_s / goal.dmp.tau, goal.dmp.a_x)
     given = _given(goal)
@@ -102,7 +105,7 @@ def learned_offsets(goal: CartAdmitDMP, task: ForceTask, record: ForceRecord) ->
 
 
 def force_errors(task: ForceTask, record: ForceRecord) -> _Errors:
-    """Return how far the force was from the wanted one along the active axes, over the record."""
+    """Return the deviation from the desired force along the active axes, over the record."""
     axes = [axis for axis in range(3) if task.admittance.active[axis] > 0.0]
     if not axes or len(record.shares()) == 0:
         return _Errors(rms_n=0.0, max_n=0.0)

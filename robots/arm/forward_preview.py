@@ -1,4 +1,4 @@
-"""Says where the arm would be along a configuration, pose, recording or primitive, without moving it."""
+"""Computes the joints and tool poses of a configuration, pose, recording or primitive without moving the arm."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _TYPES = {"joints": Joints, "pose": Pose, "trajectory": Trajectory, "dmp": Joint
 
 @dataclass(frozen=True, kw_only=True)
 class _PreviewPath:
-    """Times, and what an entry says of each of them: joints (rows, n), or tool poses in the world."""
+    """Times (rows,), and the joints (rows, n) or tool poses in the world at each of them."""
 
     times_s: Array
     names: tuple[str, ...] = ()
@@ -37,13 +37,13 @@ class _PreviewPath:
 
 
 class ForwardPreview:
-    """Answers TraceMotion."""
+    """Serves TraceMotion."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
 
     def register(self, bus: SkillBus) -> None:
-        """Advertise the service under the arm's name; it moves nothing and is open to all."""
+        """Advertise the service under the arm's name; it moves nothing and needs no lease."""
         bus.advertise_service(TraceMotion, self._trace, namespace=self._runner.name)
 
     async def _trace(self, request: TraceMotion) -> Trace:
@@ -51,38 +51,40 @@ class ForwardPreview:
         seed = runner.port.sample().position_rad.copy()
         try:
             value = msgspec.convert(request.value, _TYPES[request.kind])
-            # Kinematics of its own: a motion may be planned meanwhile.
+            # Separate kinematics: a motion may be planned at the same time.
             kinematics = runner.kinematics.twin()
             await runner.loaded()
             with np.errstate(all="ignore"):
                 if runner.clock.virtual:
-                    return self._traced(value, kinematics, seed, request.most)
-                return await asyncio.to_thread(self._traced, value, kinematics, seed, request.most)
+                    return self._compute_trace(value, kinematics, seed, request.most)
+                return await asyncio.to_thread(self._compute_trace, value, kinematics, seed, request.most)
         except msgspec.ValidationError as error:
-            raise SkillFailed(f"this is no {request.kind}: {error}", where=runner.name) from error
+            raise SkillFailed(f"not a valid {request.kind}: {error}", where=runner.name) from error
         except RobotError as error:
             raise SkillFailed(error.message, where=runner.name, hint=error.hint) from None
         except (ArithmeticError, ValueError) as error:
-            raise SkillFailed(f"nothing can be worked out from these numbers: {error}", where=runner.name) from error
+            raise SkillFailed(
+                f"the motion cannot be computed from these numbers: {error}", where=runner.name
+            ) from error
 
-    def _traced(self, value: object, kinematics: ArmKinematics, seed: Array, most: int) -> Trace:
-        way = _picked(self._way(value), most)
-        joints, remark = way.joints, ""
+    def _compute_trace(self, value: object, kinematics: ArmKinematics, seed: Array, most: int) -> Trace:
+        preview = _downsampled(self._preview_path(value), most)
+        joints, remark = preview.joints, ""
         if joints is None:
-            joints, remark = _followed(InverseKinematicsSolver(kinematics), way.tools, seed)
-            tools = way.tools
+            joints, remark = _solve_poses(InverseKinematicsSolver(kinematics), preview.tools, seed)
+            tools = preview.tools
         else:
-            self._check(joints, way.names)
+            self._check(joints, preview.names)
             tools = tuple(kinematics.tool_pose(row) for row in joints)
         return Trace(
-            times_s=tuple(way.times_s.tolist()),
+            times_s=tuple(preview.times_s.tolist()),
             joint_names=self._runner.model.arm_joints,
             joints=tuple(tuple(row) for row in joints.tolist()),
             poses=tuple((*tool.xyz.tolist(), *tool.xyzw.tolist()) for tool in tools),
             remark=remark,
         )
 
-    def _way(self, value: object) -> _PreviewPath:
+    def _preview_path(self, value: object) -> _PreviewPath:
         match value:
             case Joints():
                 return _PreviewPath(times_s=np.zeros(1), names=value.names, joints=np.array([value.joints]))
@@ -96,11 +98,11 @@ class ForwardPreview:
                 path = integrate_joints(joints_in_task_frame(value))
                 return _PreviewPath(times_s=path.shares * value.tau, joints=path.position)
             case CartDmp():
-                rolled = integrate_pose(poses_in_task_frame(value))
-                poses = np.hstack((rolled.xyz, rolled.xyzw)).tolist()
-                return _PreviewPath(times_s=rolled.shares * value.tau, tools=self._in_world(poses, value.frame))
+                integrated = integrate_pose(poses_in_task_frame(value))
+                poses = np.hstack((integrated.xyz, integrated.xyzw)).tolist()
+                return _PreviewPath(times_s=integrated.shares * value.tau, tools=self._in_world(poses, value.frame))
             case _:
-                raise RobotError("this kind of entry has no place")
+                raise RobotError("this kind of entry has no position to preview")
 
     def _in_world(self, poses: Sequence[Sequence[float]], frame: str) -> tuple[RigidTransform, ...]:
         base = self._runner.frames.to_world(Pose(xyz=(0.0, 0.0, 0.0), frame=frame))
@@ -110,34 +112,34 @@ class ForwardPreview:
         model = self._runner.model
         if joints.shape[1] != model.dof or (names and names != model.arm_joints):
             raise RobotError(
-                f"this is of the joints {', '.join(names)}" if names else f"this is of {joints.shape[1]} joints",
+                f"the entry has the joints {', '.join(names)}" if names else f"the entry has {joints.shape[1]} joints",
                 hint=f"this arm has {', '.join(model.arm_joints)}",
             )
 
 
-def _picked(way: _PreviewPath, most: int) -> _PreviewPath:
-    rows = len(way.times_s)
+def _downsampled(preview: _PreviewPath, most: int) -> _PreviewPath:
+    rows = len(preview.times_s)
     if rows <= most:
-        return way
+        return preview
     kept: list[int] = np.unique(np.linspace(0, rows - 1, most).round().astype(int)).tolist()
     return _PreviewPath(
-        times_s=way.times_s[kept],
-        names=way.names,
-        joints=None if way.joints is None else way.joints[kept],
-        tools=[way.tools[index] for index in kept] if way.tools else (),
+        times_s=preview.times_s[kept],
+        names=preview.names,
+        joints=None if preview.joints is None else preview.joints[kept],
+        tools=[preview.tools[index] for index in kept] if preview.tools else (),
     )
 
 
-def _followed(inverse: InverseKinematicsSolver, tools: Sequence[RigidTransform], seed: Array) -> tuple[Array, str]:
-    """Return the joints at each pose; none, and why, where the arm does not reach one."""
+def _solve_poses(inverse: InverseKinematicsSolver, tools: Sequence[RigidTransform], seed: Array) -> tuple[Array, str]:
+    """Return the joints at each pose, or no joints and the reason if the arm does not reach one."""
     rows: list[Array] = []
-    here = seed
+    joints = seed
     for index, tool in enumerate(tools):
-        found = inverse.track(tool, seed=here) if rows else None
+        tracked = inverse.track(tool, seed=joints) if rows else None
         try:
-            here = found if found is not None else inverse.nearest(tool, seed=here)
+            joints = tracked if tracked is not None else inverse.nearest(tool, seed=joints)
         except RobotError as error:
-            share = f" after {index / len(tools):.0%} of the way" if index else ""
-            return np.zeros((0, len(seed))), f"the arm does not get there{share}: {error.message}"
-        rows.append(here)
+            share = f" after {index / len(tools):.0%} of the path" if index else ""
+            return np.zeros((0, len(seed))), f"pose not reachable{share}: {error.message}"
+        rows.append(joints)
     return np.array(rows), ""

@@ -1,4 +1,4 @@
-"""Leading the arm by hand, and writing down where it was led (RCL 4.1.2, RCY 7.1)."""
+"""Hand guiding of the arm and recording of the demonstration (RCL 4.1.2, RCY 7.1)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _STORE, _KIND = "store", "trajectory"
 
 
 class GuidingMotions:
-    """Answers GuideArm and FinishGuiding."""
+    """Serves GuideArm and FinishGuiding."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -28,7 +28,7 @@ class GuidingMotions:
         self._stream: MotionStream | None = None
 
     def register(self, bus: SkillBus) -> None:
-        """Advertise the skills under the arm's name; anybody may finish."""
+        """Advertise the skills under the arm's name; any client may finish."""
         name = self._runner.name
         self._bus = bus
         bus.advertise_action(GuideArm, self._guide, namespace=name, exclusive=name)
@@ -58,7 +58,7 @@ class GuidingMotions:
                 sampling.append(asyncio.create_task(demonstration.run(), name=f"demonstration on {runner.name}"))
             return stream
 
-        def tell(stream: MotionStream) -> None:
+        def publish_feedback(stream: MotionStream) -> None:
             countdown[0].look()
             if demonstration.full:
                 stream.finish()
@@ -67,7 +67,7 @@ class GuidingMotions:
             )
 
         try:
-            ended = await runner.carry_out(start, handle, tell, mode="guiding")
+            ended = await runner.carry_out(start, handle, publish_feedback, mode="guiding")
         finally:
             self._stream = None
             for count in countdown:
@@ -87,26 +87,28 @@ class GuidingMotions:
         )
 
     def _check_record(self, goal: GuideArm, handle: ActiveGoal[GuideFeedback]) -> None:
-        """Reject beforehand what would lose the demonstration afterwards."""
+        """Reject a goal whose demonstration could not be stored afterwards."""
         assert self._bus is not None
         try:
             verify_name(_KIND, goal.record)
             self._bus.request_type(f"{_STORE}/{WriteEntry.skill_name()}")
         except FlexcellError as error:
             raise GoalRejected(
-                f"the demonstration could not be stored: {error.message}", where=handle.address, hint=error.hint
+                f"the demonstration cannot be stored: {error.message}", where=handle.address, hint=error.hint
             ) from None
         if goal.duration_s is not None and goal.duration_s / goal.sample_s > MOST_SAMPLES:
             raise GoalRejected(
-                f"{goal.duration_s:g} s at a sample every {goal.sample_s:g} s do not fit into an entry",
+                f"{goal.duration_s:g} s with a sample every {goal.sample_s:g} s do not fit into an entry",
                 where=handle.address,
-                hint=f"at most {MOST_SAMPLES} samples",
+                hint=f"record at most {MOST_SAMPLES} samples",
             )
 
     async def _write(self, entry: str, demonstration: DemonstrationRecorder, handle: ActiveGoal[GuideFeedback]) -> None:
         assert self._bus is not None
         if demonstration.count < 2:
-            raise SkillFailed("the demonstration was too short to be stored", where=handle.address)
+            raise SkillFailed(
+                "the demonstration is too short to be stored: it needs at least 2 samples", where=handle.address
+            )
         value = msgspec.to_builtins(demonstration.trajectory())
         try:
             await self._bus.call(WriteEntry(kind=_KIND, name=entry, value=value), to=_STORE)

@@ -1,4 +1,4 @@
-"""Answers which joints put the tool where: the nearest configuration, and all of them."""
+"""The inverse kinematics services: the nearest configuration for a tool pose, and all configurations."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class InverseKinematicsServices:
-    """Answers InverseKinematics and AllInverseKinematics, for the tool centre point that is in force."""
+    """Serves InverseKinematics and AllInverseKinematics, for the current tool center point."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -44,13 +44,13 @@ class InverseKinematicsServices:
         ) -> JointSolution:
             return solver.solve(target, seed=seed, match=PoseMatch.of(request.match))
 
-        found = await self._solved(request.pose, request.seed, solve)
+        solution = await self._solved(request.pose, request.seed, solve)
         return InverseKinematicsResult(
-            joints=tuple(found.joints.tolist()),
-            dexterity=found.posture.dexterity,
-            manipulability=found.posture.manipulability,
-            singular=found.posture.singular,
-            remark=found.posture.words,
+            joints=tuple(solution.joints.tolist()),
+            dexterity=solution.posture.dexterity,
+            manipulability=solution.posture.manipulability,
+            singular=solution.posture.singular,
+            remark=solution.posture.words,
         )
 
     async def _all(self, request: AllInverseKinematics) -> InverseKinematicsSolutions:
@@ -59,11 +59,11 @@ class InverseKinematicsServices:
         ) -> SolutionSet:
             return solver.all_solutions(target, seed=seed, match=PoseMatch.of(request.match))
 
-        found = await self._solved(request.pose, request.seed, solve)
+        solution = await self._solved(request.pose, request.seed, solve)
         return InverseKinematicsSolutions(
-            solutions=tuple(tuple(joints.tolist()) for joints in found.joints),
-            complete=found.complete,
-            how=found.how,
+            solutions=tuple(tuple(joints.tolist()) for joints in solution.joints),
+            complete=solution.complete,
+            how=solution.how,
         )
 
     async def _solved(
@@ -76,7 +76,7 @@ class InverseKinematicsServices:
         try:
             target = runner.frames.to_world(pose)
             start = np.array(seed) if seed else runner.port.sample().position_rad.copy()
-            # Kinematics of its own: a motion may be planned meanwhile.
+            # Separate kinematics: a motion may be planned at the same time.
             await runner.loaded()
             solver = inverse_kinematics.InverseKinematicsSolver(runner.kinematics.twin())
             with np.errstate(all="ignore"):
@@ -87,7 +87,7 @@ class InverseKinematicsServices:
             raise SkillFailed(error.message, where=runner.name, hint=error.hint) from None
         except (ArithmeticError, ValueError) as error:
             raise SkillFailed(
-                f"no joints can be worked out from these numbers: {error}",
+                f"no joints can be computed from these numbers: {error}",
                 where=runner.name,
-                hint="look for a value that is far too great",
+                hint="check the request for values that are too large",
             ) from error

@@ -1,4 +1,4 @@
-"""Looks ahead of a jog in the planning scene: lets it go as fast as it can still stop before what it would touch."""
+"""Limits the speed of a jog in the planning scene, so that the arm can always stop before a collision."""
 
 from __future__ import annotations
 
@@ -21,36 +21,36 @@ from robots.workspace.workspace import Workspace
 
 Row = tuple[float, ...]
 ToJoints = Callable[[Array, Array], Array]
-"""Gives the joints' velocities, (n,), for what is told, when the joints are at (n,)."""
+"""Maps a commanded velocity and joint positions (n,) to joint velocities (n,)."""
 
-# How often is looked, how old an answer may be when the arm heeds it, and when nobody looks any more.
-_LOOK_S, _REACTION_S, _SILENT_S = 0.03, 0.12, 0.3
+# Period of the checks, greatest age of a result when it takes effect, and timeout of a check.
+_CHECK_PERIOD_S, _REACTION_S, _TIMEOUT_S = 0.03, 0.12, 0.3
 _STEP_S, _LONGEST_S = 0.01, 3.0
-# The share of the accelerations with which a jog slows down (0.5, and its jerk), and of the free way that is used.
+# Share of the acceleration limits with which a jog decelerates (0.5, less for its jerk), and of the free path used.
 _BRAKING_SHARE, _USED_SHARE = 0.4, 0.9
-# Below this share of what is told it stands.
+# Below this share of the commanded velocity the arm stands still.
 _CREEP = 0.02
-# A velocity that points within 11 degrees of the one that was looked at is taken to be that one.
-_SAME_WAY = 0.98
+# A velocity within 11 degrees of the checked direction counts as checked.
+_SAME_DIRECTION = 0.98
 _log = logging.getLogger("flexcell.arm")
 
 
 @dataclass(frozen=True, kw_only=True)
 class _SpeedLimit:
-    """How fast a jog may go in a direction, of length 1, by what was looked at last."""
+    """Speed limit of a jog along a unit direction, from the last check."""
 
     direction: Array
     fastest: float
 
 
 class JogGuard:
-    """Watches the way ahead of one jog.
+    """Monitors the path ahead of one jog.
 
     Args:
-        runner: Of the arm.
-        workspace: Whose scene.
-        rule: How far from what.
-        to_joints: What the told velocities mean for the joints.
+        runner: The arm's motion runner.
+        workspace: Provides the scene.
+        rule: Margin, and the objects that may be touched.
+        to_joints: Maps commanded velocities to joint velocities.
     """
 
     def __init__(
@@ -61,18 +61,18 @@ class JogGuard:
         self._scene = SceneCheck(runner.name, workspace, rule=rule)
         self._to_joints = to_joints
         self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
-        self._told = np.zeros(0)
-        self._leave: _SpeedLimit | None = None
-        self._news = asyncio.Event()
-        self._looking: asyncio.Task[None] | None = None
+        self._commanded = np.zeros(0)
+        self._limit: _SpeedLimit | None = None
+        self._recheck = asyncio.Event()
+        self._monitoring: asyncio.Task[None] | None = None
         self.held_by = ""
 
     async def open(self) -> None:
-        """Return when the scene is known and somebody looks at ways in it; `close` when the jog has ended.
+        """Return when the scene and the path checks are ready; call `close` when the jog has ended.
 
         Raises:
-            RobotError: nobody does.
-            CellError: the scene is wrong.
+            RobotError: path checks are not available.
+            CellError: the scene is invalid.
         """
         self._workspace.require()
         try:
@@ -83,96 +83,102 @@ class JogGuard:
             raise
 
     def watch_ahead(self, again: Callable[[], None]) -> None:
-        """Look ahead from now on; `again` tells the arm anew what it is told."""
-        self._looking = asyncio.create_task(self._look_on(again), name=f"looking ahead of {self._runner.name}")
+        """Start to monitor the path ahead; `again` resends the current command to the arm."""
+        self._monitoring = asyncio.create_task(self._monitor(again), name=f"jog monitoring of {self._runner.name}")
 
     async def close(self) -> None:
-        """End what `open` began."""
+        """Stop monitoring and release the scene."""
         self._workspace.release()
-        if self._looking is not None:
-            self._looking.cancel()
-            await asyncio.wait((self._looking,))
+        if self._monitoring is not None:
+            self._monitoring.cancel()
+            await asyncio.wait((self._monitoring,))
 
-    def bounded(self, told: Row) -> Row:
-        """Return what the arm may be told now in place of `told`."""
-        self._told = np.array(told)
-        fast, leave = float(np.linalg.norm(self._told)), self._leave
+    def bounded(self, commanded: Row) -> Row:
+        """Return the velocity that the arm may be commanded now in place of `commanded`."""
+        self._commanded = np.array(commanded)
+        fast, limit = float(np.linalg.norm(self._commanded)), self._limit
         if fast == 0.0:
-            self.held_by, self._leave = "", None
-            return told
-        if leave is None or float(self._told @ leave.direction) < _SAME_WAY * fast:
-            # It was not looked at yet; a moment later it is.
-            self._leave = None
-            self._news.set()
-            return (0.0,) * len(told)
-        return tuple((self._told * min(1.0, leave.fastest / fast)).tolist())
+            self.held_by, self._limit = "", None
+            return commanded
+        if limit is None or float(self._commanded @ limit.direction) < _SAME_DIRECTION * fast:
+            # This direction is not checked yet; request a check and stand still until then.
+            self._limit = None
+            self._recheck.set()
+            return (0.0,) * len(commanded)
+        return tuple((self._commanded * min(1.0, limit.fastest / fast)).tolist())
 
-    async def _look_on(self, again: Callable[[], None]) -> None:
+    async def _monitor(self, again: Callable[[], None]) -> None:
         while True:
-            if not self._told.any():
-                await self._news.wait()
-            self._news.clear()
-            told = self._told
-            fastest, reason = await self._look(told)
+            if not self._commanded.any():
+                await self._recheck.wait()
+            self._recheck.clear()
+            commanded = self._commanded
+            fastest, reason = await self._check(commanded)
             if reason and not self.held_by:
-                _log.info("%s: the jog is held back: %s", self._runner.name, reason)
+                _log.info("%s: jog speed limited: %s", self._runner.name, reason)
             self.held_by = reason
-            self._leave = _SpeedLimit(direction=told / np.linalg.norm(told), fastest=fastest)
+            self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest)
             again()
             with suppress(TimeoutError):
-                async with asyncio.timeout(_LOOK_S):
-                    await self._news.wait()
+                async with asyncio.timeout(_CHECK_PERIOD_S):
+                    await self._recheck.wait()
 
-    async def _look(self, told: Array) -> tuple[float, str]:
-        """Return how fast the arm may go where `told` points, and why no faster."""
+    async def _check(self, commanded: Array) -> tuple[float, str]:
+        """Return the speed limit in the direction of `commanded`, and the reason for it."""
         if self._scene.unobserved_reason:
             return 0.0, self._scene.unobserved_reason
-        way, gone_s, slowing_s = self._ahead(told)
+        path, travelled_s, slowing_s = self._ahead(commanded)
         try:
-            async with asyncio.timeout(_SILENT_S):
-                check = await self._scene.check(way)
+            async with asyncio.timeout(_TIMEOUT_S):
+                check = await self._scene.check(path)
         except TimeoutError:
-            return 0.0, f"its path was not checked within {_SILENT_S:g} s"
+            return 0.0, f"its path was not checked within {_TIMEOUT_S:g} s"
         except FlexcellError as error:
             return 0.0, f"path monitoring is not available: {error.message}"
         if check.blocked_at_s is None:
-            return float(np.linalg.norm(told)), ""
-        # What is free ends with the sample before the one that touches.
-        free_s = float(gone_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
-        return float(np.linalg.norm(told)) * _stoppable(free_s * _USED_SHARE, slowing_s), describe_contacts(check.pairs)
+            return float(np.linalg.norm(commanded)), ""
+        # The free path ends at the sample before the first contact.
+        free_s = float(travelled_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
+        return float(np.linalg.norm(commanded)) * _stoppable_share(free_s * _USED_SHARE, slowing_s), describe_contacts(
+            check.pairs
+        )
 
-    def _ahead(self, told: Array) -> tuple[JointTrajectory, Array, float]:
-        """Return where the arm goes that is told this until it heeds the next look, and then stops.
+    def _ahead(self, commanded: Array) -> tuple[JointTrajectory, Array, float]:
+        """Return the predicted trajectory: the arm follows `commanded` until the next check takes effect, then stops.
 
-        With how far it has gone of what is told at each sample, in seconds of it, and how far it goes on while
-        it slows down from all of it, in the same measure.
+        Also returns the distance travelled at each sample, in seconds at the commanded velocity, and the braking
+        distance from that velocity, in the same unit.
         """
         sample = self._runner.port.sample()
         joints, velocity = sample.desired_rad.copy(), sample.velocity_rad_s.copy()
-        rows, gone = [joints], [0.0]
-        heeded, longest = round(_REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
-        wanted = self._to_joints(told, joints)
+        rows, travelled = [joints], [0.0]
+        reaction, longest = round(_REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
+        wanted = self._to_joints(commanded, joints)
         for k in range(longest):
-            if k < heeded:
-                wanted = self._to_joints(told, joints)
-            change = (wanted if k < heeded else 0.0) - velocity
+            if k < reaction:
+                wanted = self._to_joints(commanded, joints)
+            change = (wanted if k < reaction else 0.0) - velocity
             most = float((self._braking_rad_s2 * _STEP_S / np.maximum(np.abs(change), 1e-12)).min())
             velocity = velocity + change * min(1.0, most)
             joints = joints + velocity * _STEP_S
             share = float(velocity @ wanted) / max(1e-12, float(wanted @ wanted))
             rows.append(joints)
-            gone.append(gone[-1] + max(0.0, share) * _STEP_S)
-            if k >= heeded and not velocity.any():
+            travelled.append(travelled[-1] + max(0.0, share) * _STEP_S)
+            if k >= reaction and not velocity.any():
                 break
-        way = np.array(rows)
+        path = np.array(rows)
         slowing_s = 0.5 * float((np.abs(wanted) / self._braking_rad_s2).max())
-        return JointTrajectory(dt_s=_STEP_S, position_rad=way, velocity_rad_s=way * 0.0), np.array(gone), slowing_s
+        return (
+            JointTrajectory(dt_s=_STEP_S, position_rad=path, velocity_rad_s=path * 0.0),
+            np.array(travelled),
+            slowing_s,
+        )
 
 
-def _stoppable(free_s: float, slowing_s: float) -> float:
-    """Return the share of a velocity from which an arm comes to rest within its free way, all in seconds of it.
+def _stoppable_share(free_s: float, slowing_s: float) -> float:
+    """Return the share of a velocity from which an arm stops within its free path, all in seconds at that velocity.
 
-    At a share k it goes on for k times the reaction, and for k² times `slowing_s` while it slows down.
+    At a share k it travels k times the reaction time, plus k² times `slowing_s` while it decelerates.
     """
     share = (math.sqrt(_REACTION_S**2 + 4.0 * slowing_s * free_s) - _REACTION_S) / max(1e-9, 2.0 * slowing_s)
     return 0.0 if share < _CREEP else min(1.0, share)

@@ -1,4 +1,4 @@
-"""Jogging: joints or tool at a velocity, for a time or as long as `<arm>/jog` tells; and step by step."""
+"""Jogging of joints or tool: at a velocity for a time, as commanded on `<arm>/jog`, or step by step."""
 
 from __future__ import annotations
 
@@ -35,18 +35,18 @@ from robots.port import Array, JointTrajectory, StreamKind
 from robots.workspace.workspace import Workspace
 
 _TWIST = 6
-# A step of the tool is at most this fast in turning, and at most this hard in starting.
+# Limits of a tool step: rotation speed, linear and angular acceleration.
 _STEP_TURN_RAD_S, _STEP_M_S2, _STEP_RAD_S2 = 0.5, 0.5, 2.0
 _SHORTEST_STEP_S = 0.1
 _MOST_TURN_RAD = 3.1
 
 
 class JogMotions:
-    """Answers JogJoints, JogTool, StepJoints and StepTool, and listens to `<arm>/jog`.
+    """Serves JogJoints, JogTool, StepJoints and StepTool, and subscribes to `<arm>/jog`.
 
     Args:
-        runner: Of the arm.
-        workspace: The space it shares with others; without one nothing looks ahead of it.
+        runner: The arm's motion runner.
+        workspace: The workspace shared with other arms; without one jogs are not checked for collisions.
     """
 
     def __init__(self, runner: MotionRunner, workspace: Workspace | None = None) -> None:
@@ -69,31 +69,37 @@ class JogMotions:
 
     async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointJogFeedback]) -> JointMotionResult:
         runner = self._runner
-        guard = self._guard(goal.scene, lambda told, _: told)
+        guard = self._guard(goal.scene, lambda commanded, _: commanded)
 
-        def tell() -> None:
+        def publish_feedback() -> None:
             handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
 
         width = runner.model.dof
         run = JogRun(
-            goal, goal.velocity_rad_s, handle, clock=runner.clock, width=width, mean=lambda told: told, guard=guard
+            goal,
+            goal.velocity_rad_s,
+            handle,
+            clock=runner.clock,
+            width=width,
+            to_command=lambda commanded: commanded,
+            guard=guard,
         )
-        ended = await self._jog("joint_velocity", run, guard, handle, tell)
+        ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
 
     async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[ToolJogFeedback]) -> CartMotionResult:
         runner = self._runner
         guard = self._guard(goal.scene, self._joint_velocity)
 
-        def tell() -> None:
+        def publish_feedback() -> None:
             handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
 
-        def mean(velocity: Row) -> Row:
+        def to_command(velocity: Row) -> Row:
             axes = runner.frames.axes(goal.frame, tool=runner.measured_tool())
             return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
 
-        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, mean=mean, guard=guard)
-        ended = await self._jog("tool_twist", run, guard, handle, tell)
+        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
+        ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
 
     def _guard(self, rule: JogCollisionOptions, to_joints: ToJoints) -> JogGuard | None:
@@ -112,7 +118,7 @@ class JogMotions:
         run: JogRun,
         guard: JogGuard | None,
         handle: ActiveGoal[Any],
-        tell: Callable[[], None],
+        publish_feedback: Callable[[], None],
     ) -> MotionCompletion:
         runner = self._runner
         runner.require_ready(handle)
@@ -125,7 +131,7 @@ class JogMotions:
 
             def look(_stream: object) -> None:
                 run.look()
-                tell()
+                publish_feedback()
 
             self._run = run
             try:
@@ -137,11 +143,11 @@ class JogMotions:
                 run.close()
 
     async def _free(self, planning: Awaitable[JointTrajectory], rule: JogCollisionOptions) -> JointTrajectory:
-        """Return a planned step that touches nothing; RobotError where there is none."""
+        """Return a planned collision-free step; raises RobotError if there is none."""
         trajectory = await planning
         if self._workspace is not None and rule.minded:
             await SceneCheck(self._runner.name, self._workspace, rule=rule).require_free(trajectory)
-            # The scene lets a part touch what it was taken from, however deep.
+            # The scene allows contact of a part with the object it was picked from, at any depth.
             await AttachedPartGuard(self._runner.name, self._workspace).require_free(trajectory)
         return trajectory
 
@@ -149,7 +155,7 @@ class JogMotions:
         runner = self._runner
         if len(goal.step_rad) != runner.model.dof:
             raise GoalRejected(
-                f"a step of {len(goal.step_rad)} joints was given",
+                f"the step has {len(goal.step_rad)} joints",
                 where=handle.address,
                 hint=f"this arm has {runner.model.dof}",
             )
@@ -165,7 +171,7 @@ class JogMotions:
         runner = self._runner
         runner.require_ready(handle)
         start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
-        end = self._stepped(goal, start, handle)
+        end = self._step_goal(goal, start, handle)
         trajectory = await runner.planned(
             handle,
             lambda joints: self._free(
@@ -174,28 +180,32 @@ class JogMotions:
         )
         return await follow_tool(runner, trajectory, handle, mode="jogging")
 
-    def _stepped(self, goal: StepTool, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]) -> RigidTransform:
+    def _step_goal(
+        self, goal: StepTool, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]
+    ) -> RigidTransform:
         step = np.array((*goal.step_m, *goal.turn_rad))
         if not np.isfinite(step).all() or not step.any():
-            raise GoalRejected("the step is none", where=handle.address, hint="give `step_m`, `turn_rad` or both")
+            raise GoalRejected(
+                "the step is zero or not finite", where=handle.address, hint="give `step_m`, `turn_rad` or both"
+            )
         turn = math.hypot(*goal.turn_rad)
         if turn > _MOST_TURN_RAD:
-            # Half a turn and more would be made the other, shorter way round.
+            # Half a turn or more would be executed in the opposite, shorter direction.
             raise GoalRejected(
-                f"a step cannot turn the tool by {turn:.3g} rad",
+                f"a step cannot rotate the tool by {turn:.3g} rad",
                 where=handle.address,
-                hint="turn by less than half a turn",
+                hint="rotate by less than half a turn",
             )
         axes = self._runner.frames.axes(goal.frame, tool=tool)
         return RigidTransform(xyz=tool.xyz + axes @ step[:3], xyzw=product(quaternion_of(axes @ step[3:]), tool.xyzw))
 
 
 def _step_time_s(goal: StepTool) -> float:
-    way, turn = math.hypot(*goal.step_m), math.hypot(*goal.turn_rad)
+    distance, turn = math.hypot(*goal.step_m), math.hypot(*goal.turn_rad)
     return max(
         _SHORTEST_STEP_S,
-        PEAK_SPEED * way / goal.speed_m_s,
+        PEAK_SPEED * distance / goal.speed_m_s,
         PEAK_SPEED * turn / _STEP_TURN_RAD_S,
-        float(np.sqrt(PEAK_ACCELERATION * way / _STEP_M_S2)),
+        float(np.sqrt(PEAK_ACCELERATION * distance / _STEP_M_S2)),
         float(np.sqrt(PEAK_ACCELERATION * turn / _STEP_RAD_S2)),
     )

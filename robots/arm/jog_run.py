@@ -1,4 +1,4 @@
-"""One jog under way: sends its own velocity for a time, or what it is told until nobody speaks any more."""
+"""One active jog: streams its own velocity for a duration, or published commands until they stop."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from robots.supervise_goal import FEEDBACK_S
 
 Row = tuple[float, ...]
 _REPEATED_S = 4.0 * FEEDBACK_S
-# What nobody means: m/s or rad/s beyond all arms, whose products may overflow.
-_ABSURD = 1e6
+# Largest plausible velocity, in m/s or rad/s: beyond all arms, and products of larger ones may overflow.
+_MAX_PLAUSIBLE = 1e6
 _log = logging.getLogger("flexcell.arm")
 
 
 class JogRun:
-    """Leads one velocity stream.
+    """Drives one velocity stream.
 
     Args:
-        goal: How long.
-        velocity: Its own velocity, empty to go as told.
+        goal: Gives the durations.
+        velocity: The goal's own velocity; empty to follow published commands.
         handle: The goal's handle.
-        width: How many numbers a velocity has.
-        mean: What to send for a velocity as given, at this moment.
-        guard: What looks ahead of it, if anything does; opened and closed by the owner.
+        width: Number of components of a velocity.
+        to_command: Converts a velocity as given to the command that is sent now.
+        guard: Collision guard, if any; opened and closed by the owner.
 
     Raises:
         GoalRejected: the velocity does not fit the arm, or comes without a duration.
@@ -48,7 +48,7 @@ class JogRun:
         *,
         clock: Clock,
         width: int,
-        mean: Callable[[Row], Row],
+        to_command: Callable[[Row], Row],
         guard: JogGuard | None,
     ) -> None:
         self._velocity = velocity
@@ -56,92 +56,92 @@ class JogRun:
         self._handle = handle
         self._clock = clock
         self._width = width
-        self._mean = mean
+        self._to_command = to_command
         self._guard = guard
-        self._told: Row = (0.0,) * width
-        self._told_s = clock.now_s()
+        self._command: Row = (0.0,) * width
+        self._command_s = clock.now_s()
         self._stream: MotionStream | None = None
         self._countdown: StreamDeadline | None = None
-        # Its own velocity is repeated with the feedback, which is no silence of anybody.
+        # Its own velocity is resent only with the feedback, so the watchdog must be longer than that period.
         self.watchdog_s = max(goal.watchdog_s, _REPEATED_S) if velocity else goal.watchdog_s
         if bool(velocity) != (goal.duration_s is not None):
             raise GoalRejected(
-                "a velocity and `duration_s` belong together",
+                "a velocity and `duration_s` are only valid together",
                 where=handle.address,
-                hint="give both, or none and publish velocities on `<arm>/jog`",
+                hint="give both, or neither and publish velocities on `<arm>/jog`",
             )
-        if velocity and (fault := self._fault(velocity)):
-            raise GoalRejected(fault, where=handle.address)
+        if velocity and (problem := self._velocity_error(velocity)):
+            raise GoalRejected(problem, where=handle.address)
 
     def start(self, stream: MotionStream) -> MotionStream:
-        """Lead `stream` from now on."""
+        """Drive `stream` from now on."""
         self._stream = stream
         self._countdown = StreamDeadline(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
         self.look()
         if self._guard is not None:
-            self._guard.watch_ahead(self._looked)
+            self._guard.watch_ahead(self._on_limit_change)
         return stream
 
     def look(self) -> None:
-        """Repeat the velocity before the watchdog bites, and end when it is time."""
+        """Resend the velocity before the watchdog expires, and end the stream at its deadline."""
         if self._velocity:
             self._send(self._velocity)
         if self._countdown is not None:
             self._countdown.look()
 
     def take(self, command: JogCommand) -> None:
-        """Go at this velocity until told otherwise; one that does not fit is left out and named in the log."""
+        """Move at this velocity until the next command; an invalid one is ignored and logged."""
         if self._velocity:
             return
         velocity = command.velocity
-        if fault := self._fault(velocity):
-            _log.warning("%s: %s; it is left out", self._handle.address, fault)
+        if problem := self._velocity_error(velocity):
+            _log.warning("%s: %s; command ignored", self._handle.address, problem)
             return
         if self._countdown is not None:
             self._countdown.restart()
         try:
             self._send(velocity)
         except RobotError as error:
-            # The goal itself ends with the reason; the publisher cannot be told.
+            # The goal itself ends with the reason; a topic has no reply to the publisher.
             _log.warning("%s: %s", self._handle.address, error)
 
     def close(self) -> None:
-        """The stream has ended."""
+        """Release the ended stream."""
         self._stream = None
         if self._countdown is not None:
             self._countdown.close()
 
     def _send(self, velocity: Row) -> None:
-        """Send what was told just now."""
-        self._told, self._told_s = velocity, self._clock.now_s()
-        self._pass_on()
+        """Send a new command."""
+        self._command, self._command_s = velocity, self._clock.now_s()
+        self._resend()
 
-    def _pass_on(self) -> None:
+    def _resend(self) -> None:
         if self._stream is not None:
-            told = self._mean(self._told)
-            age_s = self._clock.now_s() - self._told_s
-            self._stream.send(told if self._guard is None else self._guard.bounded(told), age_s=age_s)
+            command = self._to_command(self._command)
+            age_s = self._clock.now_s() - self._command_s
+            self._stream.send(command if self._guard is None else self._guard.bounded(command), age_s=age_s)
 
-    def _looked(self) -> None:
-        """The way ahead is another: the arm may go faster, or must go slower; but for a silence it comes to rest.
+    def _on_limit_change(self) -> None:
+        """Apply a changed speed limit to the last command; without recent commands the arm comes to rest.
 
-        What is passed on anew keeps its age, so the watchdog of the stream bites in its time whatever happens here;
-        after a silence nobody need look ahead either.
+        A resent command keeps its age, so the watchdog of the stream expires on time; once it has expired, the
+        guard has nothing left to check.
         """
-        if self._clock.now_s() - self._told_s >= self.watchdog_s:
-            self._told = (0.0,) * self._width
+        if self._clock.now_s() - self._command_s >= self.watchdog_s:
+            self._command = (0.0,) * self._width
         try:
-            self._pass_on()
+            self._resend()
         except RobotError as error:
             # The goal itself ends with the reason.
             _log.warning("%s: %s", self._handle.address, error)
 
-    def _fault(self, velocity: Row) -> str:
+    def _velocity_error(self, velocity: Row) -> str:
         if not are_numbers(velocity):
-            return f"{velocity!r} is no velocity"
+            return f"{velocity!r} is not a velocity"
         if len(velocity) != self._width:
-            return f"a velocity of {len(velocity)} numbers was given where {self._width} are due"
+            return f"the velocity has {len(velocity)} components, expected {self._width}"
         if not np.isfinite(velocity).all():
             return f"the velocity {velocity} is not finite"
         fastest = float(np.abs(velocity).max())
-        return f"a velocity of {fastest:.3g} is far too fast" if fastest > _ABSURD else ""
+        return f"the velocity {fastest:.3g} exceeds {_MAX_PLAUSIBLE:g}" if fastest > _MAX_PLAUSIBLE else ""

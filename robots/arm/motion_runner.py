@@ -1,4 +1,4 @@
-"""Carries out the motions of one arm, one at a time: accepts or rejects a goal, attends its motion, comes to rest."""
+"""Executes the motions of one arm, one at a time: accepts or rejects a goal, supervises its motion, stops the arm."""
 
 from __future__ import annotations
 
@@ -32,32 +32,32 @@ T = TypeVar("T")
 M = TypeVar("M", bound=Motion)
 
 _REST_RAD_S = 0.02
-# How long a moving arm may take to come to rest, and how often that is looked at.
-_BRAKING_S, _LOOK_S = 2.0, 0.01
-_LOADS = "waiting until inverse kinematics is loaded"
+# Longest time a moving arm may take to come to rest, and the polling period.
+_BRAKING_S, _POLL_S = 2.0, 0.01
+_LOADING = "waiting until inverse kinematics is loaded"
 
 _log = logging.getLogger("flexcell.arm")
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionCompletion:
-    """A motion that came to its end without a failure: how, and after how long."""
+    """Report and duration of a motion that ended without a failure."""
 
     report: MotionReport
     duration_s: float
 
 
 class MotionRunner:
-    """What the groups of motion skills of one arm share; see `ArmServer` for who makes it.
+    """Shared state of the skill groups of one arm; created by `ArmServer`.
 
     Attributes:
         name: Bus namespace and resource of the arm.
         status: READY between entering and leaving the robot.
-        reserved_for: Why no other goal is taken for now, in words; empty when one is.
-        activity: The skill that is carried out, or what a goal waits for; empty when there is none.
-        error: Why the last motion failed; empty after one that did not.
-        lost_reason: Why the device is out of reach; empty while it is not.
-        changed: Called when any of these has changed.
+        reserved_for: The mode that blocks other goals now; empty without one.
+        activity: The skill in execution, or what a goal waits for; empty without either.
+        error: Why the last motion failed; empty if it did not.
+        lost_reason: Why the device is not reachable; empty while it is.
+        changed: Called after a change of any of these.
     """
 
     def __init__(
@@ -87,17 +87,17 @@ class MotionRunner:
         self.activity = ""
         self.error = ""
         self.lost_reason = ""
-        self.changed: Callable[[], None] = _nothing
+        self.changed: Callable[[], None] = _no_operation
         self._mode: ArmMode = "moving"
         self._motion: Motion | None = None
-        port.when_reflex(self._reflexed)
+        port.when_reflex(self._on_reflex)
         self._occupied: asyncio.Task[None] | None = None
         self._planning = 0
         self._stops = 0
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out, or a stream leads the arm."""
+        """True while a goal is executed, or a stream commands the arm."""
         return self._motion is not None
 
     @property
@@ -107,7 +107,7 @@ class MotionRunner:
 
     @property
     def mode(self) -> ArmMode:
-        """What the arm does now."""
+        """The current mode of the arm."""
         if self.status is DeviceStatus.DISCONNECTED:
             return "disconnected"
         if self._motion is not None:
@@ -118,14 +118,14 @@ class MotionRunner:
 
     @property
     def kinematics(self) -> ArmKinematics:
-        """Of the arm with the tool centre point that is in force."""
-        self._take_tool()
+        """Kinematics of the arm with the current tool center point."""
+        self._update_tool()
         return self._kinematics
 
     @property
     def planner(self) -> ArmPlanner:
-        """Plans for the tool centre point that is in force."""
-        self._take_tool()
+        """Planner for the current tool center point."""
+        self._update_tool()
         return self._planner
 
     def measured(self) -> tuple[float, ...]:
@@ -133,19 +133,19 @@ class MotionRunner:
         return tuple(self.port.sample().position_rad.tolist())
 
     def set_point(self) -> tuple[float, ...]:
-        """Return the joints that the arm is commanded to have now: where its next motion begins."""
+        """Return the currently commanded joints, where the next motion starts."""
         return tuple(self.port.sample().desired_rad.tolist())
 
     def measured_pose(self) -> Pose:
-        """Return the measured pose of the tool centre point in the world."""
+        """Return the measured pose of the tool center point in the world."""
         return self.measured_tool().to_pose(WORLD)
 
     def measured_tool(self) -> RigidTransform:
-        """Return the measured tool centre point in the world, as numbers."""
+        """Return the measured tool center point in the world as a transform."""
         return self.kinematics.tool_pose(self.port.sample().position_rad)
 
     def target(self, pose: Pose, handle: ActiveGoal[Any]) -> RigidTransform:
-        """Return the pose of a goal in the world; GoalRejected where its frame is not known."""
+        """Return the pose of a goal in the world; raises GoalRejected for an unknown frame."""
         try:
             return self.frames.to_world(pose)
         except RobotError as error:
@@ -159,30 +159,30 @@ class MotionRunner:
         try:
             planned = await plan(self.port.sample().desired_rad)
         except PathBlocked as error:
-            raise GoalRejected("the arm cannot go there with what it holds", where=handle.address) from error
+            raise GoalRejected("the attached part collides on this path", where=handle.address) from error
         except RobotError as error:
-            # The refusal says it all: a second link with the same words would explain nothing.
+            # The rejection carries the full message; chaining would only repeat it.
             raise GoalRejected(error.message, where=handle.address, hint=error.hint) from None
         except (ArithmeticError, ValueError) as error:
-            # Numbers far beyond all sense, such as gains of 1e300, overflow in the midst of a plan.
+            # Extreme numbers, such as gains of 1e300, overflow during planning.
             raise GoalRejected(
-                f"no motion can be worked out from these numbers: {error}",
+                f"no motion can be computed from these numbers: {error}",
                 where=handle.address,
-                hint="look for a value that is far too great or too small",
+                hint="check the goal for values that are too large or too small",
             ) from error
         finally:
             self._planning -= 1
         if self._stops != stops:
-            raise GoalRejected("the arm was stopped while the motion was planned", where=handle.address)
+            raise GoalRejected("the arm was stopped during planning", where=handle.address)
         self.accept(handle)
         return planned
 
     async def planned_with_attached_parts(
         self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[JointTrajectory]]
     ) -> JointTrajectory:
-        """Plan a way that nobody looks for, as `planned` does; reject the goal where what the arm holds is in its way.
+        """Plan a trajectory as `planned` does; reject the goal if an attached part collides on it.
 
-        Without a planning scene nothing is known of what it holds.
+        Without a planning scene attached parts are unknown and not checked.
         """
 
         async def checked(start: Array) -> JointTrajectory:
@@ -194,44 +194,44 @@ class MotionRunner:
         return await self.planned(handle, checked)
 
     async def loaded(self) -> None:
-        """Return when inverse kinematics can be asked without a delay; who reads the status learns of the wait."""
+        """Return when inverse kinematics answers without a loading delay; the status shows the wait."""
         if not self.loading.under_way:
             return
-        _log.info("%s: %s", self.name, _LOADS)
+        _log.info("%s: %s", self.name, _LOADING)
         if not self.moving:
-            self.activity = _LOADS
+            self.activity = _LOADING
             self.changed()
         try:
             await self.loading.finished()
         finally:
-            if self.activity == _LOADS:
+            if self.activity == _LOADING:
                 self.activity = ""
                 self.changed()
 
     def accept(self, handle: ActiveGoal[Any]) -> None:
-        """Accept a goal that needs no plan (any more), or reject it with the reason."""
+        """Accept a goal that needs no further plan, or reject it with the reason."""
         self.require_ready(handle)
         handle.accept()
 
     def require_ready(self, handle: ActiveGoal[Any]) -> None:
-        """Raise GoalRejected while the arm takes no goals."""
+        """Raise GoalRejected while the arm accepts no goals."""
         reason, hint = self.obstacle()
         if reason:
             raise GoalRejected(reason, where=handle.address, hint=hint)
 
     def obstacle(self) -> tuple[str, str]:
-        """Return why the arm takes no goals for now and what to do about it; empty where it takes them."""
+        """Return why the arm accepts no goals now, and a hint; both empty if it accepts them."""
         if self.lost_reason:
             return self.lost_reason, CONNECT_AGAIN
         if self.status is not DeviceStatus.READY:
             return f"the arm is {self.status.value}", "connect it first"
         if self.reserved_for:
-            return f"the arm is in {self.reserved_for}", "end that first"
+            return f"the arm is in {self.reserved_for}", "switch that off first"
         if self.port.sample().reflex:
             why = self.port.reflex_reason
             return (
                 "the arm has stopped by itself" + (f": {why}" if why else ""),
-                "clear what is in its way, then call recover_from_error",
+                "remove the obstacle, then call recover_from_error",
             )
         return "", ""
 
@@ -239,18 +239,18 @@ class MotionRunner:
         self,
         start: Callable[[], M],
         handle: ActiveGoal[Any],
-        tell: Callable[[M], None],
+        publish_feedback: Callable[[M], None],
         *,
         words: str = "the arm",
         mode: ArmMode = "moving",
-        left: Callable[[float], object] | None = None,
+        failed_result: Callable[[float], object] | None = None,
     ) -> MotionCompletion:
-        """Start a motion and return how it ended; a cancelled goal returns as well, at rest.
+        """Start a motion and return its completion; also returns for a canceled goal, with the arm at rest.
 
-        `left` makes the result of a motion that failed after so many seconds: where it has left the arm.
+        `failed_result` creates the result of a failed motion, with where it left the arm, from its duration in seconds.
 
         Raises:
-            SkillFailed: it could not be started, failed, or was stopped by somebody else.
+            SkillFailed: the motion could not be started, failed, or was stopped by another command.
         """
         started_s = self.clock.now_s()
         try:
@@ -260,39 +260,39 @@ class MotionRunner:
         self.error = ""
         self._begin(motion, mode, handle.address.rpartition("/")[2])
         try:
-            await supervise_goal(motion, handle, tell=lambda: tell(motion), device=self.name, words=words)
+            await supervise_goal(motion, handle, tell=lambda: publish_feedback(motion), device=self.name, words=words)
         except (SkillFailed, RobotError) as error:
             self.error = describe_cause(cause_of(error))
-            if left is not None and isinstance(error, SkillFailed):
-                error.result = left(self.clock.now_s() - started_s)
+            if failed_result is not None and isinstance(error, SkillFailed):
+                error.result = failed_result(self.clock.now_s() - started_s)
             raise
         finally:
             self._end()
         return MotionCompletion(report=await motion.report(), duration_s=self.clock.now_s() - started_s)
 
     def occupy(self, stream: MotionStream, *, mode: ArmMode, activity: str, reserved_for: str) -> None:
-        """Take no goals until `stream`, which no goal began, has ended."""
+        """Accept no goals until `stream`, which no goal started, has ended."""
         self.reserved_for = reserved_for
         self._begin(stream, mode, activity)
         self._occupied = asyncio.create_task(self._until_free(stream), name=f"{activity} of {self.name}")
 
     async def freed(self) -> None:
-        """Return when nothing occupies the arm."""
+        """Return when no stream occupies the arm."""
         if self._occupied is not None:
             await asyncio.wait((self._occupied,))
 
     def lose(self, reason: str) -> None:
-        """Take no goals until `find`: the device is out of reach."""
+        """Accept no goals until `find`: the device is not reachable."""
         self.status, self.lost_reason, self.error = DeviceStatus.FAULT, reason, reason
         self.changed()
 
     def find(self) -> None:
-        """Take goals again: the device is back, at rest."""
+        """Accept goals again: the device is reachable again, at rest."""
         self.status, self.lost_reason, self.error = DeviceStatus.READY, "", ""
         self.changed()
 
     async def stop(self) -> None:
-        """Cancel what is carried out and return at its end."""
+        """Cancel the current motion and return at its end."""
         self._stops += 1
         if self._motion is not None:
             self._motion.cancel()
@@ -300,16 +300,16 @@ class MotionRunner:
         await self.freed()
 
     def brake(self) -> None:
-        """Cancel what is carried out; `stop` waits for it."""
+        """Cancel the current motion; `stop` waits for its end."""
         self._stops += 1
         if self._motion is not None:
             self._motion.cancel()
 
     async def confirm_rest(self) -> None:
-        """Return when the arm is measured at rest; whoever else moved it is being stopped as well.
+        """Return when the arm is measured at rest.
 
         Raises:
-            RobotError: it still moves, and the status is then FAULT; or it is out of reach.
+            RobotError: the arm still moves, and the status is then FAULT; or it is not reachable.
         """
         if self.lost_reason:
             raise RobotError(self.lost_reason, where=self.name, hint=CONNECT_AGAIN)
@@ -327,10 +327,10 @@ class MotionRunner:
                     where=self.name,
                     hint="use the emergency stop",
                 )
-            await self.clock.sleep(_LOOK_S)
+            await self.clock.sleep(_POLL_S)
 
-    def _reflexed(self, reason: str) -> None:
-        """Tell at once; a motion under way fails and tells the reason itself."""
+    def _on_reflex(self, reason: str) -> None:
+        """Report immediately; an active motion fails and reports the reason itself."""
         if self._motion is None:
             self.error = f"the arm has stopped by itself: {reason}"
         self.changed()
@@ -350,8 +350,8 @@ class MotionRunner:
         self._occupied = None
         self._end()
 
-    def _take_tool(self) -> None:
-        """Let kinematics and planner mean the tool centre point of the settings, which a restore may change."""
+    def _update_tool(self) -> None:
+        """Update kinematics and planner to the tool center point of the settings, which a restore may change."""
         settings = self.port.settings
         tool = (settings.tool_xyz_m, settings.tool_xyzw)
         if tool == self._tool:
@@ -364,5 +364,5 @@ class MotionRunner:
         return ArmPlanner(self._kinematics.twin(), clock=self.clock, loaded=self.loaded)
 
 
-def _nothing() -> None:
-    """Tell nobody."""
+def _no_operation() -> None:
+    """Do nothing."""

@@ -1,4 +1,4 @@
-"""Digital outputs of the robot's controller, by number and by what hangs on them (RCL 4.3.9, tables 10 and 11)."""
+"""Digital outputs of the robot's controller, by number and by connected device (RCL 4.3.9, tables 10 and 11)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robots.port import OutputPort
 
 
 class OutputServices:
-    """Answers SetOutput, and SetToolExchange, SetGripper and SetLinearAxis where an output is named so.
+    """Serves SetOutput, and SetToolExchange, SetGripper and SetLinearAxis where an output has that use.
 
     Args:
         name: The arm's name on the bus.
@@ -32,7 +32,7 @@ class OutputServices:
         name, uses = self._name, self._uses
         self._topic = bus.topic(f"{name}/digital_outputs", DigitalOutputs)
         self._topic.provide(self._now)
-        self._tell()
+        self._publish()
         bus.advertise_service(SetOutput, self._set_output, namespace=name, commands=name)
         if "tool_exchange" in uses:
             bus.advertise_service(SetToolExchange, self._set_tool_exchange, namespace=name, commands=name)
@@ -62,10 +62,10 @@ class OutputServices:
             self._port.set(output, on=value)
         except RobotError as error:
             return SwitchResult(success=False, message=str(error))
-        self._tell()
+        self._publish()
         return SwitchResult(success=True, message=f"{words} is {'on' if value else 'off'}")
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         if self._topic is not None:
             self._topic.publish(self._now())
 

@@ -1,4 +1,4 @@
-"""What one moving arm must know of the scene around it: whether its way is free, what comes near while it rests."""
+"""Monitors the scene for one moving arm: whether its path is free, and what moves near it while it rests."""
 
 from __future__ import annotations
 
@@ -14,59 +14,59 @@ from robots.planning.request import PathCheck
 from robots.workspace.path_reservations import describe_names
 from robots.workspace.workspace import Workspace
 
-# A check that takes longer is none: the arm is watched by nobody.
+# Timeout of a check: a longer one counts as no monitoring.
 _CHECK_S = 0.3
-# What changed no longer ago than this counts as moving; so near to a resting arm it keeps the arm at rest.
-_LATELY_S, _APART_M = 0.5, 0.08
+# An object that changed within this time counts as moving; within this distance it keeps a resting arm at rest.
+_RECENT_S, _APART_M = 0.5, 0.08
 
 
 @dataclass(frozen=True, kw_only=True)
 class PredictedCollision:
-    """Why an arm must stop, and at which instant of its way's own time it would touch; infinite where none is known."""
+    """Why an arm must stop, and the time of the collision in its path's own time; infinite if unknown."""
 
     reason: str
     at_s: float = math.inf
 
 
 class PathMonitor:
-    """Looks at the ways of one arm for one goal."""
+    """Checks the paths of one arm for one goal."""
 
-    def __init__(self, runner: MotionRunner, finder: PathPlanner, workspace: Workspace) -> None:
+    def __init__(self, runner: MotionRunner, planner: PathPlanner, workspace: Workspace) -> None:
         self._runner = runner
-        self._finder = finder
+        self._planner = planner
         self._workspace = workspace
         self._changed_s: dict[str, float] = {}
 
     def note(self, names: frozenset[str]) -> None:
-        """Remember what has changed just now."""
+        """Record the names of objects that have just changed."""
         now_s = self._runner.clock.now_s()
         self._changed_s.update((name, now_s) for name in names)
 
     @property
     def unobserved_reason(self) -> str:
-        """Why nothing can be known of the scene; empty where it can."""
+        """Why the scene is not observed; empty if it is."""
         stale = self._workspace.stale_reason
         return f"the occupancy map is not valid: {stale}" if stale else ""
 
-    async def ahead(self, leg: PathSegment, *, from_s: float) -> PredictedCollision | None:
-        """Return why the rest of a way that is being gone must not be; None where it is free."""
-        return await self._trouble(self._finder.check(leg, from_s=from_s, margin_m=self._finder.margin_m))
+    async def ahead(self, segment: PathSegment, *, from_s: float) -> PredictedCollision | None:
+        """Return the collision on the remaining path that the arm follows; None if it is free."""
+        return await self._predict(self._planner.check(segment, from_s=from_s, margin_m=self._planner.margin_m))
 
-    async def along(self, leg: PathSegment) -> PredictedCollision | None:
-        """Return why a way that was found just now must not be gone; None where it is free."""
-        return await self._trouble(self._finder.confirm(leg))
+    async def along(self, segment: PathSegment) -> PredictedCollision | None:
+        """Return the collision on a path that was just planned; None if it is free."""
+        return await self._predict(self._planner.confirm(segment))
 
-    async def _trouble(self, looking: Coroutine[object, object, PathCheck]) -> PredictedCollision | None:
+    async def _predict(self, query: Coroutine[object, object, PathCheck]) -> PredictedCollision | None:
         if self.unobserved_reason:
-            looking.close()
+            query.close()
             return PredictedCollision(reason=self.unobserved_reason)
-        if gone := self._workspace.planners.watch_unavailable_reason:
-            # Whatever moves now would be told too late; the arm waits at rest for another one to start.
-            looking.close()
-            return PredictedCollision(reason=f"path monitoring is not available: {gone}")
+        if unavailable := self._workspace.planners.watch_unavailable_reason:
+            # A moving arm would be notified too late; it waits at rest until a new process has started.
+            query.close()
+            return PredictedCollision(reason=f"path monitoring is not available: {unavailable}")
         try:
             async with asyncio.timeout(_CHECK_S):
-                check = await looking
+                check = await query
         except TimeoutError:
             return PredictedCollision(reason=f"its path was not checked within {_CHECK_S:g} s")
         except FlexcellError as error:
@@ -75,23 +75,23 @@ class PathMonitor:
             return None
         return PredictedCollision(reason=describe_contacts(check.pairs), at_s=check.blocked_at_s)
 
-    async def rest_of(self, leg: PathSegment, *, from_s: float) -> str:
-        """Return why a resting arm cannot go the rest of its way, as far from things as it was planned; else nothing.
+    async def rest_of(self, segment: PathSegment, *, from_s: float) -> str:
+        """Return why a resting arm cannot follow its remaining path with the planned margin; empty if it can.
 
         Raises:
-            RobotError: the planning process ended.
+            RobotError: the planning process has ended.
         """
-        check = await self._finder.check(leg, from_s=from_s, margin_m=leg.margin_m)
+        check = await self._planner.check(segment, from_s=from_s, margin_m=segment.margin_m)
         return "" if check.blocked_at_s is None else describe_contacts(check.pairs)
 
     async def beside(self) -> str:
-        """Return what moves near the resting arm: that keeps it at rest. Raises as `rest_of` does."""
+        """Return what moves near the resting arm and keeps it at rest; empty if nothing. Raises as `rest_of` does."""
         now_s = self._runner.clock.now_s()
-        lately = {name for name, at_s in self._changed_s.items() if now_s - at_s < _LATELY_S}
-        if not lately:
+        recent = {name for name, at_s in self._changed_s.items() if now_s - at_s < _RECENT_S}
+        if not recent:
             return ""
-        near = await self._finder.beside(self._runner.port.sample().position_rad, within_m=_APART_M)
-        for _, thing in near:
-            if thing.partition("/")[0].partition("~")[0] in lately or thing in lately:
-                return f"{describe_names(thing)} moves within {_APART_M * 100:.0f} cm of the arm"
+        pairs = await self._planner.beside(self._runner.port.sample().position_rad, within_m=_APART_M)
+        for _, name in pairs:
+            if name.partition("/")[0].partition("~")[0] in recent or name in recent:
+                return f"{describe_names(name)} moves within {_APART_M * 100:.0f} cm of the arm"
         return ""

@@ -1,4 +1,4 @@
-"""The motion skills whose way is known beforehand: joint profiles and the straight line (RCL tables 3 to 5)."""
+"""The motion skills with a given path: joint profiles and the straight line (RCL tables 3 to 5)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from robots.port import Array, JointTrajectory
 
 
 class PathMotions:
-    """Answers JointTrapVel, CartTrapVel and CartLinTask, and where the tool is."""
+    """Serves JointTrapVel, CartTrapVel, CartLinTask and ForwardKinematics."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -66,7 +66,7 @@ class PathMotions:
             return runner.measured_pose()
         if len(request.joints) != runner.model.dof:
             raise SkillFailed(
-                f"{len(request.joints)} joints were given", where=runner.name, hint=f"this arm has {runner.model.dof}"
+                f"got {len(request.joints)} joints", where=runner.name, hint=f"this arm has {runner.model.dof}"
             )
         if not np.isfinite(request.joints).all():
             raise SkillFailed(f"the joints {request.joints} are not finite", where=runner.name)

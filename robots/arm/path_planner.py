@@ -1,4 +1,4 @@
-"""Finds ways for one arm in the live scene of its cell, and looks ahead on those that it is on."""
+"""Plans paths for one arm in the live scene of its cell, and checks the paths that it follows."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from robots.workspace.path_reservations import describe_names
 from robots.workspace.workspace import Workspace
 
 EXTRA_MARGIN_M = 0.015
-"""Ways are looked for so much farther from obstacles than is watched for: else the next image might block them."""
+"""Planning keeps this much more clearance than monitoring requires; else the next image might block the path."""
 
 _SPARE_SHARE = 0.5
 TRANSIENT_REASONS: tuple[RefusalReason, ...] = (
@@ -38,14 +38,14 @@ TRANSIENT_REASONS: tuple[RefusalReason, ...] = (
     "no_path_in_time",
     "way_blocked",
 )
-"""Refusals that may be otherwise without the spare distance, or when what is in the way has gone."""
+"""Refusals that may not recur without the extra margin, or once the obstacle is gone."""
 
 PlanningGoal = JointGoal | PoseGoal | PathGoal
 
 
 @dataclass(frozen=True, kw_only=True)
 class PathSegment:
-    """A way that was confirmed, timed, and found with `margin_m`."""
+    """A validated, time-parameterized path that was planned with `margin_m`."""
 
     plan: PathPlan
     way: SampledTrajectory
@@ -54,14 +54,14 @@ class PathSegment:
 
 
 class PathPlanner:
-    """Asks the planners of a workspace on behalf of one goal of one arm.
+    """Queries the planners of a workspace for one goal of one arm.
 
     Args:
         arm: Name of the arm.
-        workspace: Whose scene, cameras and planners.
-        goal: Where to.
-        options: How.
-        tool: The tool centre point in the frame of the model's tool link; None for its origin.
+        workspace: Provides the scene, the occupancy and the planners.
+        goal: The planning goal.
+        options: The planning options.
+        tool: The tool center point in the frame of the model's tool link; None for its origin.
     """
 
     def __init__(
@@ -74,11 +74,11 @@ class PathPlanner:
         self._tool = tool
 
     async def find(self, start: Array, *, attempt: int = 0) -> PathSegment | PlanRefusal:
-        """Return a way from `start` (n,) through the scene as it is now; other attempts search otherwise.
+        """Plan a path from `start` (n,) in the current scene; each attempt uses another seed.
 
         Raises:
-            RobotError: the planning process ended.
-            CellError: the scene is wrong.
+            RobotError: the planning process has ended.
+            CellError: the scene is invalid.
         """
         options = self._options
         wide = await self._ask(start, options.margin_m + EXTRA_MARGIN_M, options.time_s * _SPARE_SHARE, attempt)
@@ -87,24 +87,24 @@ class PathPlanner:
         return await self._ask(start, options.margin_m, options.time_s * (1.0 - _SPARE_SHARE), attempt)
 
     async def is_permanently_blocked(self, start: Array) -> bool:
-        """Return whether there is no way even without what goes away by itself: other arms, what cameras see.
+        """Return whether there is no path even without transient obstacles: other arms and the occupancy.
 
         Raises as `find` does.
         """
         return isinstance(
-            await self._ask(start, self._options.margin_m, self._options.time_s, 0, lasting=True), PlanRefusal
+            await self._ask(start, self._options.margin_m, self._options.time_s, 0, permanent=True), PlanRefusal
         )
 
-    async def check(self, leg: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
-        """Return where the rest of a way is blocked in the scene as it is now; raises as `find` does."""
-        return await self._workspace.planners.check_path(self._seen(leg.way, from_s, margin_m))
+    async def check(self, segment: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
+        """Return where the remaining path is blocked in the current scene; raises as `find` does."""
+        return await self._workspace.planners.check_path(self._check_request(segment.way, from_s, margin_m))
 
-    async def confirm(self, leg: PathSegment) -> PathCheck:
-        """Return where a way that was found just now is blocked in the scene as it is now; raises as `find` does."""
-        return await self._workspace.planners.confirm_path(self._seen(leg.way, 0.0, self.margin_m))
+    async def confirm(self, segment: PathSegment) -> PathCheck:
+        """Return where a path that was just planned is blocked in the current scene; raises as `find` does."""
+        return await self._workspace.planners.confirm_path(self._check_request(segment.way, 0.0, self.margin_m))
 
     async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
-        """Return what is within a distance of the arm standing at `joints` (n,); raises as `find` does."""
+        """Return the pairs within a distance of the arm at `joints` (n,); raises as `find` does."""
         workspace = self._workspace
         report = await workspace.planners.look(
             CollisionRequest(
@@ -119,17 +119,17 @@ class PathPlanner:
 
     @property
     def margin_m(self) -> float:
-        """The distance that is watched for."""
+        """The monitored margin."""
         return self._options.margin_m
 
     async def _ask(
-        self, start: Array, margin_m: float, time_s: float, attempt: int, *, lasting: bool = False
+        self, start: Array, margin_m: float, time_s: float, attempt: int, *, permanent: bool = False
     ) -> PathSegment | PlanRefusal:
         options, workspace = self._options, self._workspace
         scene = workspace.scene_for(self.arm)
         answer = await workspace.planners.plan(
             PlanRequest(
-                scene=_without_others(scene, self.arm) if lasting else scene,
+                scene=_without_others(scene, self.arm) if permanent else scene,
                 arm=self.arm,
                 start_rad=tuple(float(q) for q in start),
                 goal=self._goal,
@@ -137,10 +137,10 @@ class PathPlanner:
                 time_s=time_s,
                 seed=options.seed + attempt,
                 margin_m=margin_m,
-                keep_orientation=_kept(options),
+                keep_orientation=_orientation_constraint(options),
                 tool=self._tool,
                 speed=options.speed,
-                occupancy=None if lasting else workspace.occupancy,
+                occupancy=None if permanent else workspace.occupancy,
             )
         )
         if isinstance(answer, PlanRefusal):
@@ -149,7 +149,7 @@ class PathPlanner:
             raise RobotError("the planner returned no trajectory", where=self.arm, hint="plan again")
         return PathSegment(plan=answer, way=answer.timed, trajectory=answer.timed.trajectory(), margin_m=margin_m)
 
-    def _seen(self, way: SampledTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
+    def _check_request(self, way: SampledTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
         workspace = self._workspace
         return PathCheckRequest(
             scene=workspace.scene_for(self.arm),
@@ -162,7 +162,7 @@ class PathPlanner:
 
 
 def describe_contacts(pairs: tuple[NamePair, ...]) -> str:
-    """Say what would touch: `left/panda_hand would touch wall`."""
+    """Describe the contacts: `left/panda_hand would touch wall`."""
     if not pairs:
         return "the arm would touch something"
     first, second = pairs[0]
@@ -175,7 +175,7 @@ def _without_others(scene: PlanningScene, arm: str) -> PlanningScene:
     return msgspec.structs.replace(scene, arms=(scene.arm(arm),), attached=own)
 
 
-def _kept(options: PlanOptions) -> PathOrientationConstraint | None:
+def _orientation_constraint(options: PlanOptions) -> PathOrientationConstraint | None:
     wish = options.keep_orientation
     return (
         None

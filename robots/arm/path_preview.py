@@ -1,4 +1,4 @@
-"""Shows the way of an arm on `<arm>/planned_path`: proposed, under way, blocked, none."""
+"""Publishes the path of an arm on `<arm>/planned_path`: proposed, moving, blocked, none."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from engine.skills.planning import PathPreview
 from robots.arm.motion_runner import MotionRunner
 from robots.port import JointTrajectory
 
-_SHOWN = 60
+_SAMPLES = 60
 
 
 class PathPreviewPublisher:
-    """Publishes what one arm is about to go, or goes."""
+    """Publishes the path that one arm plans to follow, or follows."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -25,12 +25,12 @@ class PathPreviewPublisher:
         self._shown = PathPreview(robot=runner.name, state="none")
 
     def register(self, bus: SkillBus) -> None:
-        """Make the topic."""
+        """Create the topic."""
         self._topic = bus.topic(f"{self._runner.name}/planned_path", PathPreview)
         self._topic.publish(self._shown)
 
     def show(self, trajectory: JointTrajectory, *, state: Literal["proposed", "moving"]) -> None:
-        """Show a way."""
+        """Publish a path."""
         rows = sample_trajectory(trajectory)
         self._publish(
             PathPreview(
@@ -43,7 +43,7 @@ class PathPreviewPublisher:
         )
 
     def mark(self, state: Literal["moving", "blocked"], reason: str = "") -> None:
-        """Say of the way that is shown that the arm goes it, or cannot for now."""
+        """Mark the published path as followed, or as blocked with the reason."""
         shown = self._shown
         if shown.state != "none" and (shown.state, shown.reason) != (state, reason):
             self._publish(
@@ -58,7 +58,7 @@ class PathPreviewPublisher:
             )
 
     def clear(self) -> None:
-        """Show none."""
+        """Publish that there is no path."""
         if self._shown.state != "none":
             self._publish(PathPreview(robot=self._runner.name, state="none"))
 
@@ -69,14 +69,14 @@ class PathPreviewPublisher:
 
 
 def sample_trajectory(trajectory: JointTrajectory) -> tuple[tuple[float, ...], ...]:
-    """Return configurations along a trajectory, both ends among them, radians."""
+    """Return configurations along a trajectory including both ends, radians."""
     last = len(trajectory.position_rad) - 1
-    picked = np.unique(np.linspace(0, last, min(_SHOWN, last + 1)).round().astype(int))
-    return tuple(tuple(row) for row in trajectory.position_rad[picked].tolist())
+    indices = np.unique(np.linspace(0, last, min(_SAMPLES, last + 1)).round().astype(int))
+    return tuple(tuple(row) for row in trajectory.position_rad[indices].tolist())
 
 
 def compute_tool_path(runner: MotionRunner, rows: tuple[tuple[float, ...], ...]) -> tuple[Vector3, ...]:
-    """Return the tool centre points of configurations, in the world."""
+    """Return the positions of the tool center point at the configurations, in the world."""
     kinematics = runner.kinematics
     points: list[Vector3] = []
     for row in rows:

@@ -1,4 +1,4 @@
-"""Questions to the planner that a moving arm can leave unanswered."""
+"""Planner queries that a moving arm can abandon."""
 
 from __future__ import annotations
 
@@ -10,33 +10,33 @@ T = TypeVar("T")
 
 
 class QuerySuperseded(Exception):
-    """What was asked for is over before the planner has answered."""
+    """The query became obsolete before the planner answered."""
 
 
 async def await_answer(
     question: Coroutine[object, object, T] | asyncio.Future[T], *, unless: Iterable[asyncio.Future[Any]]
 ) -> T:
-    """Wait for an answer, which may take as long as the planner's process takes to start again.
+    """Wait for an answer, which may take as long as a restart of the planner's process.
 
     Args:
-        question: What is asked; dropped at the end, whatever that is.
-        unless: What nobody needs the answer after.
+        question: The query; discarded at the end in any case.
+        unless: Futures after which the answer is obsolete.
 
     Raises:
-        Overtaken: one of these came before the answer.
+        QuerySuperseded: one of `unless` completed before the answer.
     """
-    asking = asyncio.ensure_future(question)
+    query = asyncio.ensure_future(question)
     try:
-        await asyncio.wait((asking, *unless), return_when=asyncio.FIRST_COMPLETED)
-        if not asking.done():
+        await asyncio.wait((query, *unless), return_when=asyncio.FIRST_COMPLETED)
+        if not query.done():
             raise QuerySuperseded
-        return asking.result()
+        return query.result()
     finally:
-        await discard_query(asking)
+        await discard_query(query)
 
 
 async def discard_query(question: asyncio.Future[Any] | None) -> None:
-    """End a question that nobody asks any more; what went wrong in it is nobody's concern either."""
+    """Cancel an obsolete query and ignore its errors."""
     if question is None:
         return
     question.cancel()

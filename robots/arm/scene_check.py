@@ -1,4 +1,4 @@
-"""Asks of ways of one arm whether they are free in the planning scene as it is now, by the rule of a jog."""
+"""Checks trajectories of one arm for collisions in the current planning scene, by the collision options of a jog."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robots.workspace.workspace import Workspace
 
 
 class SceneCheck:
-    """Checks ways of an arm.
+    """Checks trajectories of an arm.
 
     Args:
-        arm: Its name.
-        workspace: Whose scene, cameras and planners.
-        rule: How far from what.
+        arm: Name of the arm.
+        workspace: Provides the scene, the occupancy and the planners.
+        rule: Margin, and the objects that may be touched.
     """
 
     def __init__(self, arm: str, workspace: Workspace, *, rule: JogCollisionOptions) -> None:
@@ -28,16 +28,16 @@ class SceneCheck:
 
     @property
     def unobserved_reason(self) -> str:
-        """Why nothing can be known of the scene; empty where it can."""
+        """Why the scene is not observed; empty if it is."""
         stale = self._workspace.stale_reason
         return f"the occupancy map is not valid: {stale}" if stale else ""
 
-    async def check(self, way: JointTrajectory) -> PathCheck:
-        """Return where a way is blocked in the scene as it is now.
+    async def check(self, trajectory: JointTrajectory) -> PathCheck:
+        """Return where a trajectory is blocked in the current scene.
 
         Raises:
-            RobotError: the process that looks has ended.
-            CellError: the scene is wrong.
+            RobotError: the planning process has ended.
+            CellError: the scene is invalid.
         """
         await self._workspace.ready()
         scene = self._workspace.scene_for(self._arm)
@@ -46,30 +46,30 @@ class SceneCheck:
             PathCheckRequest(
                 scene=msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene,
                 arm=self._arm,
-                way=SampledTrajectory.of(way),
+                way=SampledTrajectory.of(trajectory),
                 from_s=0.0,
                 occupancy=self._workspace.occupancy,
                 margin_m=self._rule.margin_m,
             )
         )
 
-    async def require_free(self, way: JointTrajectory) -> None:
-        """Return when a way was found free.
+    async def require_free(self, trajectory: JointTrajectory) -> None:
+        """Return if the trajectory is collision-free.
 
         Raises:
-            RobotError: it is not; the message names what would touch.
-            CellError: the scene is wrong.
+            RobotError: a collision; the message names the objects.
+            CellError: the scene is invalid.
         """
         self._workspace.require()
         try:
             await self._workspace.fresh()
-            check = await self.check(way)
+            check = await self.check(trajectory)
         finally:
             self._workspace.release()
         if check.blocked_at_s is not None:
-            share = check.blocked_at_s / max(way.dt_s, way.dt_s * (len(way.position_rad) - 1))
+            share = check.blocked_at_s / max(trajectory.dt_s, trajectory.duration_s)
             raise RobotError(
                 f"{describe_contacts(check.pairs)} after {share:.0%} of the step",
                 where=self._arm,
-                hint="step elsewhere, name it in `scene.may_touch`, or give `scene.minded: false`",
+                hint="choose another step, name the object in `scene.may_touch`, or give `scene.minded: false`",
             )

@@ -1,4 +1,4 @@
-"""Ends a stream after so much time under way; time in which its goal is held does not count."""
+"""Finishes a stream after a duration; time in which its goal is held does not count."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from robots.supervise_goal import FEEDBACK_S
 
 
 class StreamDeadline:
-    """Call `look` at least at every feedback; `restart` begins anew.
+    """Deadline of a stream: call `look` at least at every feedback; `restart` resets the time.
 
     Args:
-        stream: What is finished.
+        stream: The stream to finish.
         handle: Its goal.
-        duration_s: After which time; None for never.
+        clock: The arm's clock.
+        duration_s: Time until the deadline; None for no deadline.
     """
 
     def __init__(
@@ -27,29 +28,29 @@ class StreamDeadline:
         self._handle = handle
         self._clock = clock
         self._duration_s = duration_s
-        self._looked_s = clock.now_s()
-        self._last: asyncio.TimerHandle | None = None
+        self._counted_until_s = clock.now_s()
+        self._timer: asyncio.TimerHandle | None = None
         self.passed_s = 0.0
 
     def restart(self) -> None:
-        """Count from now."""
+        """Restart the time from now."""
         self.close()
-        self.passed_s, self._looked_s = 0.0, self._clock.now_s()
+        self.passed_s, self._counted_until_s = 0.0, self._clock.now_s()
 
     def look(self) -> None:
-        """Count the time since the last look, and finish the stream when it is over."""
+        """Add the time since the last call, and finish the stream at the deadline."""
         now_s = self._clock.now_s()
         if self._handle.status is not GoalStatus.HELD:
-            self.passed_s += now_s - self._looked_s
-        self._looked_s = now_s
-        if self._duration_s is None or self._last is not None:
+            self.passed_s += now_s - self._counted_until_s
+        self._counted_until_s = now_s
+        if self._duration_s is None or self._timer is not None:
             return
         left_s = self._duration_s - self.passed_s
         if left_s < FEEDBACK_S:
-            self._last = asyncio.get_running_loop().call_later(max(0.0, left_s), self._stream.finish)
+            self._timer = asyncio.get_running_loop().call_later(max(0.0, left_s), self._stream.finish)
 
     def close(self) -> None:
-        """Finish nothing any more; the stream has ended."""
-        if self._last is not None:
-            self._last.cancel()
-            self._last = None
+        """Disarm the deadline; the stream has ended."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None

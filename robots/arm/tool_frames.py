@@ -1,4 +1,4 @@
-"""The frames in which one arm's poses may be given: the world and the arm's base."""
+"""The reference frames for poses of one arm: the world and the arm's base."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from robots.model.transform import RigidTransform
 from robots.port import Array
 
 WORLD = "world"
-# Beyond all cells; what is farther may overflow in the midst of a calculation.
+# Beyond any cell; larger values may overflow in calculations.
 _FARTHEST_M = 1e6
 
 
 class ToolFrames:
-    """Converts poses between messages and world numbers.
+    """Converts poses of messages to transforms in the world.
 
     Args:
         arm: Name of the arm on the bus.
@@ -29,7 +29,7 @@ class ToolFrames:
         self.base = base
 
     def axes(self, frame: str, *, tool: RigidTransform) -> Array:
-        """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is where the tool is."""
+        """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is the tool's pose."""
         if frame == "tool":
             return tool.rotation
         return self.base.rotation if frame == "base" else np.eye(3)
@@ -38,7 +38,7 @@ class ToolFrames:
         """Return the pose in the world.
 
         Raises:
-            RobotError: its frame is not known here, or its numbers are not a pose.
+            RobotError: the frame is unknown, or the numbers are not a pose.
         """
         try:
             given = RigidTransform.from_pose(pose)
@@ -46,7 +46,9 @@ class ToolFrames:
             raise RobotError(str(error), where=self._arm, hint="xyzw is a unit quaternion") from error
         farthest = max(map(abs, pose.xyz))
         if farthest > _FARTHEST_M:
-            raise RobotError(f"no arm reaches {farthest:.3g} m", where=self._arm, hint="xyz is in metres")
+            raise RobotError(
+                f"a coordinate of {farthest:.3g} m is out of reach", where=self._arm, hint="xyz is in meters"
+            )
         if pose.frame == WORLD:
             return given
         if pose.frame == self.base_frame:

@@ -1,4 +1,4 @@
-"""Carries out a planned trajectory as the goal of a skill, with the feedback and result that its kind gives."""
+"""Executes a planned trajectory as the goal of a joint or tool motion skill, with its feedback and result."""
 
 from __future__ import annotations
 
@@ -20,16 +20,20 @@ async def follow_joints(
 
     start = runner.set_point()
 
-    def tell(motion: Motion) -> None:
+    def publish_feedback(motion: Motion) -> None:
         handle.feedback(JointMotionFeedback(joints=runner.measured(), progress=motion.progress))
 
-    def left(duration_s: float) -> JointMotionResult:
+    def measured_result(duration_s: float) -> JointMotionResult:
         return JointMotionResult(joints=runner.measured(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
-        lambda: runner.port.follow(trajectory, tolerance=runner.tolerance), handle, tell, mode=mode, left=left
+        lambda: runner.port.follow(trajectory, tolerance=runner.tolerance),
+        handle,
+        publish_feedback,
+        mode=mode,
+        failed_result=measured_result,
     )
-    return left(ended.duration_s)
+    return measured_result(ended.duration_s)
 
 
 async def follow_tool(
@@ -42,7 +46,7 @@ async def follow_tool(
     """Follow an accepted trajectory; feedback and result are the measured pose of the tool."""
     start = runner.set_point()
 
-    def left(duration_s: float) -> CartMotionResult:
+    def measured_result(duration_s: float) -> CartMotionResult:
         return CartMotionResult(pose=runner.measured_pose(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
@@ -50,11 +54,11 @@ async def follow_tool(
         handle,
         lambda motion: publish_pose_feedback(runner, handle, motion),
         mode=mode,
-        left=left,
+        failed_result=measured_result,
     )
-    return left(ended.duration_s)
+    return measured_result(ended.duration_s)
 
 
 def publish_pose_feedback(runner: MotionRunner, handle: ActiveGoal[CartMotionFeedback], motion: Motion) -> None:
-    """Give feedback: the measured pose of the tool and how far the motion is."""
+    """Publish feedback: the measured pose of the tool and the progress of the motion."""
     handle.feedback(CartMotionFeedback(pose=runner.measured_pose(), progress=motion.progress))

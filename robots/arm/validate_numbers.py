@@ -1,4 +1,4 @@
-"""Whether what came over a topic is a row of numbers: publishers in this process are not checked by the bus."""
+"""Validates numbers received over a topic: the bus does not check publishers in this process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the first plans need, loaded in a worker thread while the arm already answers; plans that need it wait."""
+"""Loads what the first plans need in a worker thread while the arm is already served; plans that need it wait."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _log = logging.getLogger("flexcell.arm")
 
 
 class WarmUp:
-    """One call of `load`, in a worker thread, from `begin` on.
+    """Calls `load` once in a worker thread, started by `begin`.
 
-    Without `begin` nothing is loaded beforehand, and nobody waits. A failure is written to the log; the
-    plan that needs what is missing fails with the reason.
+    Without `begin` nothing is preloaded and nobody waits. A failure is logged; the plan that needs the missing
+    modules fails with the reason.
     """
 
     def __init__(self, name: str, load: Callable[[], None]) -> None:
@@ -23,7 +23,7 @@ class WarmUp:
 
     @property
     def under_way(self) -> bool:
-        """True from `begin` until it is loaded."""
+        """True from `begin` until loading has finished."""
         return self._task is not None and not self._task.done()
 
     def begin(self) -> None:
@@ -32,7 +32,7 @@ class WarmUp:
             self._task = asyncio.create_task(self._run(), name=f"loading for {self._name}")
 
     async def finished(self) -> None:
-        """Return when nothing is being loaded; a caller that is cancelled leaves the loading alone."""
+        """Return when loading has finished; cancelling a caller does not cancel the loading."""
         if self._task is not None:
             await asyncio.wait((self._task,))
 
@@ -40,5 +40,5 @@ class WarmUp:
         try:
             await asyncio.to_thread(self._load)
         except Exception:
-            # Nobody has asked yet; the first plan tries again and tells who asked.
+            # No caller is waiting yet; the first plan tries again and reports the error to its caller.
             _log.exception("%s: inverse kinematics cannot be loaded", self._name)

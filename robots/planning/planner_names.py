@@ -1,4 +1,4 @@
-"""The names of the motion planners, which can be told without loading any."""
+"""The names of the motion planners, available without loading any planner."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ OMPL_PLANNERS = (
     "LBKPIECE1",
     "BITstar",
 )
-"""Planners of OMPL that its Python package offers and that can be told to stop at the first way."""
+"""OMPL planners that its Python package provides and that can stop at the first path."""
 
 UNAVAILABLE_PLANNERS = ("SBL", "EST", "BIEST", "TRRT", "BITRRT", "STRIDE", "PDST", "LAZYPRM")
-"""Planners of OMPL that its Python package does not offer, in capitals."""
+"""OMPL planners that its Python package does not provide, in capitals."""
 
 PLANNERS = (FAST, STOMP, *OMPL_PLANNERS)
 """All planners by name."""

@@ -1,4 +1,4 @@
-"""What planners are asked and what they answer, as data that can cross a process border."""
+"""Requests to planners and their answers, as data that can cross a process boundary."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ RefusalReason = Literal[
 
 
 class JointGoal(msgspec.Struct, frozen=True, kw_only=True, tag="joints"):
-    """Any of these configurations, radians, n each."""
+    """Any of these goal configurations, radians, n each."""
 
     joints_rad: tuple[tuple[float, ...], ...]
 
 
 class PoseGoal(msgspec.Struct, frozen=True, kw_only=True, tag="pose"):
-    """The tool centre point at a pose in the world; `match` says what of the pose counts, as `PoseMatch` does."""
+    """The tool center point at a pose in the world; `match` selects what of the pose counts, see `PoseMatch`."""
 
     pose: Pose
     match: Literal["pose", "position", "axis"] = "pose"
 
 
 class PathGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
-    """The end of this very way of straight joint lines, radians, n each: it is confirmed and timed, none is looked for.
+    """A given path of straight joint lines, radians, n each: it is validated and timed, without a search.
 
-    Its first waypoint is where the arm starts.
+    Its first waypoint is the start configuration.
     """
 
     waypoints_rad: tuple[tuple[float, ...], ...]
 
 
 class PathOrientationConstraint(msgspec.Struct, frozen=True, kw_only=True):
-    """The tool link keeps the orientation that it has at the start, within a tolerance.
+    """The tool link keeps its orientation at the start, within a tolerance.
 
-    With `free_about`, a direction in the frame of the tool link, it may turn about that: a full cup has
-    (0, 0, 1).
+    With `free_about`, an axis in the frame of the tool link, it may rotate about that axis: (0, 0, 1) for a full
+    cup.
     """
 
     tolerance_rad: float = 0.1
@@ -61,13 +61,13 @@ class PathOrientationConstraint(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """A way for one arm of a scene from `start_rad` to any of its goals.
+    """Requests a path for one arm of a scene from `start_rad` to any of its goals.
 
-    `planner` is `fast`, `stomp` or a planner of OMPL by name. `time_s` is for all of it; the same request
-    with the same `seed` has the same answer unless time runs out. Obstacles and other arms are passed at
-    `margin_m` at least, and so is `occupancy`, what cameras see; its name in pairs is `occupancy`. An arm that
-    starts nearer than that leaves first, going no nearer. `tool` is the tool centre point in the frame of the
-    model's tool link. With a `speed`, the share of the joint speed limits, the answer has a trajectory too.
+    `planner` is `fast`, `stomp` or the name of an OMPL planner. `time_s` covers the whole request; the same request
+    with the same `seed` has the same answer unless time runs out. The path keeps at least `margin_m` from
+    obstacles, other arms and `occupancy`, the map of the cameras, whose name in pairs is `occupancy`. An arm that
+    starts within the margin leaves it first without coming nearer. `tool` is the tool center point in the frame
+    of the model's tool link. With a `speed`, the share of the joint speed limits, the answer includes a trajectory.
     """
 
     scene: PlanningScene
@@ -103,7 +103,7 @@ class SampledTrajectory(msgspec.Struct, frozen=True, kw_only=True):
         )
 
     def trajectory(self) -> JointTrajectory:
-        """Return what an arm can follow."""
+        """Return the trajectory as arrays."""
         position, velocity = (
             np.frombuffer(data, dtype=np.float64).reshape(-1, self.joints)
             for data in (self.position_rad, self.velocity_rad_s)
@@ -112,8 +112,8 @@ class SampledTrajectory(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
-    """What an answer took: seconds for search, shortening, exact verification and timing; configurations looked at by
-    the search and by the verification; how many ways that were found the exact check refused; who found it."""
+    """Effort of an answer: seconds of search, shortening, exact verification and timing; configurations checked by the
+    search and by the verification; number of paths rejected by the exact check; the planner that found the path."""
 
     search_s: float
     shortening_s: float
@@ -126,9 +126,9 @@ class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PathPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
-    """A way of straight joint lines that the exact checker has confirmed: waypoints of n joints each.
+    """A path of straight joint lines that the exact checker has validated: waypoints of n joints each.
 
-    `timed` is the trajectory, with rounded corners that are confirmed as well, where a speed was given.
+    `timed` is the trajectory, with blended corners that are validated as well, if a speed was given.
     """
 
     waypoints_rad: tuple[tuple[float, ...], ...]
@@ -142,12 +142,12 @@ class PathPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
 
     @property
     def length_rad(self) -> float:
-        """The length of the way in joint space."""
+        """The length of the path in joint space."""
         return float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
 
 
 class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
-    """Why there is no plan; `pairs` are the names of what touches, if that is the reason."""
+    """Why there is no plan; `pairs` are the names of the colliding objects, if that is the reason."""
 
     reason: RefusalReason
     message: str
@@ -155,7 +155,7 @@ class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
     pairs: tuple[NamePair, ...] = ()
 
     def error(self) -> RobotError:
-        """Return the error for those who cannot go on without a plan."""
+        """Return the error for callers that need a plan."""
         return RobotError(self.message, hint=self.hint or None)
 
 
@@ -163,7 +163,7 @@ PlanAnswer = PathPlan | PlanRefusal
 
 
 class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether an arm that follows `way` would touch anything from `from_s` of the way's own time on."""
+    """Asks whether an arm that follows `way` collides from `from_s` of the trajectory's own time on."""
 
     scene: PlanningScene
     arm: str
@@ -174,9 +174,9 @@ class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether what an arm holds would touch anything along `way`; see `attached_part_check` for what it may touch.
+    """Asks whether an attached part collides along `way`; see `attached_part_check` for the allowed contacts.
 
-    The scene does not allow what the held parts touch by lying on it.
+    The scene does not allow contact with the objects that held parts rest on.
     """
 
     scene: PlanningScene
@@ -185,9 +185,9 @@ class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
-    """The first instant of a way's own time at which the arm would touch something, and what; None where it is free.
+    """The time of the first collision on a trajectory, in its own time, and the pairs; None if it is free.
 
-    `looked_s` is the instant up to which the way was looked at: that of the touch, or the way's end.
+    `looked_s` is the time up to which the trajectory was checked: that of the collision, or its end.
     """
 
     blocked_at_s: float | None
@@ -196,7 +196,7 @@ class PathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
 
 
 class CollisionRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """What an arm touches at `joints_rad`, and how near it is to what it must not touch.
+    """Asks for the collisions of an arm at `joints_rad`, and its clearance.
 
     Obstacles, other arms and `occupancy` nearer than `margin_m` count as touching.
     """

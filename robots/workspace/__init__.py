@@ -1,5 +1,5 @@
-"""The space that the arms of a cell share: its live planning scene, who plans in it, who watches ways in it.
+"""The workspace shared by the arms of a cell: its live planning scene, its planners and its path monitoring.
 
-`Workspace` is the device; it is made of `LiveScene` (what is where, and what may touch), `Planners` (the
-planning services and their life) and what a world tells of itself (`Seen`).
+`Workspace` is the device. It consists of `LiveScene` (objects, attached parts and allowed contacts),
+`PlanningServices` (the planning processes and their life cycle) and the `MeasuredPoses` of a world.
 """

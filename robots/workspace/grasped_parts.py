@@ -1,4 +1,4 @@
-"""The parts in hands: where they are in the hand, what they may touch meanwhile, and whether they are still there."""
+"""Grasped parts: their pose in the hand, their allowed contacts, and whether they are still in the hand."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from engine.messages import Pose
 from robots.model.transform import RigidTransform
 from robots.planning.scene.planning_scene import AttachedPart
 
-# A part slips a little while it is gripped; farther from where it was taken it is lost.
+# A grasped part may slip a little; farther from its pose at the grasp it counts as lost.
 _SLIPPED_M, _SLIPPED_RAD = 0.002, 0.02
 _LOST_M, _LOST_RAD = 0.03, 0.35
 
 
 @dataclass(frozen=True, kw_only=True)
 class GraspedPart:
-    """A part in a hand: `taken` is its pose in the link's frame when it was attached; `touches` are still allowed."""
+    """A part in a hand: `taken` is its pose in the link's frame at attachment; `touches` are contacts still allowed."""
 
     part: AttachedPart
     link: str
@@ -25,7 +25,7 @@ class GraspedPart:
     touches: frozenset[str]
 
     def slipped_to(self, now: RigidTransform) -> GraspedPart | None:
-        """Return what is held when the part is at `now` in the link's frame; None where it is lost."""
+        """Return the grasped part at `now` in the link's frame; None if it is lost."""
         if self.taken.distance_m(now) > _LOST_M or self.taken.angle_rad(now) > _LOST_RAD:
             return None
         known = RigidTransform.from_pose(self.part.pose)
@@ -36,14 +36,14 @@ class GraspedPart:
 
 @dataclass(frozen=True, kw_only=True)
 class ReleasedPart:
-    """A part that was let go of: the links of the arm that are still so near that touching is allowed."""
+    """A released part: the links of the arm that are still near enough to be allowed contact."""
 
     arm: str
     links: frozenset[str]
 
 
 class GraspedPartMemo(msgspec.Struct, frozen=True, kw_only=True):
-    """A held part, to know again."""
+    """A grasped part as stored in a snapshot."""
 
     part: AttachedPart
     link: str
@@ -52,20 +52,20 @@ class GraspedPartMemo(msgspec.Struct, frozen=True, kw_only=True):
 
     @classmethod
     def of(cls, held: GraspedPart) -> GraspedPartMemo:
-        """Return the memo of a held part."""
+        """Return the memo of a grasped part."""
         return cls(
             part=held.part, link=held.link, taken=held.taken.to_pose(held.link), touches=tuple(sorted(held.touches))
         )
 
     def held(self) -> GraspedPart:
-        """Return the held part."""
+        """Return the grasped part."""
         return GraspedPart(
             part=self.part, link=self.link, taken=RigidTransform.from_pose(self.taken), touches=frozenset(self.touches)
         )
 
 
 class ReleasedPartMemo(msgspec.Struct, frozen=True, kw_only=True):
-    """A part that was let go of, to know again."""
+    """A released part as stored in a snapshot."""
 
     part: str
     arm: str

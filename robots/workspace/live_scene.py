@@ -1,4 +1,4 @@
-"""The planning scene of a cell as it is now: what is known of it, what was put into it, what is measured."""
+"""The current planning scene of a cell: from its document, from added obstacles and from measurements."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from robots.workspace.proximity import SEPARATED_M, TOUCHING_M, links_near_part,
 from robots.workspace.tracked_objects import TrackedObjects
 
 OCCUPANCY = "occupancy"
-"""The name of what cameras see and nobody knows."""
+"""Name of the obstacle that stands for the occupancy map: unknown objects seen by cameras."""
 
 _log = logging.getLogger("flexcell.workspace")
 
 
 class SceneMemo(msgspec.Struct, frozen=True, kw_only=True):
-    """What of a scene is neither in the cell document nor measured."""
+    """The state of a scene that is neither in the cell document nor measured."""
 
     put: tuple[Obstacle, ...] = ()
     removed: tuple[str, ...] = ()
@@ -39,91 +39,94 @@ class SceneMemo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LiveScene:
-    """Changes only by its methods; `refresh` takes in what is measured.
+    """The live planning scene; changes only by its methods, and `refresh` applies measurements.
 
     Args:
-        base: The cell as its document has it.
-        parts: The names of its parts, which are where they are measured.
-        look: How to look at the cell.
+        base: The scene of the cell document.
+        parts: Names of its parts, whose poses are measured.
+        look: Measures the cell.
 
-    All methods that name something raise SkillFailed where it is not there, or may not be changed so.
+    Methods that take a name raise SkillFailed if it is unknown, or if the change is not allowed.
     """
 
     def __init__(self, base: PlanningScene, *, parts: Collection[str], look: PoseSource) -> None:
         self._base = base
         self._parts = frozenset(parts)
         self._look = look
-        self._things = TrackedObjects()
+        self._tracked = TrackedObjects()
         self._put: dict[str, Obstacle] = {}
         self._removed: set[str] = set()
         self._rules: dict[frozenset[str], tuple[str, str, bool]] = {}
         self._held: dict[str, GraspedPart] = {}
         self._let_go: dict[str, ReleasedPart] = {}
-        self._claims: dict[str, tuple[Row, ...]] = {}
+        self._reservations: dict[str, tuple[Row, ...]] = {}
         self.revision = 0
 
     @property
     def arms(self) -> int:
-        """How many arms there are."""
+        """Number of arms."""
         return len(self._base.arms)
 
     def refresh(self) -> frozenset[str]:
-        """Take in what is measured; returns the names of parts, held parts and arms that have changed."""
-        seen = self._look()
-        parts, arms = self._things.take(seen)
+        """Apply new measurements; return the names of parts, held parts and arms that have changed."""
+        measured = self._look()
+        parts, arms = self._tracked.take(measured)
         changed = {name for name in parts if name not in self._held}
         for name, held in tuple(self._held.items()):
-            if self._followed(name, held, seen):
+            if self._update_held(name, held, measured):
                 changed.add(name)
         if changed:
             self.revision += 1
         if parts or arms:
-            self._part_ways()
+            self._revoke_contacts()
         return frozenset(changed | arms)
 
     def scene_for(self, arm: str) -> PlanningScene:
-        """Return the scene as `arm` meets it: other arms where they are noticed, and on the ways they have claimed.
+        """Return the scene for `arm`: other arms at their tracked joints and along the paths they have reserved.
 
-        Of itself it says nothing that changes as the arm moves, so that it stays the same meanwhile.
+        Contains nothing that changes as the arm itself moves, so that it stays equal meanwhile.
         """
         scene = self.whole()
         own = msgspec.structs.replace(scene.arm(arm), joints_rad=())
         scene = msgspec.structs.replace(scene, arms=tuple(own if a.name == arm else a for a in scene.arms))
-        return with_reservations(scene, self._claims_before(arm))
+        return with_reservations(scene, self._reservations_before(arm))
 
     def holds(self, arm: str) -> bool:
-        """Return whether an arm held something when it was looked at last."""
+        """Return whether an arm held a part at the last measurement."""
         return any(one.part.arm == arm for one in self._held.values())
 
     def lies(self, arm: str) -> bool:
-        """Return whether something that an arm held has not yet parted from what it was taken from."""
+        """Return whether a part held by an arm still touches the object that it was picked from."""
         return any(one.part.arm == arm and one.touches for one in self._held.values())
 
     def attached_check_scene_for(self, arm: str) -> PlanningScene | None:
-        """Return the scene as what `arm` holds meets it, None where it holds nothing.
+        """Return the scene to check the attached parts of `arm`, None if it holds nothing.
 
-        What the held parts lie on is not allowed in it: that is for who knows where they are to go.
+        It does not allow contact with the objects that held parts lie on: the check itself decides that from
+        the goal of the motion.
         """
         if not self.holds(arm):
             return None
         held = {name: one for name, one in self._held.items() if one.part.arm == arm}
-        lying = {(name, other) for name, one in held.items() for other in one.touches}.difference(self._ruled())
+        resting = {(name, other) for name, one in held.items() for other in one.touches}.difference(
+            self._allowed_by_rules()
+        )
         scene = self.scene_for(arm)
-        return msgspec.structs.replace(scene, allowed=tuple(pair for pair in scene.allowed if pair not in lying))
+        return msgspec.structs.replace(scene, allowed=tuple(pair for pair in scene.allowed if pair not in resting))
 
     def whole(self) -> PlanningScene:
-        """Return the scene with all arms where they are noticed."""
-        things = self._things
+        """Return the scene with all arms at their tracked joints."""
+        objects = self._tracked
         arms = tuple(
             SceneArm(placement=a.placement, joints_rad=now.joints_rad, tool_joints=now.tool_joints)
-            if (now := things.arms.get(a.name)) is not None
+            if (now := objects.arms.get(a.name)) is not None
             else a
             for a in self._base.arms
         )
         return PlanningScene(arms=arms, obstacles=self._obstacles(), attached=self._attached(), allowed=self._allowed())
 
     def state(self) -> PlanningSceneState:
-        """Return the scene as the bus knows it."""
+        """Return the scene as its bus message."""
         held = tuple(
             HeldPart(name=p.name, robot=p.arm, link=one.link, solids=p.solids, pose=p.pose)
             for one in self._held.values()
@@ -134,24 +137,24 @@ class LiveScene:
         )
 
     def put(self, obstacle: Obstacle) -> None:
-        """Put an obstacle, or another one in the place of that of its name."""
+        """Add an obstacle, or replace the one with the same name."""
         name = obstacle.name
         if fault := find_obstacle_fault(obstacle):
-            raise _refused(fault, "give shapes with sizes in metres, at a pose in the world")
+            raise _refused(fault, "give shapes with sizes in meters, at a pose in the world")
         if name in self._parts or name in self._held:
-            raise _refused(f"{name} is a part, which is where it is measured", "give the obstacle another name")
+            raise _refused(f"{name} is a part, whose pose is measured", "give the obstacle another name")
         if name == OCCUPANCY or name.partition("/")[0] in self._arm_names() or "~" in name:
-            raise _refused(f"an obstacle cannot be called {name}", "give it another name")
+            raise _refused(f"the obstacle name {name} is reserved", "give the obstacle another name")
         self._put[name] = obstacle
         self._removed.discard(name)
         self.revision += 1
 
     def remove(self, name: str) -> None:
-        """Take an obstacle out; one that was taken out before is no error."""
+        """Remove an obstacle; one that is already removed is not an error."""
         if name in self._removed:
             return
         if name in self._parts or name in self._held:
-            raise _refused(f"{name} is a part, which is where it is measured", "allow what it may touch, or attach it")
+            raise _refused(f"{name} is a part, whose pose is measured", "allow its contacts, or attach it")
         if name not in {one.name for one in self._obstacles()}:
             raise _unknown("obstacle", name, [one.name for one in self._obstacles()])
         self._put.pop(name, None)
@@ -159,14 +162,14 @@ class LiveScene:
         self.revision += 1
 
     def allow(self, first: str, second: str, *, allowed: bool) -> None:
-        """Say whether two things may touch."""
+        """Set whether two objects may touch."""
         for name in (first, second):
             self._require_known(name)
         self._rules[frozenset((first, second))] = (first, second, allowed)
         self.revision += 1
 
     def attach(self, part: str, arm: str, link: str) -> None:
-        """Let a part move with a link of an arm (the tool link where `link` is empty), from where it is."""
+        """Attach a part at its current pose to a link of an arm (the tool link if `link` is empty)."""
         if arm not in self._arm_names():
             raise _unknown("arm", arm, sorted(self._arm_names()))
         model = self._base.arm(arm).placement.robot()
@@ -176,21 +179,21 @@ class LiveScene:
         before = self._held.get(part)
         if before is not None and (before.part.arm, before.link) == (arm, frame):
             return
-        seen = self._look()
-        self._things.take(seen)
+        measured = self._look()
+        self._tracked.take(measured)
         solids = self._solids_of(part)
-        at = seen.link(arm, frame).inverse().then(self._place_of(part, seen))
+        at = measured.link(arm, frame).inverse().then(self._pose_of(part, measured))
         attached = AttachedPart(name=part, arm=arm, solids=solids, pose=at.to_pose(frame), link=link)
         self._put.pop(part, None)
         self._let_go.pop(part, None)
         self._held[part] = GraspedPart(part=attached, link=frame, taken=at, touches=frozenset())
-        touches = names_near_held_part(self._measured(seen), part, within_m=TOUCHING_M)
+        touches = names_near_held_part(self._measured(measured), part, within_m=TOUCHING_M)
         self._held[part] = replace(self._held[part], touches=touches)
         self.revision += 1
         _log.info("%s holds %s%s", arm, part, f", which touches {', '.join(sorted(touches))}" if touches else "")
 
     def detach(self, part: str) -> None:
-        """Let go of a part; one that nobody holds is no error."""
+        """Detach a part; one that is not attached is not an error."""
         if part not in self._held:
             self._require_known(part)
             return
@@ -198,17 +201,17 @@ class LiveScene:
         self.revision += 1
 
     def claim(self, arm: str, rows: tuple[Row, ...]) -> None:
-        """Say where an arm on its way will be; others keep out of that from now on, but for those who claimed before.
+        """Reserve the configurations that a moving arm will pass; arms without an earlier reservation avoid them.
 
-        Empty gives the claim back.
+        Empty `rows` release the reservation.
         """
         if rows:
-            self._claims[arm] = rows
+            self._reservations[arm] = rows
         else:
-            self._claims.pop(arm, None)
+            self._reservations.pop(arm, None)
 
     def memo(self) -> SceneMemo:
-        """Return what must be known again after a restore."""
+        """Return the state that a restore needs."""
         return SceneMemo(
             put=tuple(self._put.values()),
             removed=tuple(sorted(self._removed)),
@@ -221,85 +224,85 @@ class LiveScene:
         )
 
     def remember(self, memo: SceneMemo) -> None:
-        """Be as `memo` says, from now on."""
+        """Restore the state of `memo`."""
         self._put = {one.name: one for one in memo.put}
         self._removed = set(memo.removed)
         self._rules = {frozenset(rule[:2]): rule for rule in memo.rules}
         self._held = {one.part.name: one.held() for one in memo.held}
         self._let_go = {one.part: ReleasedPart(arm=one.arm, links=frozenset(one.links)) for one in memo.let_go}
-        self._claims.clear()
+        self._reservations.clear()
         self.revision += 1
 
-    def _followed(self, name: str, held: GraspedPart, seen: MeasuredPoses) -> bool:
-        """Look where a held part is in the hand; true where that, or that it is held, has changed."""
-        if name not in seen.parts:
+    def _update_held(self, name: str, held: GraspedPart, measured: MeasuredPoses) -> bool:
+        """Update the pose of a held part in the hand; return true if it has changed, or if the part is lost."""
+        if name not in measured.parts:
             return False
-        now = held.slipped_to(seen.link(held.part.arm, held.link).inverse().then(seen.parts[name]))
+        now = held.slipped_to(measured.link(held.part.arm, held.link).inverse().then(measured.parts[name]))
         if now is held:
             return False
         if now is None:
-            _log.warning("%s has lost %s; it lies where it is seen", held.part.arm, name)
-            self._drop(name, seen)
+            _log.warning("%s has lost %s; the scene uses its measured pose", held.part.arm, name)
+            self._drop(name, measured)
         else:
             self._held[name] = now
         return True
 
-    def _drop(self, name: str, seen: MeasuredPoses) -> None:
+    def _drop(self, name: str, measured: MeasuredPoses) -> None:
         held = self._held.pop(name)
         if name not in self._parts:
-            at = seen.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
+            at = measured.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
             self._put[name] = Obstacle(name=name, solids=held.part.solids, pose=at.to_pose("world"))
-        self._things.take(seen)
-        links = links_near_part(self._measured(seen), name, held.part.arm, within_m=SEPARATED_M)
+        self._tracked.take(measured)
+        links = links_near_part(self._measured(measured), name, held.part.arm, within_m=SEPARATED_M)
         if links:
             self._let_go[name] = ReleasedPart(arm=held.part.arm, links=links)
 
-    def _part_ways(self) -> None:
-        """Allow no more touching to what has parted."""
+    def _revoke_contacts(self) -> None:
+        """Revoke the allowed contacts of objects that have separated."""
         scene = self.whole()
         for name, held in tuple(self._held.items()):
             if held.touches:
-                near = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
-                self._held[name] = replace(held, touches=held.touches & near)
-        for name, gone in tuple(self._let_go.items()):
-            links = gone.links & links_near_part(scene, name, gone.arm, within_m=SEPARATED_M)
+                nearby = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
+                self._held[name] = replace(held, touches=held.touches & nearby)
+        for name, released in tuple(self._let_go.items()):
+            links = released.links & links_near_part(scene, name, released.arm, within_m=SEPARATED_M)
             if links:
-                self._let_go[name] = replace(gone, links=links)
+                self._let_go[name] = replace(released, links=links)
             else:
                 del self._let_go[name]
 
-    def _measured(self, seen: MeasuredPoses) -> PlanningScene:
-        """Return the scene with the arms exactly where they are seen."""
+    def _measured(self, measured: MeasuredPoses) -> PlanningScene:
+        """Return the scene with the arms at exactly their measured joints."""
         scene = self.whole()
-        for name, arm in seen.arms.items():
+        for name, arm in measured.arms.items():
             scene = scene.with_joints(name, arm.joints_rad, tool_joints=dict(arm.tool_joints))
         return scene
 
     def _obstacles(self) -> tuple[Obstacle, ...]:
-        found: list[Obstacle] = []
+        obstacles: list[Obstacle] = []
         for one in self._base.obstacles:
             if one.name in self._held or one.name in self._put or one.name in self._removed:
                 continue
-            lying = self._things.parts.get(one.name) if one.name in self._parts else None
-            found.append(one if lying is None else msgspec.structs.replace(one, pose=lying))
-        return (*found, *self._put.values())
+            resting = self._tracked.parts.get(one.name) if one.name in self._parts else None
+            obstacles.append(one if resting is None else msgspec.structs.replace(one, pose=resting))
+        return (*obstacles, *self._put.values())
 
     def _attached(self) -> tuple[AttachedPart, ...]:
         return tuple(one.part for one in self._held.values())
 
-    def _ruled(self) -> list[NamePair]:
+    def _allowed_by_rules(self) -> list[NamePair]:
         pairs = [pair for pair in self._base.allowed if frozenset(pair) not in self._rules]
         return pairs + [(first, second) for first, second, allowed in self._rules.values() if allowed]
 
     def _allowed(self) -> tuple[NamePair, ...]:
-        pairs = self._ruled()
+        pairs = self._allowed_by_rules()
         pairs += [(name, other) for name, held in self._held.items() for other in sorted(held.touches)]
-        pairs += [(name, link) for name, gone in self._let_go.items() for link in sorted(gone.links)]
+        pairs += [(name, link) for name, released in self._let_go.items() for link in sorted(released.links)]
         return tuple(dict.fromkeys(pairs))
 
-    def _claims_before(self, arm: str) -> dict[str, tuple[Row, ...]]:
+    def _reservations_before(self, arm: str) -> dict[str, tuple[Row, ...]]:
         before: dict[str, tuple[Row, ...]] = {}
-        for name, rows in self._claims.items():
+        for name, rows in self._reservations.items():
             if name == arm:
                 return before
             before[name] = rows
@@ -312,16 +315,16 @@ class LiveScene:
         for one in self._obstacles():
             if one.name == part:
                 if part not in self._parts and part not in self._put:
-                    raise _refused(f"{part} is a fixture, which nobody carries", "name a part")
+                    raise _refused(f"{part} is a fixture and cannot be attached", "name a part")
                 return one.solids
         raise _unknown("part", part, [*self._parts, *self._put])
 
-    def _place_of(self, part: str, seen: MeasuredPoses) -> RigidTransform:
-        if part in seen.parts:
-            return seen.parts[part]
+    def _pose_of(self, part: str, measured: MeasuredPoses) -> RigidTransform:
+        if part in measured.parts:
+            return measured.parts[part]
         held = self._held.get(part)
         if held is not None:
-            return seen.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
+            return measured.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
         return RigidTransform.from_pose(self._put[part].pose)
 
     def _arm_names(self) -> frozenset[str]:
@@ -334,9 +337,9 @@ class LiveScene:
             if link not in known:
                 raise _unknown(f"link of {arm}", link, sorted(known))
             return
-        things = {*self._arm_names(), *self._parts, *self._held, *(one.name for one in self._obstacles()), OCCUPANCY}
-        if name not in things:
-            raise _unknown("thing", name, sorted(things))
+        objects = {*self._arm_names(), *self._parts, *self._held, *(one.name for one in self._obstacles()), OCCUPANCY}
+        if name not in objects:
+            raise _unknown("object", name, sorted(objects))
 
 
 def _refused(message: str, hint: str) -> SkillFailed:

@@ -1,4 +1,4 @@
-"""Where everything in a cell that moves is measured now, all at one instant."""
+"""Measured poses of everything that moves in a cell, at one instant."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robots.model.transform import RigidTransform
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredArm:
-    """One arm: its joints (radians, n) and the tool's joints by name (radians or metres)."""
+    """One arm: its joints (radians, n) and the tool's joints by name (radians or meters)."""
 
     joints_rad: tuple[float, ...]
     tool_joints: tuple[tuple[str, float], ...] = ()
@@ -18,7 +18,7 @@ class MeasuredArm:
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredPoses:
-    """One look at a cell: arms and parts by name; `link(arm, link)` is a link's pose. All poses are in the world."""
+    """One measurement of a cell: arms and parts by name; `link(arm, link)` is a link's pose. Poses are in the world."""
 
     arms: Mapping[str, MeasuredArm]
     parts: Mapping[str, RigidTransform]
@@ -26,4 +26,4 @@ class MeasuredPoses:
 
 
 PoseSource = Callable[[], MeasuredPoses]
-"""Looks at the cell now; cheap enough for twenty times a second."""
+"""Measures the cell now; cheap enough for 20 Hz."""

@@ -1,4 +1,4 @@
-"""Whether an obstacle that somebody gives is one: its sizes, its places, that it is made of something."""
+"""Validates a given obstacle: its name, its solids, their sizes and poses."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ _FLAT_M = 1e-4
 
 
 def find_obstacle_fault(obstacle: Obstacle) -> str:
-    """Return in words what is wrong with an obstacle, empty for nothing."""
+    """Return what is invalid about an obstacle, empty if it is valid."""
     if not obstacle.name or "/" in obstacle.name:
         return f"{obstacle.name!r} is not a valid obstacle name"
     if not 1 <= len(obstacle.solids) <= _MOST_SOLIDS:
-        return f"{obstacle.name} has {len(obstacle.solids)} solids, which is not 1 to {_MOST_SOLIDS}"
+        return f"{obstacle.name} has {len(obstacle.solids)} solids, allowed are 1 to {_MOST_SOLIDS}"
     if obstacle.pose.frame != "world":
-        return f"{obstacle.name} is given in {obstacle.pose.frame!r} and not in 'world'"
-    places = (obstacle.pose, *(solid.pose for solid in obstacle.solids))
-    for fault in (*map(_place, places), *(_size(solid.shape) for solid in obstacle.solids)):
+        return f"{obstacle.name} has a pose in the frame {obstacle.pose.frame!r}, expected 'world'"
+    poses = (obstacle.pose, *(solid.pose for solid in obstacle.solids))
+    for fault in (*map(_pose_fault, poses), *(_size_fault(solid.shape) for solid in obstacle.solids)):
         if fault:
             return f"{obstacle.name} {fault}"
     return ""
 
 
-def _place(pose: Pose) -> str:
+def _pose_fault(pose: Pose) -> str:
     try:
         RigidTransform.from_pose(pose)
     except ValueError as error:
-        return f"is nowhere: {error}"
+        return f"has an invalid pose: {error}"
     return "" if max(map(abs, pose.xyz)) <= _FARTHEST_M else f"is too far away: {pose.xyz}"
 
 
-def _size(shape: Shape) -> str:
+def _size_fault(shape: Shape) -> str:
     match shape:
         case Hull(points_m=points):
-            return _hull(np.array(points, dtype=np.float64).reshape(-1, 3))
+            return _hull_fault(np.array(points, dtype=np.float64).reshape(-1, 3))
         case Box(size_m=size):
             lengths = size
         case Sphere(radius_m=radius):
@@ -53,13 +53,14 @@ def _size(shape: Shape) -> str:
             lengths = (radius, length or 1e-9) if length >= 0.0 else (radius, length)
     if all(0.0 < one <= _LARGEST_M for one in lengths):
         return ""
-    return f"cannot have a size of {', '.join(f'{one:g}' for one in lengths)} m"
+    sizes = ", ".join(f"{one:g}" for one in lengths)
+    return f"has an invalid size of {sizes} m, allowed are more than 0 to {_LARGEST_M:g} m"
 
 
-def _hull(points: Array) -> str:
+def _hull_fault(points: Array) -> str:
     if not 4 <= len(points) <= _MOST_POINTS:
-        return f"is a hull of {len(points)} points, which is not 4 to {_MOST_POINTS}"
+        return f"is a hull of {len(points)} points, allowed are 4 to {_MOST_POINTS}"
     if not np.isfinite(points).all() or np.abs(points).max() > _LARGEST_M:
-        return "is a hull with points that are too far away or no numbers"
+        return "is a hull with points that are too far away or not finite"
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return "" if spread[-1] > _FLAT_M else "is a hull whose points lie in one plane"

@@ -1,4 +1,4 @@
-"""The ways that arms are on, so that who plans later keeps out of them."""
+"""Reserved paths of moving arms, which motions planned later avoid."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import msgspec
 from robots.planning.scene.planning_scene import OCCUPANCY, AttachedPart, NamePair, PlanningScene, SceneArm
 
 _AHEAD = re.compile(r"~\d+")
-_SEEN = re.compile(rf"\b{OCCUPANCY}\b")
+_OCCUPANCY = re.compile(rf"\b{OCCUPANCY}\b")
 
 Row = tuple[float, ...]
 
 
 def with_reservations(scene: PlanningScene, claims: dict[str, tuple[Row, ...]]) -> PlanningScene:
-    """Return the scene with arms also where they will be: `claims` are configurations (radians, n) by arm.
+    """Return the scene with arms also at their reserved configurations: `claims` are those (radians, n) by arm.
 
-    What stands for the k-th of them is called `<arm>~k`, and so are the parts that the arm holds.
+    The arm at the k-th of them is named `<arm>~k`; the parts that it holds get the same suffix.
     """
     arms: list[SceneArm] = list(scene.arms)
     attached: list[AttachedPart] = list(scene.attached)
@@ -31,19 +31,19 @@ def with_reservations(scene: PlanningScene, claims: dict[str, tuple[Row, ...]]) 
             placement = msgspec.structs.replace(arm.placement, name=later)
             arms.append(SceneArm(placement=placement, joints_rad=row, tool_joints=arm.tool_joints))
             attached += [msgspec.structs.replace(part, name=f"{part.name}~{k}", arm=later) for part in held]
-            allowed += [(_renamed(a, name, later), _renamed(b, name, later)) for a, b in rules]
+            allowed += [(_rename(a, name, later), _rename(b, name, later)) for a, b in rules]
     return msgspec.structs.replace(scene, arms=tuple(arms), attached=tuple(attached), allowed=tuple(allowed))
 
 
 def describe_names(text: str) -> str:
-    """Return a text with names in words: what an arm claims is `<arm> on its way`, occupancy what cameras see."""
-    seen = _SEEN.sub("what the cameras see", text)
-    return seen if _AHEAD.search(seen) is None else f"{_AHEAD.sub('', seen)} on its way"
+    """Return a text with readable names: `<arm> on its planned path` for a reservation, and a text for occupancy."""
+    described = _OCCUPANCY.sub("an obstacle seen by the cameras", text)
+    return described if _AHEAD.search(described) is None else f"{_AHEAD.sub('', described)} on its planned path"
 
 
 def _is_of(rule: str, arm: str) -> bool:
     return rule == arm or rule.startswith(arm + "/")
 
 
-def _renamed(rule: str, arm: str, later: str) -> str:
+def _rename(rule: str, arm: str, later: str) -> str:
     return later + rule[len(arm) :] if _is_of(rule, arm) else rule

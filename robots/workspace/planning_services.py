@@ -1,4 +1,4 @@
-"""The planning services of a cell: one looks for ways, another one watches those that arms are on."""
+"""The planning services of a cell: one plans paths, the other monitors the paths of moving arms."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _log = logging.getLogger("flexcell.workspace")
 
 
 class PlanningServices:
-    """Two services, so that no check waits behind a long search; each is started by the first who needs it.
+    """Two services, so that no check waits for a long search; each starts at its first use.
 
     Args:
-        clock: In virtual time both are one, in this process.
-        make: Makes a service.
+        clock: In virtual time one inline service takes both roles.
+        make: Creates a service.
     """
 
     def __init__(self, clock: Clock, make: Callable[[Clock], PlanService] | None = None) -> None:
@@ -38,31 +38,31 @@ class PlanningServices:
         self._closed = False
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none."""
+        """Return a validated path, or why there is none."""
         if self.watch_unavailable_reason:
-            # It is wanted as soon as an arm is on the way.
+            # Monitoring is needed as soon as an arm moves.
             self._service("watch").start()
         return await self._service("plans").plan(request)
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where a way is blocked."""
+        """Return where a path is blocked."""
         return await self._service("watch").check_path(request)
 
     async def confirm_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where a way that was planned just now is blocked: who planned it knows it and answers sooner."""
+        """Return where a path that was just planned is blocked; asks the service that planned it, which is faster."""
         return await self._service("plans").check_path(request)
 
     async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
-        """Return where what an arm holds would touch something on a way."""
+        """Return where an attached part collides on a path."""
         return await self._service("watch").check_attached_parts(request)
 
     async def look(self, request: CollisionRequest) -> CollisionReport:
-        """Return what an arm touches."""
+        """Return the collisions of an arm."""
         return await self._service("watch").look(request)
 
     @property
     def watch_unavailable_reason(self) -> str:
-        """Why nobody can look at a way soon: who did has died, and another one is not there yet; else empty."""
+        """Why path checks are not available now: the process has died and its successor is not ready; else empty."""
         return self._service("watch").gone
 
     def begin(self) -> None:
@@ -71,7 +71,7 @@ class PlanningServices:
             self._starting = asyncio.create_task(self._start(), name="starting the planners")
 
     async def close(self) -> None:
-        """End both."""
+        """Stop both services."""
         starting, self._starting = self._starting, None
         self._closed = True
         if starting is not None:
@@ -86,7 +86,7 @@ class PlanningServices:
             try:
                 await self._service(role).__aenter__()
             except FlexcellError as error:
-                # Nobody has asked yet; who asks starts it again and hears why it does not start.
+                # No caller is waiting yet; the first call starts it again and reports why it does not start.
                 _log.warning("a planning service does not start: %s", error)
 
     def _service(self, role: str) -> PlanService:

@@ -1,4 +1,4 @@
-"""The joints of a tool, worked out from where its links are measured: whatever the tool, however it is driven."""
+"""Computes the joints of a tool from the measured poses of its links, for any tool and drive."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class _Joint:
 
 
 class ToolJointEstimator:
-    """Reads the joints of one arm's tool off the poses of its links."""
+    """Computes the joints of one arm's tool from the poses of its links."""
 
     def __init__(self, model: RobotModel) -> None:
         urdf = ET.fromstring(model.urdf_text)
@@ -35,7 +35,7 @@ class ToolJointEstimator:
         self._joints = tuple(_joint(name, every[name]) for name in names)
 
     def read(self, link: Callable[[str], RigidTransform]) -> tuple[tuple[str, float], ...]:
-        """Return the joints by name, radians or metres; `link` tells where a link is."""
+        """Return the joints by name, radians or meters; `link` returns the pose of a link."""
         return tuple((joint.name, _value(joint, link)) for joint in self._joints)
 
 
@@ -44,7 +44,7 @@ def _joint(name: str, element: ET.Element) -> _Joint:
     origin, axis = element.find("origin"), element.find("axis")
     xyz = _numbers(origin, "xyz", "0 0 0")
     roll, pitch, yaw = _numbers(origin, "rpy", "0 0 0").tolist()
-    turn = product(
+    rotation = product(
         quaternion_of(np.array([0.0, 0.0, yaw])),
         product(quaternion_of(np.array([0.0, pitch, 0.0])), quaternion_of(np.array([roll, 0.0, 0.0]))),
     )
@@ -53,7 +53,7 @@ def _joint(name: str, element: ET.Element) -> _Joint:
         name=name,
         parent=parent,
         child=child,
-        origin=RigidTransform(xyz=xyz, xyzw=turn),
+        origin=RigidTransform(xyz=xyz, xyzw=rotation),
         axis=direction / np.linalg.norm(direction),
         slides=element.attrib["type"] == "prismatic",
     )

@@ -1,4 +1,4 @@
-"""The workspace of a cell as a device: answers for the planning scene, and serves the arms that move in it."""
+"""The workspace of a cell as a device: serves the planning scene to the bus and to the arms that move in it."""
 
 from __future__ import annotations
 
@@ -37,32 +37,32 @@ from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices
 
 LOOK_S = 0.05
-"""How often the cell is looked at while somebody watches."""
+"""Period of the measurements while there are listeners."""
 
 _FRESH_S = 3.0
 _STARTED_S = 120.0
-"""How long the cameras may take to start: on a new machine everything is compiled first."""
+"""Longest start of the cameras: on a new machine all kernels are compiled first."""
 
 ChangeListener = Callable[[frozenset[str]], None]
 _log = logging.getLogger("flexcell.workspace")
 
 
 class SceneMaker(Protocol):
-    """Makes the scene of a cell; it loads coal and takes some tenths of a second the first time."""
+    """Creates the scene of a cell; loads Coal and takes some tenths of a second the first time."""
 
     def __call__(self) -> LiveScene:
-        """Return it, as the cell document has it."""
+        """Return the scene of the cell document."""
         ...
 
 
 class Workspace:
-    """Implements `engine.robot.Robot` under a name that no robot has; its skills are the cell's.
+    """Implements `engine.robot.Robot` under a name that no robot has; its skills are those of the cell.
 
     Args:
-        make_scene: Makes the live scene, at the first need.
-        planners: Who plans and checks.
-        clock: The cell's.
-        occupancy: What the cameras see, if there are some.
+        make_scene: Creates the live scene at first use.
+        planners: Plan and check paths.
+        clock: The cell's clock.
+        occupancy: The occupancy map of the cameras, if the cell has cameras.
     """
 
     name = "cell/workspace"
@@ -82,114 +82,114 @@ class Workspace:
         self.planners = planners
         self._clock = clock
         self._occupancy = occupancy
-        self._unsubscribe: Callable[[], None] = _nothing
+        self._unsubscribe: Callable[[], None] = _no_operation
         self._topic: Topic[PlanningSceneState] | None = None
         self._watchers: list[ChangeListener] = []
-        self._looking: asyncio.Task[None] | None = None
+        self._measuring: asyncio.Task[None] | None = None
         self._preparing: asyncio.Task[None] | None = None
-        self._told = -1
+        self._published_revision = -1
         self.status = DeviceStatus.DISCONNECTED
 
     @property
     def occupancy(self) -> OccupancyGrid | None:
-        """What the cameras see now; None without cameras."""
+        """The current occupancy of the cameras; None without cameras."""
         return self._occupancy.latest if self._occupancy is not None else None
 
     @property
     def stale_reason(self) -> str:
-        """Why what the cameras see must not be trusted, empty where it may, or where there are none."""
+        """Why the occupancy is not valid; empty if it is, or without cameras."""
         return self._occupancy.stale_reason if self._occupancy is not None else ""
 
     @property
     def shared(self) -> bool:
-        """Whether more arms than one move in it."""
+        """True if the cell has more than one arm."""
         return self._scene().arms > 1
 
     def scene_for(self, arm: str) -> PlanningScene:
-        """Return the scene as `arm` meets it at this moment; `ready` has been awaited."""
+        """Return the current scene for `arm`; await `ready` first."""
         live = self._scene()
-        self._take_in(live)
+        self._refresh(live)
         return live.scene_for(arm)
 
     def holds(self, arm: str) -> bool:
-        """Whether an arm holds something that the scene knows of; what it has just lost may still count."""
+        """Return whether an arm holds an attached part; a part that it has just lost may still count."""
         if self._live is None:
             return any(memo.part.arm == arm for memo in self._early_memo.held)
         return self._live.holds(arm)
 
     def lies(self, arm: str) -> bool:
-        """Whether what an arm holds has not yet parted from what it was taken from; `ready` has been awaited."""
+        """Return whether a part held by an arm still touches what it was picked from; await `ready` first."""
         return self._scene().lies(arm)
 
     def attached_check_scene_for(self, arm: str) -> PlanningScene | None:
-        """Return the scene as what `arm` holds meets it at this moment, None where it holds nothing."""
+        """Return the current scene to check the attached parts of `arm`, None if it holds nothing."""
         live = self._scene()
-        self._take_in(live)
+        self._refresh(live)
         return live.attached_check_scene_for(arm)
 
     async def ready(self) -> None:
-        """Return when the scene is there, without holding up the loop."""
+        """Return when the scene exists, without blocking the event loop."""
         async with self._making:
             if self._live is not None:
                 return
-            # In virtual time nothing may depend on how fast this machine is.
+            # In virtual time nothing may depend on the speed of this machine.
             made = self._make_scene() if self._clock.virtual else await asyncio.to_thread(self._make_scene)
             if self._live is None:
-                self._begin_with(made)
+                self._start_with(made)
 
     def require(self) -> None:
-        """Let the cameras take images until `release`."""
+        """Keep the cameras running until `release`."""
         if self._occupancy is not None:
             self._occupancy.require()
 
     def release(self) -> None:
-        """End what `require` began."""
+        """Undo one `require`."""
         if self._occupancy is not None:
             self._occupancy.release()
 
     async def fresh(self) -> None:
-        """Return when the occupancy may be trusted; `require` was called. Cameras that are still starting have time.
+        """Return when the occupancy is valid; call `require` first. Waits longer for cameras that are still starting.
 
         Raises:
-            RobotError: it may not be, for too long; the message says why.
+            RobotError: the occupancy is not valid in time; the message gives the reason.
         """
         source = self._occupancy
         if source is None or not source.stale_reason:
             return
-        news = asyncio.Event()
-        unsubscribe = source.subscribe(news.set)
+        changed = asyncio.Event()
+        unsubscribe = source.subscribe(changed.set)
         try:
             async with asyncio.timeout(_STARTED_S):
                 while source.starting and source.stale_reason:
-                    await news.wait()
-                    news.clear()
+                    await changed.wait()
+                    changed.clear()
             async with asyncio.timeout(_FRESH_S):
                 while source.stale_reason:
-                    await news.wait()
-                    news.clear()
+                    await changed.wait()
+                    changed.clear()
         except TimeoutError:
             raise RobotError(
                 f"the occupancy map is not valid: {source.stale_reason}",
                 where=OCCUPANCY,
-                hint="see that the cameras work, then try again",
+                hint="check the cameras, then try again",
             ) from None
         finally:
             unsubscribe()
 
     def watch(self, watcher: ChangeListener) -> Callable[[], None]:
-        """Call `watcher` with the names of what has changed, until the returned function is called.
+        """Call `watcher` with the names of changed objects, until the returned function is called.
 
-        `occupancy` stands for all that the cameras see.
+        `occupancy` stands for everything that the cameras see.
         """
         self._watchers.append(watcher)
-        if self._looking is None:
-            self._looking = asyncio.create_task(self._look_on(), name="looking at the cell")
+        if self._measuring is None:
+            self._measuring = asyncio.create_task(self._measure(), name="measuring the cell")
         return lambda: self._end_watch(watcher)
 
     def claim(self, arm: str, rows: tuple[Row, ...]) -> None:
-        """Say where an arm on its way will be (radians, n each), or with nothing that it is on none."""
+        """Reserve the configurations that a moving arm will pass (radians, n each); empty releases them."""
         self._scene().claim(arm, rows)
-        self._tell({arm})
+        self._notify({arm})
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the services under `cell` and publish `cell/planning_scene`."""
@@ -206,19 +206,19 @@ class Workspace:
             self._topic.publish(self._live.state())
 
     def grips(self) -> dict[str, GraspCommand]:
-        """Nothing: it has no gripper."""
+        """Return no grasp commands: a workspace has no gripper."""
         return {}
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
-        """Nothing is known of grippers here."""
+        """Do nothing: a workspace has no gripper."""
 
     def memo(self) -> bytes:
-        """What must be known again after a restore."""
+        """Return the state that a restore needs."""
         memo = self._live.memo() if self._live is not None else self._early_memo
         return msgspec.msgpack.encode(memo) if memo != SceneMemo() else b""
 
     def remember(self, memo: bytes) -> None:
-        """Know again what `memo` says; raises RobotError where these bytes are none."""
+        """Restore the state of `memo`; raises RobotError for invalid bytes."""
         try:
             known = msgspec.msgpack.decode(memo, type=SceneMemo) if memo else SceneMemo()
         except msgspec.DecodeError as error:
@@ -227,15 +227,15 @@ class Workspace:
             self._early_memo = known
             return
         self._live.remember(known)
-        self._tell(set())
+        self._notify(set())
 
     async def stop(self) -> None:
-        """Nothing here moves."""
+        """Do nothing: a workspace has no motion."""
 
     async def __aenter__(self) -> Self:
         self.status = DeviceStatus.READY
         if self._occupancy is not None:
-            self._unsubscribe = self._occupancy.subscribe(lambda: self._tell({OCCUPANCY}))
+            self._unsubscribe = self._occupancy.subscribe(lambda: self._notify({OCCUPANCY}))
             self.planners.begin()
         if not self._clock.virtual:
             self._preparing = asyncio.create_task(self._prepare(), name="preparing the planning scene")
@@ -246,70 +246,70 @@ class Workspace:
     ) -> None:
         self.status = DeviceStatus.DISCONNECTED
         self._unsubscribe()
-        for task in (self._looking, self._preparing):
+        for task in (self._measuring, self._preparing):
             if task is not None:
                 task.cancel()
                 await asyncio.wait((task,))
-        self._looking = self._preparing = None
+        self._measuring = self._preparing = None
         await self.planners.close()
 
     async def _prepare(self) -> None:
         try:
             await self.ready()
         except FlexcellError as error:
-            # Nobody has asked yet; who asks hears of it.
-            _log.warning("the planning scene cannot be made: %s", error)
+            # No caller is waiting yet; the first call reports the error.
+            _log.warning("the planning scene cannot be created: %s", error)
 
     def _scene(self) -> LiveScene:
         if self._live is None:
-            self._begin_with(self._make_scene())
+            self._start_with(self._make_scene())
         assert self._live is not None
         return self._live
 
-    def _begin_with(self, live: LiveScene) -> None:
+    def _start_with(self, live: LiveScene) -> None:
         live.remember(self._early_memo)
         live.refresh()
-        self._live, self._told = live, live.revision
+        self._live, self._published_revision = live, live.revision
         self._publish(live)
 
-    def _take_in(self, live: LiveScene) -> None:
+    def _refresh(self, live: LiveScene) -> None:
         changed = live.refresh()
         if changed:
-            self._tell(changed)
+            self._notify(changed)
 
-    def _tell(self, changed: set[str] | frozenset[str]) -> None:
-        """Tell those who watch, and the bus where the scene itself is another."""
+    def _notify(self, changed: set[str] | frozenset[str]) -> None:
+        """Notify the listeners, and publish the scene if it has changed."""
         for watcher in tuple(self._watchers):
             watcher(frozenset(changed))
         live = self._live
-        if live is None or live.revision == self._told:
+        if live is None or live.revision == self._published_revision:
             return
-        self._told = live.revision
+        self._published_revision = live.revision
         self._publish(live)
 
     def _publish(self, live: LiveScene) -> None:
-        """Tell the cameras and the bus what is known."""
+        """Send the scene to the cameras and the bus."""
         if self._occupancy is not None:
             self._occupancy.know(live.whole())
         if self._topic is not None:
             self._topic.publish(live.state())
 
-    async def _look_on(self) -> None:
+    async def _measure(self) -> None:
         try:
             await self.ready()
             while True:
                 await self._clock.sleep(LOOK_S)
-                self._take_in(self._scene())
+                self._refresh(self._scene())
         except FlexcellError as error:
-            # Who moves in it hears of the same from the planners and the port.
-            _log.warning("the cell is no longer looked at: %s", error)
+            # Moving arms get the same error from the planners and the port.
+            _log.warning("scene monitoring has stopped: %s", error)
 
     def _end_watch(self, watcher: ChangeListener) -> None:
         if watcher in self._watchers:
             self._watchers.remove(watcher)
-        if not self._watchers and self._looking is not None:
-            self._looking.cancel()
-            self._looking = None
+        if not self._watchers and self._measuring is not None:
+            self._measuring.cancel()
+            self._measuring = None
 
     async def _read(self, request: ReadPlanningScene) -> PlanningSceneState:
         return await self._changed(lambda live: None)
@@ -327,7 +327,7 @@ class Workspace:
         )
 
     async def _attach(self, request: AttachPart) -> PlanningSceneState:
-        # Every motion from now on is looked at; the first one need not wait for who looks.
+        # Every motion from now on is checked; start the planners so that the first one need not wait.
         self.planners.begin()
         return await self._changed(lambda live: live.attach(request.part, request.robot, request.link), {request.part})
 
@@ -342,7 +342,7 @@ class Workspace:
     async def _check(self, request: CheckCollision) -> CollisionReport:
         await self.ready()
         live = self._scene()
-        self._take_in(live)
+        self._refresh(live)
         scene = live.whole()
         try:
             arm = scene.arm(request.robot)
@@ -356,11 +356,11 @@ class Workspace:
     async def _changed(self, change: Callable[[LiveScene], None], names: set[str] | None = None) -> PlanningSceneState:
         await self.ready()
         live = self._scene()
-        self._take_in(live)
+        self._refresh(live)
         change(live)
-        self._tell(names or set())
+        self._notify(names or set())
         return live.state()
 
 
-def _nothing() -> None:
+def _no_operation() -> None:
     """Do nothing."""

@@ -1,4 +1,4 @@
-"""Looks at a simulated world: everything in it at one instant, from its newest snapshot."""
+"""Measures a simulated world at one instant, from its latest snapshot."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from robots.workspace.tool_joint_estimator import ToolJointEstimator
 
 
 class WorldPoseReader:
-    """Call it to look; the world is open."""
+    """Callable that measures the world, which must be open."""
 
     def __init__(self, world: SimWorld, scene: SimScene) -> None:
         self._world = world
         self._arms = {arm.name: ToolJointEstimator(arm.robot()) for arm in scene.arms}
 
     def __call__(self) -> MeasuredPoses:
-        """Return where arms, tools and parts are."""
+        """Return the measured arms, tools and parts."""
         snapshot, summary = self._world.measured(), self._world.host.summary
         xyz, xyzw = snapshot.frames()
         row = {name: index for index, name in enumerate(summary.frames)}

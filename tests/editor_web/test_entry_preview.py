@@ -213,7 +213,7 @@ def test_what_an_arm_cannot_do_is_said_in_words(browser: Browser, site: TeachSit
         shown = open_preview(page, "swing")
         arm = shown.get_by_role("combobox", name="Arm that is shown")
         expect(arm).to_have_value("right")
-        expect(shown.get_by_role("status")).to_contain_text("this is of 7 joints")
+        expect(shown.get_by_role("status")).to_contain_text("the entry has 7 joints")
         arm.select_option("left")
         expect(shown.get_by_role("status")).to_have_text("left is shown at swing")
         expect(shown).to_contain_text(re.compile(r"Motion[01]\.\d\d s, 0\.\d\d m of the tool"))

@@ -97,7 +97,7 @@ async def test_a_failure_has_the_devices_reason_as_its_cause(reason: str, words:
 async def test_a_motion_cancelled_by_somebody_else_is_a_failure_and_by_the_sender_is_none() -> None:
     motion, goal = FakeMotion(DURATION_S), new_goal()
     asyncio.get_running_loop().call_later(0.3, motion.cancel)
-    with pytest.raises(SkillFailed, match="the arm was told to stop"):
+    with pytest.raises(SkillFailed, match="the arm was stopped by another command"):
         await attended(motion, goal)
     goal.cancel_requested = True
     motion = FakeMotion(DURATION_S)

@@ -1,4 +1,4 @@
-"""The planning scene and its exact geometry: shapes, allowed collisions, the exact checker.
+"""The planning scene and its exact geometry: shapes, occupancy, allowed collisions, the exact checker.
 
-Occupancy as obstacles. For planners, and for vision and workspace; imports no planner.
+Used by the planners, vision and workspace; imports no planner.
 """

@@ -1,4 +1,4 @@
-"""An arm's collision shapes for planning: those of its model, with balls at the ends of a cylinder made one capsule."""
+"""An arm's collision shapes for planning: those of its model, cylinders with end spheres merged to capsules."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _SAME_M = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class ArmShapes:
-    """Pinocchio's model of an arm with its tool locked, its shapes with the pairs that count; not to be changed.
+    """Pinocchio's model of an arm with its tool locked, its shapes and their collision pairs; do not modify.
 
-    `links` names the link of each shape, `pairs` the pairs of links that count.
+    `links` names the link of each shape, `pairs` the collision pairs of links.
     """
 
     solver: Any
@@ -30,9 +30,9 @@ class ArmShapes:
 
 @lru_cache(maxsize=64)
 def arm_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) -> ArmShapes:
-    """Return the shapes of an arm with its tool; made once.
+    """Return the shapes of an arm with its tool; created once.
 
-    URDF has no capsules, so descriptions write them as three shapes: nine pairs for each two links.
+    URDF has no capsules, so descriptions use three shapes for each: nine pairs for every two links.
 
     Raises:
         CellError: a mesh is missing, or a named joint is not the tool's.
@@ -51,7 +51,7 @@ def arm_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) ->
             geometry.addGeometryObject(
                 pin.GeometryObject(shape.name, shape.parentJoint, shape.parentFrame, shape.placement, solid)
             )
-    # A ball may come before its cylinder.
+    # A sphere may precede its cylinder.
     for index in sorted(merged):
         if geometry.existGeometryName(old[index].name):
             geometry.removeGeometryObject(old[index].name)
@@ -65,9 +65,9 @@ def arm_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) ->
 
 
 def _ends(cylinder: Any, shapes: list[Any]) -> tuple[int, ...]:
-    """Return the balls of the cylinder's radius that are centred on its two ends, one for each."""
+    """Return the spheres of the cylinder's radius that are centered on its two ends, one for each."""
     radius, half = float(cylinder.geometry.radius), float(cylinder.geometry.halfLength)
-    found: list[int] = []
+    spheres: list[int] = []
     for side in (-half, half):
         end = np.array(cylinder.placement.act(np.array([0.0, 0.0, side])))
         for index, shape in enumerate(shapes):
@@ -77,6 +77,6 @@ def _ends(cylinder: Any, shapes: list[Any]) -> tuple[int, ...]:
                 and abs(float(shape.geometry.radius) - radius) < _SAME_M
                 and float(np.linalg.norm(np.array(shape.placement.translation) - end)) < _SAME_M
             ):
-                found.append(index)
+                spheres.append(index)
                 break
-    return tuple(found)
+    return tuple(spheres)

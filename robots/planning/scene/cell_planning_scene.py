@@ -1,4 +1,4 @@
-"""The planning scene of a cell: its arms, fixtures and parts as the simulator builds them from the same description."""
+"""The planning scene of a cell: its arms, fixtures and parts, from the same description as the simulation."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
 
 
 def planning_scene(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) -> PlanningScene:
-    """Return what an arm of a cell must not touch; all arms are at home.
+    """Return the planning scene of a cell; all arms are at home.
 
-    Fixtures and parts become obstacles of their names, a tray five boxes of one name. Parts lie where
-    `parts` says, in the world, where they begin otherwise. The first moving link of an arm may touch the
-    fixtures that it touches at home, which the arm is bolted to.
+    Fixtures and parts become obstacles with their names, a tray five boxes with one name. Parts have the poses
+    of `parts`, in the world, else their initial poses. The first moving link of an arm may touch the
+    fixtures that it touches at home, to which the arm is bolted.
 
     Raises:
-        CellError: a body has a shape that there is not.
+        CellError: the shape of a body is unknown, or its size does not fit.
     """
     scene = PlanningScene(
         arms=tuple(SceneArm(placement=arm) for arm in cell.arms),
@@ -42,14 +42,14 @@ def planning_scene(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) -
 
 
 def known_obstacles(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) -> tuple[Obstacle, ...]:
-    """Return the fixtures and parts of a cell; parts lie where `parts` says, else where they begin.
+    """Return the fixtures and parts of a cell; parts have the poses of `parts`, else their initial poses.
 
     Raises:
-        CellError: a body has a shape that there is not.
+        CellError: the shape of a body is unknown, or its size does not fit.
     """
-    lying = parts or {}
+    part_poses = parts or {}
     obstacles = [Obstacle(name=f.name, solids=_solids(f), pose=f.pose) for f in cell.fixtures]
-    obstacles += [Obstacle(name=p.name, solids=_solids(p), pose=lying.get(p.name, p.pose)) for p in cell.parts]
+    obstacles += [Obstacle(name=p.name, solids=_solids(p), pose=part_poses.get(p.name, p.pose)) for p in cell.parts]
     return tuple(obstacles)
 
 
@@ -69,7 +69,7 @@ def _shape(body: FixtureBody | PartBody) -> Shape:
             return Sphere(radius_m=diameter / 2.0)
         case _:
             raise CellError(
-                f"a {body.shape} cannot have the size {list(body.size_m)}",
+                f"the size {list(body.size_m)} does not fit a {body.shape}",
                 where=body.name,
                 hint="box: three edge lengths; cylinder: diameter and length; sphere: diameter",
             )

@@ -1,4 +1,4 @@
-"""Shapes of the planning scene as coal's, and coal's shapes as ours: the one place that knows both."""
+"""Converts shapes of the planning scene to Coal and back; the only module that depends on both."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ pin: Any = import_module("pinocchio")
 
 
 def coal_shape(shape: Shape, name: str) -> Any:
-    """Return coal's convex shape.
+    """Return Coal's convex shape.
 
     Raises:
-        CellError: a size is not positive, or the points of a hull enclose nothing.
+        CellError: a size is not positive, or the points of a hull enclose no volume.
     """
     match shape:
         case Box(size_m=size):
@@ -41,10 +41,10 @@ def coal_shape(shape: Shape, name: str) -> Any:
 
 
 def shape_of(geometry: Any) -> Shape:
-    """Return the shape that a convex geometry of coal is.
+    """Return the shape of a convex Coal geometry.
 
     Raises:
-        CellError: it is of another kind.
+        CellError: the kind of geometry is not supported.
     """
     match geometry:
         case coal.Box():
@@ -61,36 +61,36 @@ def shape_of(geometry: Any) -> Shape:
             return Hull(points_m=tuple((x, y, z) for x, y, z in points))
         case _:
             raise CellError(
-                f"the planning scene knows no {type(geometry).__name__}",
+                f"the planning scene does not support {type(geometry).__name__}",
                 hint="give the link boxes, cylinders, spheres, capsules or meshes",
             )
 
 
 def corners_of(geometry: Any) -> Array:
-    """Return the corners of the box around a geometry of coal, along its own axes, shape (8, 3)."""
+    """Return the corners of the bounding box of a Coal geometry along its own axes, shape (8, 3)."""
     geometry.computeLocalAABB()
     ends = np.array([geometry.aabb_local.min_, geometry.aabb_local.max_])
     return np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
 
 def placement(pose: RigidTransform) -> Any:
-    """Return pinocchio's transform."""
+    """Return the pose as a Pinocchio transform."""
     return pin.SE3(pose.rotation, pose.xyz)
 
 
 def rigid_of(transform: Any) -> RigidTransform:
-    """Return the numbers of pinocchio's transform."""
+    """Return a Pinocchio transform as a rigid transform."""
     return RigidTransform.of(np.array(transform.translation), np.array(pin.Quaternion(transform.rotation).coeffs()))
 
 
 def pose_of(transform: Any) -> Pose:
-    """Return pinocchio's transform as a message, in the world."""
+    """Return a Pinocchio transform as a pose message in the world."""
     return rigid_of(transform).to_pose("world")
 
 
 def _hull(points: Array, name: str) -> Any:
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 4 or not np.isfinite(points).all():
-        raise CellError("a hull needs at least four points", where=name)
+        raise CellError("a hull needs at least four finite points of 3 coordinates", where=name)
     if np.linalg.matrix_rank(points - points.mean(axis=0), tol=1e-6) < 3:
         raise CellError("the points of a hull lie in one plane", where=name, hint="give it some thickness")
     corners = coal.StdVec_Vec3s()
@@ -100,4 +100,4 @@ def _hull(points: Array, name: str) -> Any:
 
 def _check(sizes: tuple[float, ...], name: str) -> None:
     if not all(np.isfinite(size) and size > 0.0 for size in sizes):
-        raise CellError(f"a shape cannot have the sizes {list(sizes)} m", where=name, hint="give positive numbers")
+        raise CellError(f"invalid sizes {list(sizes)} m of a shape", where=name, hint="give positive numbers")

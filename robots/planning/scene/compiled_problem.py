@@ -1,4 +1,4 @@
-"""The arrays that the compiled core works on: an arm as links of spheres, the rest of the world as convex solids."""
+"""The arrays of the compiled core: an arm as links of spheres, the rest of the world as convex solids and voxels."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ Indices = NDArray[np.int64]
 
 KIND, TURN, PLACE, SIZE, BALL, PLANES, SOLID_COLUMNS = 0, 1, 10, 13, 16, 20, 22
 """Columns of a solid: kind; rotation (9, by rows) and position in the world; half edges, or radius and half
-length, or radius; centre and radius of a ball around it; first and last + 1 of its planes. A GRID has only the ball:
-it is all of the voxels that cameras see taken."""
+length, or radius; center and radius of its bounding sphere; first and last + 1 of its planes. A GRID has only the
+bounding sphere: it stands for all occupied voxels."""
 
 CORNER, VOXEL, FARTHEST, LOW, HIGH, GRID_COLUMNS = 0, 3, 4, 5, 8, 11
-"""What describes the grid of voxels: its lowest corner, the voxel's edge, the distance at which the field is truncated,
-the corners of a box around what is taken."""
+"""Columns of the voxel grid: its lowest corner, the voxel's edge, the distance at which the field is truncated,
+the corners of the bounding box of the occupied voxels."""
 
 
 class CompiledProblem(NamedTuple):
     """One arm in one scene, all in the world frame; n joints, L links, S spheres, P pairs, K solids, M planes.
 
     The first `placements` row is the first joint's frame in the world (rotation by rows, then position),
-    each next one the next joint's in the frame before, the last the tool's; joints turn about, or slide
-    along, z. Links of joint 0 stand still. `bound` is what `motion_bound` returns, `step_m` how far a point
-    of the arm may move between two checks. `solid_gap` and `pair_gap` are the distances below which spheres
+    each next one the next joint's in the previous frame, the last the tool's; joints rotate about, or slide
+    along, z. Links of joint 0 are static. `bound` is what `motion_bound` returns, `step_m` the largest motion of
+    a point of the arm between two checks. `solid_gap` and `pair_gap` are the distances below which spheres
     count as touching: mostly negative, as the spheres are larger than the arm.
     """
 
@@ -44,11 +44,11 @@ class CompiledProblem(NamedTuple):
     link_joint: Indices
     """(L,) the joint (1 … n) that a link moves with, 0 for none"""
     link_ball: Array
-    """(L, 4) centre in the joint's frame and radius of a ball around the link's spheres"""
+    """(L, 4) center in the joint's frame and radius of a bounding sphere of the link's spheres"""
     first_sphere: Indices
     """(L + 1,)"""
     spheres: Array
-    """(S, 4) centre in the joint's frame and radius"""
+    """(S, 4) center in the joint's frame and radius"""
     pairs: Indices
     """(P, 2) links that must not touch"""
     pair_gap: Array
@@ -60,7 +60,7 @@ class CompiledProblem(NamedTuple):
     solid_gap: Array
     """(L, K)"""
     voxels: NDArray[np.float32]
-    """(x, y, z) the distance of each voxel from the nearest taken one, as `voxel_distance_kernels` returns it"""
+    """(x, y, z) the distance of each voxel from the nearest occupied one, as `voxel_distance_kernels` returns it"""
     voxel_grid: Array
     """(GRID_COLUMNS,)"""
     orientation: int

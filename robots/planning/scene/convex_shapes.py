@@ -1,4 +1,4 @@
-"""Convex solids in numbers: how deep points lie in them, points on their surface, planes of hulls, a ball around."""
+"""Convex solids as arrays: penetration depth of points, surface samples, planes of hulls, bounding spheres."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from robots.port import Array
 
 @dataclass(frozen=True, kw_only=True)
 class ConvexSolid:
-    """A shape as the compiled core takes it, in its own frame.
+    """A shape in the form of the compiled core, in its own frame.
 
-    `kind` and `size` (3,) as in `Problem`; `planes` (m, 4) and `corners` (k, 3) are those of a hull,
-    else empty; `centre` (3,) and `radius_m` are of a ball around it.
+    `kind` and `size` (3,) as in `CompiledProblem`; `planes` (m, 4) and `corners` (k, 3) are those of a hull,
+    else empty; `centre` (3,) and `radius_m` are of its bounding sphere.
     """
 
     kind: int
@@ -31,7 +31,7 @@ class ConvexSolid:
     radius_m: float
 
     def depth(self, points: Array) -> Array:
-        """Return how far inside points (k, 3) lie, at least: negative outside."""
+        """Return a lower bound of the depth of points (k, 3) inside the solid; negative outside."""
         match self.kind:
             case 0:
                 return (self.size - np.abs(points)).min(axis=1)
@@ -47,7 +47,7 @@ class ConvexSolid:
                 return -(points @ self.planes[:, :3].T + self.planes[:, 3]).max(axis=1)
 
     def surface(self, spacing_m: float) -> Array:
-        """Return points (k, 3) all over the surface; every point of it has one of them nearer than 0.8 spacings."""
+        """Return points (k, 3) that cover the surface: each surface point is within 0.8 spacings of one of them."""
         match self.kind:
             case 0:
                 return _box_surface(self.size, spacing_m)
@@ -64,7 +64,7 @@ class ConvexSolid:
                 return _hull_surface(self.corners, spacing_m)
 
     def box(self) -> tuple[Array, Array]:
-        """Return the lower and the upper corner of a box around it."""
+        """Return the lower and the upper corner of its bounding box."""
         match self.kind:
             case 0:
                 return -self.size, self.size
@@ -79,7 +79,7 @@ class ConvexSolid:
 
 
 def convex_solid(shape: Shape) -> ConvexSolid:
-    """Return the numbers of a shape whose sizes have been checked."""
+    """Return the arrays of a shape whose sizes have been checked."""
     none, origin = np.empty((0, 4)), np.zeros(3)
     match shape:
         case Box(size_m=edges):
@@ -108,7 +108,7 @@ def convex_solid(shape: Shape) -> ConvexSolid:
 
 
 def to_frame(pose: RigidTransform, points: Array) -> Array:
-    """Return points (k, 3) of a frame in the frame that `pose` is given in."""
+    """Transform points (k, 3) from the frame at `pose` to the frame in which `pose` is given."""
     return points @ pose.rotation.T + pose.xyz
 
 
@@ -161,7 +161,7 @@ def _sphere_surface(radius: float, spacing_m: float) -> Array:
 
 
 def _convex_hull(points: Array) -> Any:
-    # scipy's stubs know no qhull; it takes most of a second to import, and most cells have no hulls.
+    # scipy's stubs lack qhull; its import takes most of a second, and most cells have no hulls.
     return import_module("scipy.spatial").ConvexHull(points)
 
 

@@ -1,4 +1,4 @@
-"""Tells exactly what an arm touches in a planning scene: convex shapes, all links, held parts and obstacles."""
+"""Exact collision checks of an arm in a planning scene: convex shapes of all links, attached parts and obstacles."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _STEP_SHARE, _LEAST_STEP_M, _MOST_STEP_M = 0.016, 0.01, 0.04
 
 @dataclass(frozen=True, kw_only=True)
 class Clearance:
-    """The smallest distance of two things that must not touch (0 or less where they do), and their names."""
+    """The smallest distance of a pair that must not touch (0 or less if it does), and the names."""
 
     distance_m: float
     pair: NamePair
@@ -35,7 +35,7 @@ class Clearance:
 
 @dataclass(frozen=True, kw_only=True)
 class PathCollision:
-    """Where a way first touches: after waypoint `segment`, at `share` of the way to the next, at `joints` (n,)."""
+    """The first collision on a path: after waypoint `segment`, at `share` of the segment, at `joints` (n,)."""
 
     segment: int
     share: float
@@ -44,10 +44,10 @@ class PathCollision:
 
 
 class CollisionQuery(Protocol):
-    """What tells whether, and what, an arm touches: a checker, or one that lets it leave from where it is too near."""
+    """Collision queries of an arm: an exact checker, or an escape checker for a start within the margin."""
 
     def in_collision(self, joints: Array) -> bool:
-        """Return whether anything touches at `joints`, shape (n,)."""
+        """Return whether any pair touches at `joints`, shape (n,)."""
         ...
 
     def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
@@ -56,19 +56,19 @@ class CollisionQuery(Protocol):
 
 
 class ExactChecker:
-    """One arm of a scene against itself, what it holds and everything else.
+    """Checks one arm of a scene against itself, its attached parts and everything else.
 
-    Shapes are those of the URDF, meshes as their convex hulls. What cannot move against each other is
-    not looked at. It holds the interpreter lock while it works and serves one thread at a time.
+    Shapes are those of the URDF, meshes as their convex hulls. Pairs that cannot move relative to each other are
+    not checked. The checker holds the interpreter lock while it works and serves one thread at a time.
 
     Args:
-        scene: The scene; later changes need another checker (a millisecond).
-        arm: Name of the arm that moves.
-        margin_m: Nearer than this counts as touching an obstacle or another arm; the arm itself has no margin.
-        among: What `arm_in_scene` returns for them, if that is known already.
+        scene: The scene; later changes need a new checker (a millisecond).
+        arm: Name of the moving arm.
+        margin_m: Nearer than this counts as touching an obstacle or another arm; self-collision has no margin.
+        among: The result of `arm_in_scene` for this scene and arm, if available.
 
     Raises:
-        CellError: there is no such arm, or a shape or model is wrong.
+        CellError: there is no such arm, or a shape or model is invalid.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class ExactChecker:
         wanted += self._attach(among.held)
         own = len(self._names)
         self._held = range(len(base.links), own)
-        wanted += self._surround(among.outside)
+        wanted += self._add_obstacles(among.outside)
         allowed = allowed_collision_matrix(scene, self._names[:own], self._names)
         pairs = [pair for pair in wanted if not allowed[pair]]
         self.bound_m = motion_bound(self._solver, self._geometry)
@@ -96,17 +96,17 @@ class ExactChecker:
         margins = [margin_m if second >= own else 0.0 for _, second in pairs]
         self._checks = PairChecks(self._solver, self._geometry, self._names, pairs, margins)
         self._voxels: Voxels | None = None
-        self._seen: PairChecks | None = None
+        self._octree: PairChecks | None = None
         self._may_meet: Callable[[Array], bool] = _always
 
     def seeing(self, voxels: Voxels, *, may_meet: Callable[[Array], bool] | None = None) -> ExactChecker:
-        """Return a checker that has what cameras see as well, under the name `occupancy`; the rest is shared.
+        """Return a checker that also checks the voxels of the cameras, named `occupancy`; it shares the rest.
 
-        Its octree is made when it is first needed. `may_meet` may say False of configurations (n,) in which surely
-        nothing is nearer to a taken voxel than the margin: an octree takes longer than all the rest.
+        Creates its octree at first use. `may_meet` may return False for configurations (n,) that are certainly
+        farther than the margin from every occupied voxel: an octree check takes longer than all others.
         """
         other = copy(self)
-        other._voxels, other._seen = voxels, None
+        other._voxels, other._octree = voxels, None
         other._may_meet = may_meet or _always
         return other
 
@@ -117,16 +117,16 @@ class ExactChecker:
 
     @property
     def first_moving_link(self) -> str:
-        """The link behind the first joint."""
+        """The link after the first joint."""
         frames = self._solver.frames
         return next(str(f.name) for f in frames if f.parentJoint == 1 and f.type == pin.FrameType.BODY)
 
     def in_collision(self, joints: Array) -> bool:
-        """Return whether anything touches at `joints`, shape (n,)."""
+        """Return whether any pair touches at `joints`, shape (n,)."""
         return any(checks.in_collision(joints) for checks in self._checks_at(joints))
 
     def touches_known_geometry(self, joints: Array) -> bool:
-        """Return whether anything but what cameras see touches at `joints`, shape (n,)."""
+        """Return whether any pair except those with `occupancy` touches at `joints`, shape (n,)."""
         return self._checks.in_collision(joints)
 
     def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
@@ -139,18 +139,18 @@ class ExactChecker:
         return frozenset(frozenset(pair) for checks in self.checks for pair in checks.pairs)
 
     def held_points(self, joints: Array) -> Array:
-        """Return the corners of the boxes around everything that the arm holds, at `joints` (n,), shape (points, 3)."""
+        """Return the corners of the bounding boxes of the held parts at `joints` (n,), shape (points, 3)."""
         data = self._solver.createData()
         pin.forwardKinematics(self._solver, data, joints)
-        found = [np.empty((0, 3))]
+        corners = [np.empty((0, 3))]
         for index in self._held:
             shape = self._geometry.geometryObjects[index]
             at = data.oMi[shape.parentJoint] * shape.placement
-            found.append(corners_of(shape.geometry) @ at.rotation.T + at.translation)
-        return np.vstack(found)
+            corners.append(corners_of(shape.geometry) @ at.rotation.T + at.translation)
+        return np.vstack(corners)
 
     def depth(self, joints: Array, pair: frozenset[str]) -> float:
-        """Return how deep two things, by name, are in one another at `joints`, shape (n,), metres; negative apart."""
+        """Return the penetration depth of two objects, by name, at `joints` (n,), meters; negative if apart."""
         return -min(
             (
                 float(distance)
@@ -162,62 +162,62 @@ class ExactChecker:
         )
 
     def clearance(self, joints: Array) -> Clearance:
-        """Return the smallest distance of a pair that must not touch, at `joints` (n,); the margin is not in it."""
-        found = Clearance(distance_m=math.inf, pair=("", ""))
+        """Return the smallest distance of a pair that must not touch, at `joints` (n,), without the margin."""
+        nearest_pair = Clearance(distance_m=math.inf, pair=("", ""))
         for checks in self.checks:
             distances = checks.distances(joints)
-            if len(distances) and float(distances.min()) < found.distance_m:
+            if len(distances) and float(distances.min()) < nearest_pair.distance_m:
                 nearest = int(np.argmin(distances))
-                found = Clearance(distance_m=float(distances[nearest]), pair=checks.pairs[nearest])
-        return found
+                nearest_pair = Clearance(distance_m=float(distances[nearest]), pair=checks.pairs[nearest])
+        return nearest_pair
 
     @property
     def checks(self) -> tuple[PairChecks, ...]:
-        """The pairs that are looked at: those of the scene, and those with what cameras see."""
+        """The checked pairs: those of the scene, and those with `occupancy`."""
         if self._voxels is None:
             return (self._checks,)
-        if self._seen is None:
-            self._seen = self._octree_checks(self._voxels)
-        return self._checks, self._seen
+        if self._octree is None:
+            self._octree = self._octree_checks(self._voxels)
+        return self._checks, self._octree
 
     def first_collision(
         self, path: Array, *, step_m: float | None = None, looking: CollisionQuery | None = None
     ) -> PathCollision | None:
-        """Return where a way of straight joint lines, shape (waypoints, n), first touches something; None if nowhere.
+        """Return the first collision on a path of straight joint lines, shape (waypoints, n); None if it is free.
 
-        No point of the arm moves farther than `step_m` between two configurations that are looked at;
-        by default the checker's own `step_m`, 1.6 % of the arm's reach but 1 cm at least and 4 cm at most.
-        `looking` is asked instead of the checker itself, configuration after configuration.
+        No point of the arm moves farther than `step_m` between two checked configurations;
+        by default the checker's own `step_m`, 1.6 % of the arm's reach but at least 1 cm and at most 4 cm.
+        `looking` is queried in place of the checker itself, configuration after configuration.
         """
-        look = looking or self
-        if len(path) and look.in_collision(path[0]):
-            return PathCollision(segment=0, share=0.0, joints=path[0], pairs=look.colliding_pairs(path[0]))
+        query = looking or self
+        if len(path) and query.in_collision(path[0]):
+            return PathCollision(segment=0, share=0.0, joints=path[0], pairs=query.colliding_pairs(path[0]))
         for segment in range(len(path) - 1):
-            start, way = path[segment], path[segment + 1] - path[segment]
+            start, delta = path[segment], path[segment + 1] - path[segment]
             count = self.steps(path[segment], path[segment + 1], step_m=step_m)
             for i in range(1, count + 1):
-                joints = start + way * (i / count)
-                if look.in_collision(joints):
+                joints = start + delta * (i / count)
+                if query.in_collision(joints):
                     return PathCollision(
-                        segment=segment, share=i / count, joints=joints, pairs=look.colliding_pairs(joints)
+                        segment=segment, share=i / count, joints=joints, pairs=query.colliding_pairs(joints)
                     )
         return None
 
     def is_edge_free(self, start: Array, end: Array) -> bool:
-        """Return whether the straight joint line touches nothing; `start` is not looked at.
+        """Return whether the straight joint line is free of collisions; does not check `start`.
 
-        The end first, then the middle, then ever finer: what is in the way is met early.
+        Checks the end first, then the middle, then ever finer steps, to find obstacles early.
         """
         count = self.steps(start, end)
-        way = end - start
-        return not any(self.in_collision(start + way * (i / count)) for i in _ever_finer(count))
+        delta = end - start
+        return not any(self.in_collision(start + delta * (i / count)) for i in _ever_finer(count))
 
     def steps(self, start: Array, end: Array, *, step_m: float | None = None) -> int:
-        """Return into how many parts a straight joint line is cut so that no point moves farther than `step_m`."""
+        """Return the number of steps of a straight joint line in which no point moves farther than `step_m`."""
         return max(1, math.ceil(float(np.abs(end - start) @ self.bound_m) / (step_m or self.step_m)))
 
     def _checks_at(self, joints: Array) -> Iterator[PairChecks]:
-        """Yield what can touch at `joints`: what cameras see only where something may be near it."""
+        """Yield the checks that apply at `joints`: those with `occupancy` only if the arm may be near it."""
         yield self._checks
         if self._voxels is not None and self._may_meet(joints):
             yield from self.checks[1:]
@@ -233,12 +233,12 @@ class ExactChecker:
                 )
                 index = self._add(part.name, frame.parentJoint, at, cached_shape(solid.shape, part.name))
                 for other in own:
-                    # What moves along with the part, as the tool that holds it, cannot hit it.
+                    # Links that move with the part, such as the tool that holds it, cannot collide with it.
                     if self._geometry.geometryObjects[other].parentJoint != frame.parentJoint:
                         pairs.append((other, index))
         return pairs
 
-    def _surround(self, outside: tuple[PlacedSolid, ...]) -> list[tuple[int, int]]:
+    def _add_obstacles(self, outside: tuple[PlacedSolid, ...]) -> list[tuple[int, int]]:
         moving = [i for i, g in enumerate(self._geometry.geometryObjects) if g.parentJoint > 0]
         added = [self._add(solid.name, 0, placement(self._world.then(solid.pose)), solid.ready) for solid in outside]
         return [(own, index) for index in added for own in moving]

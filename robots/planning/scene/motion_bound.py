@@ -1,4 +1,4 @@
-"""How far any point of an arm can move when a joint turns: what the fineness of all checks of ways rests on."""
+"""Bounds the motion of any point of an arm per joint motion; the step size of all path checks depends on it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from robots.port import Array
 
 
 def motion_bound(solver: Any, geometry: Any) -> Array:
-    """Return for each joint the metres that the fastest point moves at most per radian (or metre), shape (n,).
+    """Return for each joint the largest motion of any point in meters per radian (or meter), shape (n,).
 
-    A ball about the joint's origin that holds everything behind it, whatever the joints: the shapes that
-    move with the joint, and the next joint's ball. `solver` and `geometry` are pinocchio's models of a chain.
+    The bound is the radius of a sphere about the joint's origin that contains everything after it for all joints:
+    the shapes that move with the joint, and the next joint's sphere. `solver` and `geometry` are Pinocchio's
+    models of a chain.
     """
     count = solver.njoints - 1
     balls = np.zeros(count + 2)

@@ -1,4 +1,4 @@
-"""Pairs of shapes that must not touch, checked by coal's broad phase: pinocchio's objects, kept alive together."""
+"""Checks pairs of shapes that must not touch with Coal's broad phase; keeps Pinocchio's objects alive together."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array
 
 TOUCHING_M = 1e-5
-"""Nearer than this is touching. Coal's test without contacts ends at its tolerance and then calls cylinders that are
-millimetres deep in one another free; a margin above that tolerance makes it certain."""
+"""Nearer than this counts as touching. Coal's test without contacts ends at its tolerance and then reports cylinders
+that overlap by millimeters as free; a margin above that tolerance avoids this."""
 
 
 class PairChecks:
@@ -22,10 +22,10 @@ class PairChecks:
 
     Args:
         solver: Pinocchio's model of the arm.
-        geometry: Pinocchio's geometry model, which is given these pairs and must not change any more.
+        geometry: Pinocchio's geometry model, which gets these pairs and must not change afterwards.
         names: The name of each shape.
-        pairs: The shapes that must not touch, by number, the lower one first.
-        margins_m: How near each pair may come.
+        pairs: The shapes that must not touch, by index, the lower one first.
+        margins_m: Margin of each pair.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class PairChecks:
     ) -> None:
         # Pinocchio's managers keep none of these alive: this object does.
         self._solver, self._geometry = solver, geometry
-        # Pinocchio looks for doubles among all pairs when one is added: thousands are set at once, in this order.
+        # Pinocchio searches all pairs for duplicates when one is added: set thousands at once, in this order.
         order = sorted(range(len(pairs)), key=lambda k: pairs[k])
         wanted = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=np.bool_)
         margins = np.zeros((geometry.ngeoms, geometry.ngeoms))
@@ -64,18 +64,18 @@ class PairChecks:
         )
 
     def distances(self, joints: Array) -> Array:
-        """Return the distance of each pair at `joints` (n,), 0 or less where they touch."""
+        """Return the distance of each pair at `joints` (n,), 0 or less if it touches."""
         pin.computeDistances(self._solver, self._data, self._geometry, self._geometry_data, joints)
         return np.array([result.min_distance for result in self._geometry_data.distanceResults], dtype=np.float64)
 
     def too_near(self, joints: Array) -> dict[int, float]:
-        """Return the pairs, by number, that are nearer than their margin at `joints` (n,), and how near."""
-        found = self.distances(joints)
-        return {int(k): float(found[k]) for k in np.flatnonzero(found < np.array(self._margins_m))}
+        """Return the pairs, by index, that are within their margin at `joints` (n,), and their distances."""
+        distances = self.distances(joints)
+        return {int(k): float(distances[k]) for k in np.flatnonzero(distances < np.array(self._margins_m))}
 
     @contextmanager
     def nearer(self, allowed_m: Mapping[int, float]) -> Generator[None]:
-        """Let some pairs, by number, come as near as that for the time being."""
+        """Temporarily reduce the margins of some pairs, by index."""
         requests = self._geometry_data.collisionRequests
         for index, margin in allowed_m.items():
             requests[index].security_margin = max(margin, TOUCHING_M)

@@ -1,8 +1,8 @@
-"""The planning scene as plain data: arms where they stand, obstacles, parts in hands, pairs that may touch.
+"""The planning scene as plain data: arms with their joints, obstacles, attached parts, allowed collisions.
 
-A scene never changes: `with_…` and `without_…` return another one. It can cross a process border by
-msgspec. Things are named `obstacle`, `part` or `arm/link`, what cameras see `occupancy`. Poses of obstacles
-are in the world frame.
+A scene is immutable: `with_…` and `without_…` return a new one. It can cross a process boundary by
+msgspec. Objects are named `obstacle`, `part` or `arm/link`, the occupancy of the cameras `occupancy`. Poses of
+obstacles are in the world frame.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from robots.sim.scene.sim_scene import ArmPlacement
 NamePair = tuple[str, str]
 
 OCCUPANCY = "occupancy"
-"""The name of all that cameras see and nobody knows, in pairs of names."""
+"""Name of the occupancy map, the unknown objects seen by cameras, in pairs of names."""
 
 
 class AttachedPart(msgspec.Struct, frozen=True, kw_only=True):
     """A part that moves with a link of an arm, at `pose` in the frame of that link.
 
-    `link` is the tool link where it is empty. What moves along with that link, as the tool does, may
-    touch it; other links and obstacles only where the scene allows it.
+    An empty `link` means the tool link. Links that move with that link, such as the tool, may
+    touch the part; other links and obstacles only if the scene allows it.
     """
 
     name: str
@@ -38,9 +38,9 @@ class AttachedPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneArm(msgspec.Struct, frozen=True, kw_only=True):
-    """An arm in the scene: what it is and where its base stands, where its joints and its tool's joints are.
+    """An arm in the scene: its model and base pose, its joints and its tool's joints.
 
-    `joints_rad` matters when another arm is planned for; home where it is empty. Tool joints that are
+    `joints_rad` is used when another arm is planned for; empty means home. Tool joints that are
     not named are at 0.
     """
 
@@ -55,7 +55,7 @@ class SceneArm(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that a motion must not touch, and `allowed`, the pairs of names that may touch."""
+    """The objects that a motion must not touch, and `allowed`, the pairs of names that may touch."""
 
     arms: tuple[SceneArm, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
@@ -63,26 +63,26 @@ class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
     allowed: tuple[NamePair, ...] = ()
 
     def arm(self, name: str) -> SceneArm:
-        """Return an arm; raises CellError when there is none of that name."""
+        """Return an arm by name; raises CellError for an unknown name."""
         for arm in self.arms:
             if arm.name == name:
                 return arm
         raise _unknown("arm", name, [arm.name for arm in self.arms])
 
     def with_obstacles(self, *obstacles: Obstacle) -> PlanningScene:
-        """Return the scene with these obstacles; each takes the place of one of the same name.
+        """Return the scene with these obstacles; each replaces one with the same name.
 
         Raises:
-            CellError: the name is that of an arm, of a part in a hand or of the occupancy.
+            CellError: the name is that of an arm, of an attached part or of the occupancy.
         """
         for obstacle in obstacles:
             if obstacle.name in {part.name for part in self.attached} | {arm.name for arm in self.arms} | {OCCUPANCY}:
-                raise CellError(f"{obstacle.name} is in the scene already", hint="give the obstacle another name")
+                raise CellError(f"{obstacle.name} is already in the scene", hint="give the obstacle another name")
         new = {obstacle.name: obstacle for obstacle in (*self.obstacles, *obstacles)}
         return msgspec.structs.replace(self, obstacles=tuple(new.values()))
 
     def without_obstacle(self, name: str) -> PlanningScene:
-        """Return the scene without an obstacle; raises CellError when there is none of that name."""
+        """Return the scene without an obstacle; raises CellError for an unknown name."""
         kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != name)
         if len(kept) == len(self.obstacles):
             raise _unknown("obstacle", name, [obstacle.name for obstacle in self.obstacles])
@@ -102,44 +102,44 @@ class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.structs.replace(self, arms=tuple(new if a.name == arm else a for a in self.arms))
 
     def with_attached(self, part: AttachedPart) -> PlanningScene:
-        """Return the scene with a part in a hand; an obstacle of that name is no longer in the way.
+        """Return the scene with an attached part, in place of an obstacle with that name.
 
         Raises:
-            CellError: there is no such arm, or the arm holds something of that name.
+            CellError: there is no such arm, or the name is already in use.
         """
         self.arm(part.arm)
         if part.name in {held.name for held in self.attached} | {arm.name for arm in self.arms}:
-            raise CellError(f"{part.name} is in the scene already", hint="let go of it first")
+            raise CellError(f"{part.name} is already in the scene", hint="detach it first")
         kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != part.name)
         return msgspec.structs.replace(self, obstacles=kept, attached=(*self.attached, part))
 
     def without_attached(self, name: str) -> PlanningScene:
-        """Return the scene without a part in a hand; raises CellError when nobody holds it."""
+        """Return the scene without an attached part; raises CellError if it is not attached."""
         kept = tuple(part for part in self.attached if part.name != name)
         if len(kept) == len(self.attached):
-            raise _unknown("part in a hand", name, [part.name for part in self.attached])
+            raise _unknown("attached part", name, [part.name for part in self.attached])
         return msgspec.structs.replace(self, attached=kept)
 
     def with_allowed(self, first: str, second: str) -> PlanningScene:
-        """Return the scene in which two things, by name, may touch."""
+        """Return the scene in which two objects, by name, may touch."""
         if _same(first, second) in {_same(*pair) for pair in self.allowed}:
             return self
         return msgspec.structs.replace(self, allowed=(*self.allowed, (first, second)))
 
     def without_allowed(self, first: str, second: str) -> PlanningScene:
-        """Return the scene in which two things, by name, must not touch (any more)."""
+        """Return the scene in which two objects, by name, must not touch."""
         kept = tuple(pair for pair in self.allowed if _same(*pair) != _same(first, second))
         return msgspec.structs.replace(self, allowed=kept)
 
     def may_touch(self, first: str, second: str) -> bool:
-        """Return whether a pair of names is allowed; an arm's name stands for all its links."""
+        """Return whether a pair of names may touch; an arm's name stands for all its links."""
         for a, b in self.allowed:
-            if (_means(a, first) and _means(b, second)) or (_means(a, second) and _means(b, first)):
+            if (_matches(a, first) and _matches(b, second)) or (_matches(a, second) and _matches(b, first)):
                 return True
         return False
 
 
-def _means(rule: str, name: str) -> bool:
+def _matches(rule: str, name: str) -> bool:
     return name == rule or name.startswith(rule + "/")
 
 

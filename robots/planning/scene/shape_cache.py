@@ -1,4 +1,4 @@
-"""Shapes as both checkers take them, each made once however often a scene changes around it."""
+"""Cached shapes for both checkers: each is created once, even if the scene changes often."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robots.planning.scene.convex_shapes import ConvexSolid, convex_solid
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CachedShape:
-    """A convex shape, as numbers for the compiled core and as coal's geometry, which is not to be changed."""
+    """A convex shape, as arrays for the compiled core and as a Coal geometry, which must not be modified."""
 
     shape: Shape
     solid: ConvexSolid
@@ -24,20 +24,20 @@ class CachedShape:
 
 
 def cached_shape(shape: Shape, name: str) -> CachedShape:
-    """Return a shape made ready.
+    """Return the cached shape.
 
     Raises:
-        CellError: a size is not positive, or the points of a hull enclose nothing; `name` says whose.
+        CellError: a size is not positive, or the points of a hull enclose no volume; `name` is the owner.
     """
     try:
-        return _ready(shape)
+        return _create(shape)
     except CellError as error:
         raise CellError(error.message, where=name, hint=error.hint) from error
 
 
 @lru_cache(maxsize=64)
 def cached_link_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) -> tuple[CachedShape, ...]:
-    """Return the shapes of `arm_shapes` made ready, in its order."""
+    """Return the cached shapes of `arm_shapes`, in its order."""
     objects = arm_shapes(model, tool_joints).geometry.geometryObjects
     shapes = [shape_of(one.geometry) for one in objects]
     return tuple(
@@ -47,5 +47,5 @@ def cached_link_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], 
 
 
 @lru_cache(maxsize=1024)
-def _ready(shape: Shape) -> CachedShape:
+def _create(shape: Shape) -> CachedShape:
     return CachedShape(geometry=coal_shape(shape, "shape"), shape=shape, solid=convex_solid(shape))

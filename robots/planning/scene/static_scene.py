@@ -1,4 +1,4 @@
-"""What stands still while one arm of a scene moves: obstacles, and the other arms with what they hold."""
+"""The static objects while one arm of a scene moves: obstacles, and the other arms with their attached parts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from robots.sim.scene.sim_scene import ArmPlacement
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedSolid:
-    """A convex shape where it stands in the world, under the name that allowed pairs and reports use."""
+    """A convex shape at its pose in the world, with the name that allowed pairs and reports use."""
 
     name: str
     ready: CachedShape
@@ -36,7 +36,7 @@ class PlacedSolid:
 
 @dataclass(frozen=True, kw_only=True)
 class ArmInScene:
-    """One arm of a scene and everything else in it: what both checkers begin with."""
+    """One arm of a scene and everything else in it: the input of both checkers."""
 
     scene: PlanningScene
     placed: SceneArm
@@ -53,10 +53,10 @@ class ArmInScene:
 def arm_in_scene(
     scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
 ) -> ArmInScene:
-    """Return an arm of a scene among the rest; `robot` loads models.
+    """Return an arm of a scene and the static rest; `robot` loads models.
 
     Raises:
-        CellError: there is no such arm, a model or a shape is wrong, or an arm's joints are not as many as it has.
+        CellError: there is no such arm, a model or a shape is invalid, or the number of joints of an arm is wrong.
     """
     placed = scene.arm(arm)
     return ArmInScene(
@@ -74,9 +74,9 @@ def static_solids(
     """Return everything in the scene that is neither `arm` nor held by it.
 
     Raises:
-        CellError: a model or a shape is wrong, or an arm's joints are not as many as it has.
+        CellError: a model or a shape is invalid, or the number of joints of an arm is wrong.
     """
-    found = [
+    solids = [
         PlacedSolid(
             name=obstacle.name,
             ready=cached_shape(solid.shape, obstacle.name),
@@ -88,20 +88,20 @@ def static_solids(
     for other in scene.arms:
         if other.name != arm:
             held = tuple(part for part in scene.attached if part.arm == other.name)
-            found.extend(_arm_solids(other, robot(other.placement), held))
-    return tuple(found)
+            solids.extend(_arm_solids(other, robot(other.placement), held))
+    return tuple(solids)
 
 
 def joints_of(arm: SceneArm, model: RobotModel) -> Array:
-    """Return where an arm's joints are, shape (n,); raises CellError when they are not as many as it has."""
+    """Return an arm's joints, shape (n,); raises CellError if their number is wrong."""
     joints = np.array(arm.joints_rad if arm.joints_rad else model.home_rad, dtype=np.float64)
     if joints.shape != (model.dof,):
-        raise CellError(f"{len(joints)} joints are given", where=arm.name, hint=f"this arm has {model.dof}")
+        raise CellError(f"got {len(joints)} joints", where=arm.name, hint=f"this arm has {model.dof}")
     return joints
 
 
 def held_frame(model: RobotModel, solver: Any, part: AttachedPart) -> Any:
-    """Return the frame, of pinocchio's model of the arm, that a held part is attached to.
+    """Return the frame of Pinocchio's model of the arm to which a held part is attached.
 
     Raises:
         CellError: the arm has no such link.
@@ -117,7 +117,7 @@ def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]
     base = RigidTransform.from_pose(arm.placement.base)
     data = shapes.solver.createData()
     pin.forwardKinematics(shapes.solver, data, joints_of(arm, model))
-    found = [
+    solids = [
         PlacedSolid(
             name=f"{arm.name}/{link}",
             ready=ready,
@@ -135,7 +135,7 @@ def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]
         at = base.then(rigid_of(data.oMi[frame.parentJoint] * frame.placement)).then(
             RigidTransform.from_pose(part.pose)
         )
-        found.extend(
+        solids.extend(
             PlacedSolid(
                 name=part.name,
                 ready=cached_shape(solid.shape, part.name),
@@ -143,4 +143,4 @@ def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]
             )
             for solid in part.solids
         )
-    return found
+    return solids

@@ -1,7 +1,7 @@
-"""Compiled work on voxels: how far every voxel is from the nearest taken one, and how near spheres come to those.
+"""Compiled voxel distances: of every voxel from the nearest occupied one, and of spheres from occupied voxels.
 
-A taken voxel is a cube. Distances of spheres from cubes are exact: the field of distances tells most spheres at
-once that they are far away or inside, and only for the rest are the cubes nearby looked at.
+An occupied voxel is a cube. Distances of spheres from cubes are exact: the distance field decides at once for most
+spheres, which are far away or inside; only for the rest are the nearby cubes checked.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from robots.port import Array
 
 Field = NDArray[np.float32]
 
-# More than single precision can be wrong by, metres.
+# Larger than the rounding error of single precision, meters.
 _ROUNDING_M = 1e-5
 
 
 @compiled()
 def distance_field(taken: NDArray[np.uint8], voxel_m: float, reach: int) -> Field:
-    """Return the distance of each voxel's centre from the nearest taken cube, metres, 0 in it.
+    """Return the distance of each voxel's center from the nearest occupied cube, meters, 0 inside.
 
-    Truncated at `reach` voxels: what is farther has (reach - 0.5) edges. Exact otherwise: the square is
-    a sum over the axes, each of which is a pass over the array.
+    Truncated at `reach` voxels to (reach - 0.5) edges. Exact otherwise: the squared distance is
+    a sum over the axes, with one pass over the array per axis.
     """
     nx, ny, nz = taken.shape
     farthest = np.float32((reach - 0.5) ** 2)
@@ -82,11 +82,11 @@ def _lower(row: Field, other: Field, step: float) -> None:
 
 @compiled()
 def _bounds(field: Field, grid: Array, x: float, y: float, z: float) -> tuple[float, float]:
-    """Return bounds of the distance of a point from the nearest taken cube; the upper one infinite where unknown."""
+    """Return bounds of the distance of a point from the nearest occupied cube; the upper is infinite if unknown."""
     h = grid[VOXEL]
     nx, ny, nz = field.shape
     u, v, w = (x - grid[CORNER]) / h, (y - grid[CORNER + 1]) / h, (z - grid[CORNER + 2]) / h
-    # The point of the grid that is nearest to this one, and the voxel that it is in.
+    # The nearest point of the grid, and its voxel.
     a, b, c = min(max(u, 0.0), float(nx)), min(max(v, 0.0), float(ny)), min(max(w, 0.0), float(nz))
     i, j, k = min(int(a), nx - 1), min(int(b), ny - 1), min(int(c), nz - 1)
     du, dv, dw = a - i - 0.5, b - j - 0.5, c - k - 0.5
@@ -101,7 +101,7 @@ def _bounds(field: Field, grid: Array, x: float, y: float, z: float) -> tuple[fl
 
 @compiled()
 def _cube_distance(field: Field, grid: Array, x: float, y: float, z: float, reach: float, any_: bool) -> float:
-    """Return the distance of a point from the nearest taken cube, `reach` if none is nearer; any nearer if `any_`."""
+    """Return the distance of a point to the nearest occupied cube, at most `reach`; any nearer one if `any_`."""
     h = grid[VOXEL]
     nx, ny, nz = field.shape
     u, v, w, r = (x - grid[CORNER]) / h, (y - grid[CORNER + 1]) / h, (z - grid[CORNER + 2]) / h, reach / h
@@ -119,7 +119,7 @@ def _cube_distance(field: Field, grid: Array, x: float, y: float, z: float, reac
             while k < last:
                 free = field[i, j, k]
                 if free > 0.0:
-                    # The nearest taken cube begins that far from the middle of this one.
+                    # The nearest occupied cube begins at that distance from the center of this one.
                     k += max(1, math.ceil(free / h + 0.49))
                     continue
                 dz = max(k - w, w - k - 1.0, 0.0)
@@ -133,7 +133,7 @@ def _cube_distance(field: Field, grid: Array, x: float, y: float, z: float, reac
 
 @compiled()
 def is_ball_far(balls: Array, ball: int, field: Field, grid: Array, reach: float) -> bool:
-    """Return whether a ball (centre, radius) is surely not nearer than `reach` to a taken cube."""
+    """Return whether a bounding sphere (center, radius) is certainly farther than `reach` from all occupied cubes."""
     least, _ = _bounds(field, grid, balls[ball, 0], balls[ball, 1], balls[ball, 2])
     return least >= reach + balls[ball, 3]
 
@@ -142,7 +142,7 @@ def is_ball_far(balls: Array, ball: int, field: Field, grid: Array, reach: float
 def is_voxel_nearer(
     points: Array, radii: Array, first: int, last: int, field: Field, grid: Array, reach: float
 ) -> bool:
-    """Return whether any of the spheres `first` … `last` - 1 is nearer than `reach` to a taken cube."""
+    """Return whether any of the spheres `first` … `last` - 1 is nearer than `reach` to an occupied cube."""
     nx, ny, nz = field.shape
     per_m, half = 1.0 / grid[VOXEL], 0.8661 * grid[VOXEL]
     cx, cy, cz = grid[CORNER], grid[CORNER + 1], grid[CORNER + 2]
@@ -152,7 +152,7 @@ def is_voxel_nearer(
             continue
         x, y, z = points[s, 0], points[s, 1], points[s, 2]
         u, v, w = (x - cx) * per_m, (y - cy) * per_m, (z - cz) * per_m
-        # Nearly always this tells: nothing in a voxel is farther from its centre than half of its diagonal.
+        # Decides nearly always: nothing in a voxel is farther from its center than half of its diagonal.
         inside = 0.0 <= u < nx and 0.0 <= v < ny and 0.0 <= w < nz
         if inside and field[int(u), int(v), int(w)] >= limit + half:
             continue
@@ -171,9 +171,9 @@ def is_voxel_nearer(
 
 @compiled()
 def voxel_gap(points: Array, radii: Array, first: int, last: int, field: Field, grid: Array, enough: float) -> float:
-    """Return the smallest distance of spheres from a taken cube, or `enough` where it is not smaller.
+    """Return the smallest distance of spheres from an occupied cube, at most `enough`.
 
-    Where the field of distances ends, what it can be at least.
+    Beyond the truncation of the distance field, returns a lower bound.
     """
     gap = enough
     for s in range(first, last):

@@ -1,4 +1,4 @@
-"""The occupancy that cameras see as planners take it: distances for the compiled core, an octree for the exact one."""
+"""The occupancy map for planners: a distance field for the compiled core, an octree for the exact checker."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _KEPT = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Voxels:
-    """Cubes along the world's axes: which are taken, (x, y, z) of 0 and 1, and the numbers of their grid."""
+    """Cubes along the world's axes: which are occupied, (x, y, z) of 0 and 1, and the parameters of their grid."""
 
     taken: NDArray[np.uint8]
     grid: Array
-    """(GRID_COLUMNS,) as `voxel_distance_kernels` takes it"""
+    """(GRID_COLUMNS,) in the form of `voxel_distance_kernels`"""
 
     @property
     def any(self) -> bool:
-        """Whether anything is taken."""
+        """True if any voxel is occupied."""
         return bool(self.grid[LOW] <= self.grid[HIGH])
 
     @property
@@ -41,30 +41,30 @@ class Voxels:
 
     @cached_property
     def field(self) -> NDArray[np.float32]:
-        """The distance of each voxel's centre from the nearest taken cube, (x, y, z), truncated."""
+        """The distance of each voxel's center from the nearest occupied cube, (x, y, z), truncated."""
         from robots.planning.scene.voxel_distance_kernels import distance_field
 
         return distance_field(self.taken, float(self.grid[VOXEL]), _REACH)
 
     @cached_property
     def octree(self) -> Any:
-        """Coal's shape, in the frame of `corner`; only where anything is taken."""
+        """Coal's octree, in the frame of `corner`; requires an occupied voxel."""
         edge = float(self.grid[VOXEL])
         return coal.makeOctree((np.argwhere(self.taken) + 0.5) * edge, edge)
 
 
 def voxels_of(grid: OccupancyGrid) -> Voxels:
-    """Return what planners take.
+    """Return the voxels of an occupancy message.
 
     Raises:
-        CellError: the numbers of the message do not fit together.
+        CellError: the numbers of the message are inconsistent.
     """
     count = int(np.prod(grid.shape))
     if min(grid.shape) < 1 or not grid.voxel_m > 0.0 or len(grid.occupied) != -(-count // 8):
         raise CellError(
             f"{len(grid.occupied)} bytes are not the occupancy of {list(grid.shape)} voxels of {grid.voxel_m} m",
             where="occupancy",
-            hint="one bit a voxel, packed as numpy.packbits does",
+            hint="one bit per voxel, packed as by numpy.packbits",
         )
     bits = np.unpackbits(np.frombuffer(grid.occupied, dtype=np.uint8), count=count)
     taken = bits.reshape(grid.shape)
@@ -80,17 +80,17 @@ def voxels_of(grid: OccupancyGrid) -> Voxels:
 
 
 class VoxelCache:
-    """The latest grids, each worked out once."""
+    """Caches the voxels of the latest grids."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[OccupancyGrid, Voxels] = OrderedDict()
 
     def of(self, grid: OccupancyGrid | None) -> Voxels | None:
-        """Return a grid's voxels, None where there is no grid or nothing in it."""
+        """Return a grid's voxels, None without a grid or without occupied voxels."""
         if grid is None:
             return None
-        found = self._kept.pop(grid, None) or voxels_of(grid)
-        self._kept[grid] = found
+        voxels = self._kept.pop(grid, None) or voxels_of(grid)
+        self._kept[grid] = voxels
         if len(self._kept) > _KEPT:
             self._kept.popitem(last=False)
-        return found if found.any else None
+        return voxels if voxels.any else None

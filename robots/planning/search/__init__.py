@@ -1,4 +1,4 @@
-"""Path search: compiled planners, OMPL and STOMP, endpoints, and checks of given paths.
+"""Path search: compiled planners, OMPL and STOMP, endpoint checks, and checks of given paths.
 
-For robots.planning.worker only, besides `arm_spheres` (vision) and `reachability` (installed models).
+Used only by robots.planning.worker, except `arm_spheres` (vision) and `reachability` (installed models).
 """

@@ -1,4 +1,4 @@
-"""An arm as links of spheres in the frames of its joints, and how near two links' spheres may come."""
+"""An arm as links of spheres in the frames of its joints, and the smallest allowed gaps between two links' spheres."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from robots.port import Array
 
 _ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 _RECIPE, _SAMPLES = "pair gaps 3", 3000
-# A touching configuration that is taken for a free one counts as so many free ones taken for touching.
+# Weight of a touching configuration classified as free, relative to a free one classified as touching.
 _TOO_FREE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class ArmSpheres:
-    """What of a `CompiledProblem` depends on the arm alone; its base is the world."""
+    """The part of a `CompiledProblem` that depends on the arm alone; its base is the world."""
 
     chain: Array
     """(n + 1, 3, 4)"""
@@ -39,14 +39,14 @@ class ArmSpheres:
     spheres: tuple[Array, ...]
     """of each link (s, 4)"""
     frames: dict[str, tuple[int, RigidTransform]]
-    """of each link of the URDF: the joint it moves with and its pose in that joint's frame"""
+    """of each link of the URDF: the joint that it moves with and its pose in that joint's frame"""
     pairs: tuple[tuple[int, int], ...]
     pair_gap: Array
 
 
 @lru_cache(maxsize=32)
 def arm_spheres(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) -> ArmSpheres:
-    """Return an arm's spheres; made in seconds at first and kept on disk."""
+    """Return an arm's spheres; the first computation takes seconds and is cached on disk."""
     shapes = arm_shapes(model, tool_joints)
     chain = chain_of(ArmKinematics(model, base=_ORIGIN))
     frames = _frames(shapes, chain.placements)
@@ -63,7 +63,7 @@ def arm_spheres(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) -
         fitted[:, :3] = fitted[:, :3] @ pose.rotation.T + pose.xyz
         spheres.append(fitted)
     pairs = tuple((links.index(a), links.index(b)) for a, b in shapes.pairs)
-    found = ArmSpheres(
+    arm = ArmSpheres(
         chain=chain.placements,
         sliding=chain.sliding.astype(np.float64),
         bound=motion_bound(shapes.solver, shapes.geometry),
@@ -74,20 +74,20 @@ def arm_spheres(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) -
         pairs=pairs,
         pair_gap=np.zeros(len(pairs)),
     )
-    # The gaps hardly depend on where the tool's joints stand: they are those of the tool at rest.
+    # The gaps hardly depend on the tool's joints, so those of the tool at rest are used.
     if tool_joints:
         at_rest = arm_spheres(model, ())
         gap_of = dict(zip(at_rest.pairs, at_rest.pair_gap.tolist(), strict=True))
         gaps = np.array([gap_of.get(pair, 0.0) for pair in pairs])
     else:
-        gaps = _kept_gaps(model, shapes, found)
-    found.pair_gap[:] = gaps
-    found.pair_gap.flags.writeable = False
-    return found
+        gaps = _cached_gaps(model, shapes, arm)
+    arm.pair_gap[:] = gaps
+    arm.pair_gap.flags.writeable = False
+    return arm
 
 
 def bounding_balls(spheres: tuple[Array, ...]) -> Array:
-    """Return for each set of spheres (s, 4) a ball around it, (sets, 4)."""
+    """Return for each set of spheres (s, 4) a bounding sphere, (sets, 4)."""
     balls = np.empty((len(spheres), 4))
     for ball, group in zip(balls, spheres, strict=True):
         low, high = (group[:, :3] - group[:, 3:]).min(axis=0), (group[:, :3] + group[:, 3:]).max(axis=0)
@@ -97,7 +97,7 @@ def bounding_balls(spheres: tuple[Array, ...]) -> Array:
 
 
 def pack_placements(placements: Array) -> Array:
-    """Return placements (k, 3, 4) as the compiled core takes them, (k, 12): rotation by rows, then position."""
+    """Return placements (k, 3, 4) in the form of the compiled core, (k, 12): rotation by rows, then position."""
     return np.hstack((placements[:, :, :3].reshape(-1, 9), placements[:, :, 3]))
 
 
@@ -128,7 +128,7 @@ def arm_only_problem(arm: ArmSpheres, model: RobotModel) -> CompiledProblem:
 
 
 def _frames(shapes: ArmShapes, chain: Array) -> dict[str, tuple[int, RigidTransform]]:
-    """Return every link's joint and pose in the frame that the chain has for that joint."""
+    """Return every link's joint and its pose in that joint's frame of the chain."""
     solver = shapes.solver
     data = solver.createData()
     pin.framesForwardKinematics(solver, data, np.zeros(solver.nq))
@@ -143,8 +143,8 @@ def _frames(shapes: ArmShapes, chain: Array) -> dict[str, tuple[int, RigidTransf
     }
 
 
-def _kept_gaps(model: RobotModel, shapes: ArmShapes, arm: ArmSpheres) -> Array:
-    """Return the pairs' gaps, from disk where they were worked out before."""
+def _cached_gaps(model: RobotModel, shapes: ArmShapes, arm: ArmSpheres) -> Array:
+    """Return the pairs' gaps, from the disk cache if available."""
     content = b"".join(
         [model.urdf_text.encode(), *(group.tobytes() for group in arm.spheres), repr(arm.pairs).encode()]
     )
@@ -160,7 +160,7 @@ def _kept_gaps(model: RobotModel, shapes: ArmShapes, arm: ArmSpheres) -> Array:
 
 
 def _sampled_gaps(model: RobotModel, shapes: ArmShapes, arm: ArmSpheres) -> Array:
-    """Return for each pair the distance of its spheres at which, most often, the links themselves touch."""
+    """Return for each pair the distance of its spheres that best separates touching from free links."""
     from robots.planning.search.kernels import gaps
 
     problem = arm_only_problem(arm, model)
@@ -180,14 +180,14 @@ def _sampled_gaps(model: RobotModel, shapes: ArmShapes, arm: ArmSpheres) -> Arra
         share = random.random(len(problem.bound))
         joints = problem.limits[0] + share * (problem.limits[1] - problem.limits[0])
         pin.computeDistances(solver, data, geometry, geometry_data, joints)
-        found = np.array([result.min_distance for result in geometry_data.distanceResults])
-        np.minimum.at(exact[row], owner, found)
+        distances = np.array([result.min_distance for result in geometry_data.distanceResults])
+        np.minimum.at(exact[row], owner, distances)
         gaps(problem, joints, nothing, spheres[row])
     return np.array([_best_limit(spheres[:, pair], exact[:, pair]) for pair in range(len(arm.pairs))])
 
 
 def _best_limit(spheres: Array, exact: Array) -> float:
-    """Return the limit below which a distance of spheres counts as touching with the fewest errors, at most 0."""
+    """Return the limit, at most 0, that classifies distances of spheres as touching with the fewest errors."""
     order = np.argsort(spheres)
     touching = exact[order] <= 0.0
     # With the limit at the i-th distance, those before it count as touching.
@@ -196,6 +196,6 @@ def _best_limit(spheres: Array, exact: Array) -> float:
     limits = np.append(spheres[order], np.inf)
     errors = np.where(limits <= 0.0, too_free + too_strict, np.inf)
     if not np.isfinite(errors).any() or not touching.any():
-        # They never met: spheres that overlap then mean nothing, those that overlap deeper than ever seen may.
+        # The links never touched: only an overlap deeper than any sampled one may mean contact.
         return min(0.0, float(spheres.min()))
     return float(limits[int(np.argmin(errors))])

@@ -1,4 +1,4 @@
-"""The two ends of a plan: start and goals within limits and free, exactly; or the reason why not."""
+"""Exact checks of the start and goals of a plan: within limits and collision-free, else the reason."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _BEYOND_RAD = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoints:
-    """A start (n,) and goals (k, n), nearest first, that are free; the problem in which the spheres agree to that.
+    """A free start (n,) and free goals (k, n), nearest first; in `problem` the spheres are free there as well.
 
-    `lead` (k, n) are the waypoints before the start: that of the arm, where it stands nearer to something than
-    the margin, else none.
+    `lead` (k, n) are the waypoints before the start: the arm's configuration if it is within the margin of an
+    object, else none.
     """
 
     lead: Array
@@ -39,51 +39,51 @@ class Endpoints:
 
 
 def check_endpoints(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem) -> Endpoints | PlanRefusal:
-    """Return the ends of a request, or why there is no way between them at all."""
+    """Return the endpoints of a request, or why there can be no path between them."""
     start = np.array(request.start_rad, dtype=np.float64)
     outside = outside_limits(start, problem, checker)
     if outside:
         return PlanRefusal(
-            reason="start_outside_limits", message=f"the start: {outside}", hint="move the arm back first"
+            reason="start_outside_limits", message=f"the start: {outside}", hint="move the arm within its limits first"
         )
-    looking = EscapeChecker(checker, start)
-    if looking.in_collision(start):
-        return _touching(looking.colliding_pairs(start), hint="move the arm free by hand, or allow the pair to touch")
+    escape = EscapeChecker(checker, start)
+    if escape.in_collision(start):
+        return _start_collision(escape.colliding_pairs(start), hint="guide the arm away by hand, or allow this contact")
     if request.keep_orientation is not None:
         problem = with_upright_tool(problem, start, request.keep_orientation)
     goals = _goals(request, checker, problem, start)
     if isinstance(goals, PlanRefusal):
         return goals
     lead = np.empty((0, len(start)))
-    if looking.within_margin:
-        out = escape_configuration(checker, problem, start, goals, seed=request.seed)
-        if out is None:
+    if escape.within_margin:
+        outside_start = escape_configuration(checker, problem, start, goals, seed=request.seed)
+        if outside_start is None:
             pairs = checker.colliding_pairs(start)
-            return _touching(
-                pairs, hint=f"no way out of the margin of {request.margin_m:g} m was found; make it smaller"
+            return _start_collision(
+                pairs, hint=f"no path leaves the margin of {request.margin_m:g} m; reduce the margin"
             )
-        lead, start = start[None], out
+        lead, start = start[None], outside_start
     return Endpoints(lead=lead, start=start, goals=goals, problem=with_room_for(problem, np.vstack((start, goals))))
 
 
-def _touching(pairs: tuple[NamePair, ...], *, hint: str) -> PlanRefusal:
+def _start_collision(pairs: tuple[NamePair, ...], *, hint: str) -> PlanRefusal:
     return PlanRefusal(
         reason="start_in_collision", message=f"at the start {describe_touching(pairs)}", hint=hint, pairs=pairs
     )
 
 
 def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array) -> Array | PlanRefusal:
-    found = _wanted(request, checker, problem, start)
-    if isinstance(found, PlanRefusal):
-        return found
+    candidates = _goal_configurations(request, checker, problem, start)
+    if isinstance(candidates, PlanRefusal):
+        return candidates
     free: list[Array] = []
     pairs: tuple[NamePair, ...] = ()
     tilt = np.inf
-    for joints in found[np.argsort(np.abs(found - start).max(axis=1), kind="stable")]:
+    for joints in candidates[np.argsort(np.abs(candidates - start).max(axis=1), kind="stable")]:
         if problem.orientation != FREE:
-            turned = tilt_at(problem, joints)
-            tilt = min(tilt, turned)
-            if turned > problem.tolerance:
+            angle = tilt_at(problem, joints)
+            tilt = min(tilt, angle)
+            if angle > problem.tolerance:
                 continue
         if not checker.in_collision(joints):
             free.append(joints)
@@ -97,22 +97,24 @@ def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem
         return PlanRefusal(
             reason="goal_in_collision",
             message=f"at the goal {describe_touching(pairs)}"
-            + (f" (and at {len(found) - 1} more)" if len(found) > 1 else ""),
-            hint="choose another goal, or allow the pair to touch",
+            + (f" (and {len(candidates) - 1} more goals in collision)" if len(candidates) > 1 else ""),
+            hint="choose another goal, or allow this contact",
             pairs=pairs,
         )
     return PlanRefusal(
         reason="goal_unreachable",
-        message=f"at the goal the tool is turned by {tilt:.3f} rad, {problem.tolerance:g} are allowed on the way",
-        hint="start with the tool as it is at the goal",
+        message=f"at the goal the tool is rotated by {tilt:.3f} rad, the path allows {problem.tolerance:g} rad",
+        hint="start with the tool orientation of the goal",
     )
 
 
-def _wanted(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array) -> Array | PlanRefusal:
-    """Return the configurations (k, n) that are a goal, within the limits."""
+def _goal_configurations(
+    request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array
+) -> Array | PlanRefusal:
+    """Return the goal configurations (k, n) within the limits."""
     match request.goal:
         case PathGoal():
-            raise ValueError("a given way has no ends to be looked for")
+            raise ValueError("a given path has no goal to search for")
         case JointGoal(joints_rad=rows):
             kept: list[Array] = []
             reason = "no goal is given"
@@ -144,24 +146,24 @@ def _solutions(
         return PlanRefusal(reason="goal_unreachable", message=message, hint=hint)
 
 
-def with_upright_tool(problem: CompiledProblem, start: Array, wish: PathOrientationConstraint) -> CompiledProblem:
-    """Return the problem in which the tool keeps the orientation that it has at `start` (n,)."""
+def with_upright_tool(problem: CompiledProblem, start: Array, constraint: PathOrientationConstraint) -> CompiledProblem:
+    """Return the problem in which the tool keeps its orientation at `start` (n,)."""
     tool = tool_rotation(problem, start)
-    if wish.free_about is None:
+    if constraint.free_about is None:
         return problem._replace(
-            orientation=FULL, upright=np.vstack((tool, (0.0, 0.0, 1.0))), tolerance=wish.tolerance_rad
+            orientation=FULL, upright=np.vstack((tool, (0.0, 0.0, 1.0))), tolerance=constraint.tolerance_rad
         )
-    axis = np.array(wish.free_about) / np.linalg.norm(wish.free_about)
+    axis = np.array(constraint.free_about) / np.linalg.norm(constraint.free_about)
     upright = np.vstack((np.eye(3), axis))
     upright[:3, 2] = tool @ axis
-    return problem._replace(orientation=TILT, upright=upright, tolerance=wish.tolerance_rad)
+    return problem._replace(orientation=TILT, upright=upright, tolerance=constraint.tolerance_rad)
 
 
 def outside_limits(joints: Array, problem: CompiledProblem, checker: ExactChecker) -> str:
-    """Return which joint is how far outside its limits at `joints` (n,), empty where none is."""
+    """Return a text on the joint farthest outside its limits at `joints` (n,), empty if none is."""
     lower, upper = problem.limits[0], problem.limits[1]
     if joints.shape != lower.shape or not np.isfinite(joints).all():
-        return f"{joints.tolist()} is no configuration of an arm with {len(lower)} joints"
+        return f"{joints.tolist()} is not a configuration of an arm with {len(lower)} joints"
     beyond = np.maximum(lower - joints, joints - upper)
     worst = int(np.argmax(beyond))
     if beyond[worst] <= _BEYOND_RAD:
@@ -171,14 +173,16 @@ def outside_limits(joints: Array, problem: CompiledProblem, checker: ExactChecke
 
 
 def validate_joints(joints_rad: tuple[float, ...], checker: ExactChecker) -> Array:
-    """Return a configuration (n,); raises CellError when it is none of this arm."""
+    """Return a configuration (n,); raises CellError if it does not fit this arm."""
     joints = np.array(joints_rad, dtype=np.float64)
     if joints.shape != (checker.dof,) or not np.isfinite(joints).all():
-        raise CellError(f"{list(joints_rad)} is no configuration", where=checker.arm, hint=f"give {checker.dof} joints")
+        raise CellError(
+            f"{list(joints_rad)} is not a configuration", where=checker.arm, hint=f"give {checker.dof} joints"
+        )
     return joints
 
 
 def describe_touching(pairs: tuple[NamePair, ...]) -> str:
-    """Return what touches in words, the first three pairs of it."""
+    """Return a text on the touching pairs, naming the first three."""
     shown = ", ".join(f"{a} touches {b}" for a, b in pairs[:3])
     return shown + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")

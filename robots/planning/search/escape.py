@@ -1,4 +1,4 @@
-"""Leaves from where an arm is nearer to something than the margin: no nearer on the way, and the margin grows back."""
+"""Escape from a start within the margin: the arm may come no nearer, and the full margin applies once it is kept."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robots.planning.scene.planning_scene import NamePair
 from robots.planning.search.fast_search import is_tilted
 from robots.port import Array
 
-# Distances of convex shapes are right to about this.
+# Accuracy of distances of convex shapes.
 _SLACK_M = 1e-4
 _FARTHEST_RAD = (0.1, 0.2, 0.4, 0.8)
 _DIRECTIONS = 24
@@ -20,10 +20,10 @@ _NUDGE_RAD = 1e-3
 
 
 class EscapeChecker:
-    """Tells what touches along a way, in its order, for an arm that may begin it nearer to things than the margin.
+    """Checks a path in its order, for an arm that may start within the margin of objects.
 
-    Pairs that are within the margin at the start, but do not touch, may stay as near as they are there until
-    the whole margin is kept for once; from then on it counts again.
+    Pairs that are within the margin at the start, but do not touch, may stay as near as there until
+    the arm has kept the full margin once; from then on the full margin applies.
     """
 
     def __init__(self, checker: ExactChecker, start: Array) -> None:
@@ -37,18 +37,18 @@ class EscapeChecker:
 
     @property
     def within_margin(self) -> bool:
-        """Whether the arm has not left yet."""
+        """True until the arm has left the margin."""
         return bool(self._allowed)
 
     def in_collision(self, joints: Array) -> bool:
-        """Return whether anything is too near at `joints` (n,), the next ones on the way."""
+        """Return whether any pair is too near at `joints` (n,), the next configuration on the path."""
         if not self._checker.in_collision(joints):
             self.has_left()
             return False
         return not self._allowed or self._is_nearer(joints)
 
     def has_left(self) -> None:
-        """Take note of a configuration on the way that keeps the whole margin."""
+        """Record that a configuration on the path keeps the full margin."""
         self._allowed = ()
 
     def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
@@ -70,57 +70,58 @@ class EscapeChecker:
 def escape_configuration(
     checker: ExactChecker, problem: CompiledProblem, start: Array, goals: Array, *, seed: int
 ) -> Array | None:
-    """Return where the straight way leads that leaves the margin soonest, (n,), or None where none was found.
+    """Return the end (n,) of the shortest straight path found that leaves the margin, or None.
 
-    Tried are the ways to the goals, the one along which the distance grows fastest and, ever farther,
-    random ones.
+    Tries the directions to the goals, the direction in which the distance grows fastest and, with growing
+    length, random directions.
     """
     for goal in goals:
-        away = goal - start
-        far = float(np.linalg.norm(away))
+        delta = goal - start
+        distance = float(np.linalg.norm(delta))
         if (
-            far > 0.0
-            and (end := _first_outside(checker, problem, start, away / far, min(far, _FARTHEST_RAD[-1]))) is not None
+            distance > 0.0
+            and (end := _first_outside(checker, problem, start, delta / distance, min(distance, _FARTHEST_RAD[-1])))
+            is not None
         ):
-            return start + end * away / far
+            return start + end * delta / distance
     random = np.random.default_rng(seed)
     directions = [_fastest(checker, start), *random.standard_normal((_DIRECTIONS, len(start)))]
     for farthest in _FARTHEST_RAD:
-        best, found = farthest, None
+        best, escaped = farthest, None
         for direction in directions:
             size = float(np.linalg.norm(direction))
             if size == 0.0:
                 continue
             end = _first_outside(checker, problem, start, direction / size, best)
-            if end is not None and (found is None or end < best):
-                best, found = end, start + end * direction / size
-        if found is not None:
-            return found
+            if end is not None and (escaped is None or end < best):
+                best, escaped = end, start + end * direction / size
+        if escaped is not None:
+            return escaped
     return None
 
 
 def _first_outside(
     checker: ExactChecker, problem: CompiledProblem, start: Array, direction: Array, farthest: float
 ) -> float | None:
-    """Return how far along a direction the whole margin is kept first, None where something is touched before."""
-    looking = EscapeChecker(checker, start)
+    """Return the first distance along a direction that keeps the full margin, None if a collision comes before."""
+    escape = EscapeChecker(checker, start)
     count = checker.steps(start, start + farthest * direction)
     for i in range(1, count + 1):
         joints = start + (farthest * i / count) * direction
         beyond = ((joints < problem.limits[0]) | (joints > problem.limits[1])).any()
-        if beyond or is_tilted(problem, joints) or looking.in_collision(joints):
+        if beyond or is_tilted(problem, joints) or escape.in_collision(joints):
             return None
-        if not looking.within_margin:
+        if not escape.within_margin:
             return farthest * i / count
     return None
 
 
 def _fastest(checker: ExactChecker, start: Array) -> Array:
-    """Return the direction in which the pairs within the margin part fastest, (n,)."""
+    """Return the direction in which the pairs within the margin separate fastest, (n,)."""
     within = [sorted(checks.too_near(start)) for checks in checker.checks]
 
-    def together(joints: Array) -> float:
+    def total_distance(joints: Array) -> float:
         return sum(float(checks.distances(joints)[k].sum()) for checks, k in zip(checker.checks, within, strict=True))
 
-    here = together(start)
-    return np.array([together(start + step) - here for step in _NUDGE_RAD * np.eye(len(start))])
+    initial = total_distance(start)
+    return np.array([total_distance(start + step) - initial for step in _NUDGE_RAD * np.eye(len(start))])

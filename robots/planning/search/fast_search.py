@@ -1,4 +1,4 @@
-"""The fast planner: the straight line first, then RRT-Connect in the compiled core, then shortcuts."""
+"""The fast planner: tries the straight line, then RRT-Connect in the compiled core, then shortcuts."""
 
 from __future__ import annotations
 
@@ -19,42 +19,42 @@ from robots.port import Array
 _NODES, _ROUNDS = 20_000, 64
 _STRIDE_RAD, _UPRIGHT_STRIDE_RAD = 1.2, 0.3
 _SHORTCUTS = 160
-# Goals as near as this, measured by the joint with the longest way, are looked for in this share of the time first.
+# Goals within this distance, by the joint with the longest motion, are searched first for this share of the time.
 _NEAR_SHARE, _NEAR_RAD, _NEAR_TIME = 1.5, 0.3, 0.5
 _SLACK_M = 1e-4
-# What is added to the distance at which the spheres of a pair stood where the links themselves touched.
+# Added to the distance of a pair's spheres at which the links themselves touched.
 _LEARNT_M = 2e-3
 
 
 def fast_search(task: SearchTask, budget: SearchBudget) -> Array | None:
-    """Return a way that the spheres take for free, None when the budget is spent; see `Search`.
+    """Return a path that is free for the spheres, None when the budget is spent; see `SearchAlgorithm`.
 
-    Goals are nearest first. Those much farther than the nearest are looked for last: a straight line to the
-    other side of the arm's reach is no better than a short way around something.
+    Goals are nearest first. Those much farther than the nearest are searched last: a straight line to the
+    other side of the arm's reach is no better than a short path around an obstacle.
     """
     reach = np.abs(task.goals - task.start).max(axis=1)
-    near = int(np.count_nonzero(reach <= _NEAR_SHARE * reach[0] + _NEAR_RAD))
-    if near < len(task.goals):
+    near_count = int(np.count_nonzero(reach <= _NEAR_SHARE * reach[0] + _NEAR_RAD))
+    if near_count < len(task.goals):
         part = budget.part(_NEAR_TIME)
-        path = _found(replace(task, goals=task.goals[:near]), part)
+        path = _search_goals(replace(task, goals=task.goals[:near_count]), part)
         budget.spend(part.checks)
         if path is not None:
             return path
-    return _found(task, budget)
+    return _search_goals(task, budget)
 
 
-def _found(task: SearchTask, budget: SearchBudget) -> Array | None:
+def _search_goals(task: SearchTask, budget: SearchBudget) -> Array | None:
     problem = with_sampling(task.problem, task.start, task.goals)
     for goal in task.goals:
         line = np.vstack((task.start, goal))
         budget.spend(1)
         if blocked_at(problem, line) < 0:
             return line
-    return _connected(problem, task, budget)
+    return _rrt_connect(problem, task, budget)
 
 
 def shorten_path(problem: CompiledProblem, path: Array, *, seed: int, budget: SearchBudget) -> Array:
-    """Return a shorter way with the same ends that the spheres take for free, as `path` is."""
+    """Return a shorter path with the same endpoints that is free for the spheres, as `path` is."""
     if len(path) < 3:
         return path
     tries = np.zeros(1, dtype=np.int64)
@@ -64,7 +64,7 @@ def shorten_path(problem: CompiledProblem, path: Array, *, seed: int, budget: Se
 
 
 def with_sampling(problem: CompiledProblem, start: Array, goals: Array) -> CompiledProblem:
-    """Return the problem whose samples of joints with more than one turn stay within half a turn of the ends."""
+    """Return the problem in which samples of joints with over one turn of range stay within half a turn of the ends."""
     ends, lower, upper = np.vstack((start, goals)), problem.limits[0], problem.limits[1]
     wide = ~problem.sliding & (upper - lower > 2.0 * math.pi)
     low, high = lower.copy(), upper.copy()
@@ -74,10 +74,10 @@ def with_sampling(problem: CompiledProblem, start: Array, goals: Array) -> Compi
 
 
 def with_room_for(problem: CompiledProblem, free: Array) -> CompiledProblem:
-    """Return the problem in which the spheres take these configurations (k, n), exactly known to be free, for free.
+    """Return the problem in which these configurations (k, n), known to be free, are free for the spheres.
 
-    Spheres reach beyond the arm, so that an arm close to something seems to touch. Pairs that seem to
-    touch in a known configuration may come as near as there on the whole way; the exact check decides.
+    Spheres extend beyond the arm, so an arm close to an object appears to touch. Pairs that appear to
+    touch in a known configuration may come as near as there on the whole path; the exact check decides.
     """
     solid_gap, pair_gap = problem.solid_gap.copy(), problem.pair_gap.copy()
     to_solids, between = np.empty_like(solid_gap), np.empty_like(pair_gap)
@@ -91,7 +91,7 @@ def with_room_for(problem: CompiledProblem, free: Array) -> CompiledProblem:
 
 
 def with_wider_gaps(problem: CompiledProblem, names: ProblemNames, hit: PathCollision) -> CompiledProblem:
-    """Return the problem that keeps the pairs of a hit, which the spheres took for free, farther apart."""
+    """Return the problem that keeps the pairs of a collision, which the spheres missed, farther apart."""
     solid_gap, pair_gap = problem.solid_gap.copy(), problem.pair_gap.copy()
     to_solids, between = np.empty_like(solid_gap), np.empty_like(pair_gap)
     gaps(problem, np.ascontiguousarray(hit.joints), to_solids, between)
@@ -107,22 +107,22 @@ def with_wider_gaps(problem: CompiledProblem, names: ProblemNames, hit: PathColl
 
 
 def tilt_at(problem: CompiledProblem, joints: Array) -> float:
-    """Return by what angle the tool is turned out of the orientation that it shall keep, at `joints` (n,)."""
+    """Return the angle between the tool and the orientation that it must keep, at `joints` (n,)."""
     return float(gaps(problem, joints, np.empty_like(problem.solid_gap), np.empty_like(problem.pair_gap)))
 
 
 def is_tilted(problem: CompiledProblem, joints: Array) -> bool:
-    """Return whether the tool is turned farther than it may be, at `joints` (n,)."""
+    """Return whether the tool exceeds its orientation tolerance at `joints` (n,)."""
     return problem.orientation != FREE and tilt_at(problem, joints) > problem.tolerance
 
 
 def count_exact_checks(checker: ExactChecker, path: Array) -> int:
-    """Return how many configurations the exact check of a way looks at."""
+    """Return the number of configurations in the exact check of a path."""
     return 1 + sum(checker.steps(path[i], path[i + 1]) for i in range(len(path) - 1))
 
 
 def warm_up(problem: CompiledProblem) -> None:
-    """Have everything compiled that a first request would wait for."""
+    """Compile everything that a first request would wait for."""
     joints = problem.limits[:2].mean(axis=0)
     bent = np.vstack((joints, joints + 1e-3, joints))
     nodes, parents = np.stack((bent, bent)), np.zeros((2, 3), dtype=np.int64)
@@ -136,7 +136,7 @@ def warm_up(problem: CompiledProblem) -> None:
     grow(problem, nodes, parents, counts, _random_state(0), _STRIDE_RAD, 1, met)
 
 
-def _connected(problem: CompiledProblem, task: SearchTask, budget: SearchBudget) -> Array | None:
+def _rrt_connect(problem: CompiledProblem, task: SearchTask, budget: SearchBudget) -> Array | None:
     roots = (task.start[None], task.goals)
     dof = len(task.start)
     nodes = np.empty((2, _NODES, dof))
@@ -150,22 +150,22 @@ def _connected(problem: CompiledProblem, task: SearchTask, budget: SearchBudget)
     stride = _STRIDE_RAD if problem.orientation == FREE else _UPRIGHT_STRIDE_RAD
     while not budget.over and int(counts[:2].max()) < _NODES:
         before = int(counts[2])
-        there = grow(problem, nodes, parents, counts, state, stride, _ROUNDS, met)
-        # A round that meets a blocked sample at once counts too, so that every budget ends.
+        connected = grow(problem, nodes, parents, counts, state, stride, _ROUNDS, met)
+        # A round that ends at once at a blocked sample counts too, so that every budget ends.
         budget.spend(int(counts[2]) - before + _ROUNDS)
-        if there:
+        if connected:
             outward = _branch(nodes[0], parents[0], int(met[0]))[::-1]
             return np.array(outward + _branch(nodes[1], parents[1], int(met[1]))[1:])
     return None
 
 
 def _branch(nodes: Array, parents: Array, end: int) -> list[Array]:
-    found: list[Array] = []
+    branch: list[Array] = []
     at = end
     while at >= 0:
-        found.append(nodes[at])
+        branch.append(nodes[at])
         at = int(parents[at])
-    return found
+    return branch
 
 
 def _random_state(seed: int) -> NDArray[np.uint64]:

@@ -1,8 +1,8 @@
-"""The leaves of the compiled core: frames of the joints, distances, random numbers.
+"""The basic functions of the compiled core: frames of the joints, distances, random numbers.
 
-They take single numbers and few arrays: a call counts references to every array it is given, which takes
-as long as the work itself. Numba's cache notices changes of a function's own file only: after a change here
-save `kernels` anew.
+They take single numbers and few arrays: a call counts references to every array argument, which takes
+as long as the work itself. Numba's cache detects changes of a function's own file only: after a change here
+save `kernels` again.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from robots.port import Array
 
 @compiled()
 def joint_frames(placements: Array, sliding: NDArray[np.bool_], q: Array, frames: Array) -> None:
-    """Write the world's frame (0), each joint's turned by its joint (1 … n) and the tool's (n + 1), 12 numbers each."""
+    """Write the frames of the world (0), of each moved joint (1 … n) and of the tool (n + 1), 12 numbers each."""
     r0, r1, r2, r3, r4, r5, r6, r7, r8 = 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
     px, py, pz = 0.0, 0.0, 0.0
     n = len(q)
     for i in range(n + 2):
-        # The frame is kept in single numbers: read back from the array it would cost twice the time.
+        # The frame is kept in scalars: reading it back from the array would take twice the time.
         frames[i, 0], frames[i, 1], frames[i, 2] = r0, r1, r2
         frames[i, 3], frames[i, 4], frames[i, 5] = r3, r4, r5
         frames[i, 6], frames[i, 7], frames[i, 8] = r6, r7, r8
@@ -68,7 +68,7 @@ def joint_frames(placements: Array, sliding: NDArray[np.bool_], q: Array, frames
 
 @compiled()
 def place(frames: Array, joint: int, points: Array, first: int, last: int, out: Array) -> None:
-    """Write where points of a joint's frame, rows `first` … `last` - 1, are in the world."""
+    """Write the world positions of points of a joint's frame, rows `first` … `last` - 1."""
     f0, f1, f2 = frames[joint, 0], frames[joint, 1], frames[joint, 2]
     f3, f4, f5 = frames[joint, 3], frames[joint, 4], frames[joint, 5]
     f6, f7, f8 = frames[joint, 6], frames[joint, 7], frames[joint, 8]
@@ -82,7 +82,7 @@ def place(frames: Array, joint: int, points: Array, first: int, last: int, out: 
 
 @compiled()
 def place_balls(frames: Array, joints: Indices, balls: Array, out: Array) -> None:
-    """Write where the balls around the links (centre, radius) are in the world."""
+    """Write the world positions of the links' bounding spheres (center, radius)."""
     for link in range(len(joints)):
         f = joints[link]
         x, y, z = balls[link, 0], balls[link, 1], balls[link, 2]
@@ -93,7 +93,7 @@ def place_balls(frames: Array, joints: Indices, balls: Array, out: Array) -> Non
 
 @compiled()
 def near_pairs(balls: Array, joints: Indices, solids: Array, gaps: Array, found: Indices) -> int:
-    """Write the links and solids whose balls are nearer than the gap of their pair; return how many."""
+    """Write the links and solids whose bounding spheres are nearer than the gap of their pair; return their number."""
     count = 0
     solid_count = len(solids)
     for link in range(len(joints)):
@@ -111,7 +111,7 @@ def near_pairs(balls: Array, joints: Indices, solids: Array, gaps: Array, found:
 
 @compiled()
 def distance(solids: Array, planes: Array, k: int, wx: float, wy: float, wz: float) -> float:
-    """Return the distance of a point from a solid, negative inside; of a hull, the farthest of its planes."""
+    """Return the distance of a point from a solid, negative inside; for a hull, the largest distance to its planes."""
     x, y, z = wx - solids[k, PLACE], wy - solids[k, PLACE + 1], wz - solids[k, PLACE + 2]
     kind = int(solids[k, KIND])
     radius, half = solids[k, SIZE], solids[k, SIZE + 1]
@@ -167,7 +167,7 @@ def is_box_nearer(points: Array, radii: Array, first: int, last: int, solids: Ar
 def solid_gap(
     centres: Array, spheres: Array, first: int, last: int, solids: Array, planes: Array, k: int, enough: float
 ) -> float:
-    """Return the smallest distance of spheres from a solid, or `enough` where it is not smaller."""
+    """Return the smallest distance of spheres from a solid, at most `enough`."""
     gap = enough
     for i in range(first, last):
         x, y, z, radius = centres[i, 0], centres[i, 1], centres[i, 2], spheres[i, 3]
@@ -183,9 +183,9 @@ def pair_gap(
     centres: Array, spheres: Array, balls: Array, a: int, a0: int, a1: int, b: int, b0: int, b1: int,
     near: Indices, enough: float, any_: bool,
 ) -> float:  # fmt: skip
-    """Return the smallest distance of the spheres of two links, or `enough`; any smaller one if `any_`.
+    """Return the smallest distance of the spheres of two links, at most `enough`; any smaller one if `any_`.
 
-    Spheres a0 … a1 - 1 are in ball `a` (centre, radius), b0 … b1 - 1 in ball `b`.
+    Spheres a0 … a1 - 1 are in bounding sphere `a` (center, radius), b0 … b1 - 1 in bounding sphere `b`.
     """
     gap = enough
     count = 0
@@ -217,9 +217,9 @@ def pair_gap(
 
 @compiled()
 def orientation_error(tool: Array, upright: Array, tilt: bool, error: Array) -> float:
-    """Write the turn (world axes) that brings the tool back to how it shall stand, and return its angle.
+    """Write the rotation (world axes) from the tool to its required orientation, and return its angle.
 
-    `tool` has the 12 numbers of a frame; `upright` as in `Problem`.
+    `tool` has the 12 numbers of a frame; `upright` as in `CompiledProblem`.
     """
     ex, ey, ez, cosine = 0.0, 0.0, 0.0, 0.0
     for c in range(2 if tilt else 0, 3):
@@ -255,7 +255,7 @@ def random_number(state: NDArray[np.uint64]) -> float:
 
 @compiled()
 def nearest(nodes: Array, tree: int, count: int, q: Array) -> int:
-    """Return which of the first `count` nodes of a tree is nearest to `q`."""
+    """Return the index of the node nearest to `q` among the first `count` nodes of a tree."""
     best, least = 0, 1e300
     for i in range(count):
         away = 0.0

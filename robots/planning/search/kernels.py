@@ -1,9 +1,9 @@
-"""The compiled core of the fast planner: checks of configurations and ways.
+"""The compiled core of the fast planner: checks of configurations and paths.
 
-An arm is links of spheres, and the rest of the world convex solids and voxels; see `compiled_problem` for the arrays. A
-configuration is blocked where a sphere comes nearer to a solid than the slack of that link and solid
-allows, two links nearer than the slack of that pair, or the tool turns out of its tolerance. After a change
-here save `tree_kernels` anew: numba's cache notices changes of a function's own file only.
+An arm is links of spheres, the rest of the world convex solids and voxels; see `compiled_problem` for the arrays. A
+configuration is blocked if a sphere is nearer to a solid than the gap of that link and solid, if two links are
+nearer than the gap of that pair, or if the tool exceeds its orientation tolerance. After a change
+here save `tree_kernels` again: numba's cache detects changes of a function's own file only.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Flags = NDArray[np.bool_]
 
 
 class Scratch(NamedTuple):
-    """What a check works in; one for each call from outside, as threads may call at once."""
+    """Working memory of a check; one per external call, as threads may call concurrently."""
 
     q: Array
     frames: Array
@@ -49,7 +49,7 @@ class Scratch(NamedTuple):
 
 @compiled()
 def new_scratch(p: CompiledProblem) -> Scratch:
-    """Return room for the checks of a problem."""
+    """Return working memory for the checks of a problem."""
     n, links = len(p.sliding), len(p.link_joint)
     balls = np.empty((links, 4))
     balls[:, 3] = p.link_ball[:, 3]
@@ -76,7 +76,7 @@ def _place_balls(p: CompiledProblem, q: Array, s: Scratch) -> None:
 
 @compiled()
 def _place_link(p: CompiledProblem, link: int, s: Scratch) -> None:
-    """Write where the spheres of a link are, once in each configuration."""
+    """Write the positions of a link's spheres, once per configuration."""
     if not s.placed[link]:
         s.placed[link] = True
         place(s.frames, p.link_joint[link], p.spheres, p.first_sphere[link], p.first_sphere[link + 1], s.centres)
@@ -108,7 +108,7 @@ def _balls_near(s: Scratch, a: int, b: int, limit: float) -> bool:
 
 @compiled()
 def tilt_angle(p: CompiledProblem, s: Scratch) -> float:
-    """Return by what angle the tool, where the frames are, is turned out of the orientation that it shall keep."""
+    """Return the angle between the tool, at the current frames, and the orientation that it must keep."""
     return orientation_error(s.frames[len(s.frames) - 1], p.upright, p.orientation == TILT, s.error)
 
 
@@ -119,9 +119,9 @@ def _is_blocked(p: CompiledProblem, q: Array, s: Scratch) -> bool:
 
 @compiled()
 def is_edge_free(p: CompiledProblem, a: Array, b: Array, s: Scratch) -> bool:
-    """Return whether all but `a` of the straight line is free: the end first, then halves, quarters, …
+    """Return whether the straight line without `a` is free; checks the end first, then halves, quarters, …
 
-    All checks are in this one function, as a call with a whole problem takes as long as a check.
+    All checks are in this one function, as a call that passes a whole problem takes as long as a check.
     """
     frames, balls, centres, placed, touching, near = s.frames, s.balls, s.centres, s.placed, s.touching, s.near
     link_joint, first_sphere, spheres, solids, gaps = p.link_joint, p.first_sphere, p.spheres, p.solids, p.solid_gap
@@ -188,7 +188,7 @@ def is_edge_free(p: CompiledProblem, a: Array, b: Array, s: Scratch) -> bool:
 
 @compiled()
 def blocked_at(p: CompiledProblem, path: Array) -> int:
-    """Return the first waypoint or segment (k for what leads to waypoint k) that is blocked, -1 when all is free."""
+    """Return the first blocked waypoint or segment (k for the segment that ends at waypoint k), -1 if all are free."""
     s = new_scratch(p)
     if len(path) and _is_blocked(p, path[0], s):
         return 0
@@ -200,10 +200,10 @@ def blocked_at(p: CompiledProblem, path: Array) -> int:
 
 @compiled()
 def check_along_path(p: CompiledProblem, rows: Array, looked: Counts, blocked: Flags) -> int:
-    """Look at rows of a way (k, n), the first, the last and so many that nothing moves farther than the step between.
+    """Check rows of a path (k, n): the first, the last and enough that no point moves farther than the step between.
 
-    Write which rows were looked at and whether each is blocked; return how many. Where one row is farther from the
-    next than a step, what is between is looked at as well and counts as the latter.
+    Write the checked rows and whether each is blocked; return their number. Where two rows are farther apart
+    than a step, the motion between them is checked as well and counts as the latter row.
     """
     s = new_scratch(p)
     count, at = 0, 0
@@ -224,7 +224,7 @@ def check_along_path(p: CompiledProblem, rows: Array, looked: Counts, blocked: F
 
 @compiled()
 def gaps(p: CompiledProblem, q: Array, to_solids: Array, between: Array) -> float:
-    """Write the distances of each link from each solid (links, solids) and of each pair; return the tool's turn."""
+    """Write the distances of each link from each solid (links, solids) and of each pair; return the tool's angle."""
     s = new_scratch(p)
     _place_balls(p, q, s)
     for link in range(len(p.link_joint)):
@@ -245,9 +245,9 @@ def tool_rotation(p: CompiledProblem, q: Array) -> Array:
 
 @compiled()
 def path_cost(p: CompiledProblem, path: Array, keep_m: float, out: Array) -> None:
-    """Write for each inner waypoint of a way, (waypoints + 2, n), how deep spheres are in what they touch, metres.
+    """Write for each inner waypoint of a path, (waypoints + 2, n), the penetration depth of the spheres, meters.
 
-    Nearer to a solid than `keep_m` counts as well.
+    Distances to solids below `keep_m` count as well.
     """
     s = new_scratch(p)
     for w in range(1, len(path) - 1):

@@ -1,4 +1,4 @@
-"""Planners of OMPL by name, with the exact checker: slower than the fast one, and right where spheres are too large."""
+"""OMPL planners by name, with the exact checker: slower than the fast planner, exact where spheres are too large."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _ENOUGH = 1e9
 
 
 def ompl_search(name: str) -> SearchAlgorithm:
-    """Return the planner of `OMPL_PLANNERS` of that name; planners that improve their way stop at the first one.
+    """Return the planner of `OMPL_PLANNERS` with that name; optimizing planners stop at the first path.
 
-    PRM and PRMstar go by the clock and cannot be cancelled.
+    PRM and PRMstar use wall time and cannot be canceled.
     """
 
     def search(task: SearchTask, budget: SearchBudget) -> Array | None:
-        return _solved(name, task, budget)
+        return _solve(name, task, budget)
 
     return search
 
 
 class _ValidityChecker:
-    """Counts and carries out the checks; OMPL hands out states, which are read joint by joint."""
+    """Counts and executes the checks; OMPL passes states, which are read joint by joint."""
 
     def __init__(self, task: SearchTask, budget: SearchBudget) -> None:
         self._task = task
@@ -65,13 +65,13 @@ class _ValidityChecker:
         )
 
 
-def _solved(name: str, task: SearchTask, budget: SearchBudget) -> Array | None:
-    # OMPL takes long to load and has no stubs; it stays in this function.
+def _solve(name: str, task: SearchTask, budget: SearchBudget) -> Array | None:
+    # OMPL loads slowly and has no stubs; it is imported only in this function.
     base: Any = import_module("ompl.base")
     geometric: Any = import_module("ompl.geometric")
     util: Any = import_module("ompl.util")
     util.setLogLevel(util.LOG_NONE)
-    # Zero would let OMPL choose.
+    # With zero OMPL would choose a seed.
     util.RNG.setSeed(task.seed % 2**31 + 1)
     space = _space(base, task)
     setup = geometric.SimpleSetup(space)
@@ -86,7 +86,7 @@ def _solved(name: str, task: SearchTask, budget: SearchBudget) -> Array | None:
     setup.addStartState(_state(space, task.start))
     setup.setGoal(goals)
     objective = base.PathLengthOptimizationObjective(information)
-    # Any way will do: without this, planners that improve their way would use all of the time.
+    # Any path is enough: otherwise optimizing planners would use all of the time.
     objective.setCostThreshold(base.Cost(_ENOUGH))
     setup.setOptimizationObjective(objective)
     planner = getattr(geometric, name)(information)
@@ -94,7 +94,8 @@ def _solved(name: str, task: SearchTask, budget: SearchBudget) -> Array | None:
         planner.setRange(_RANGE_RAD)
     setup.setPlanner(planner)
     if name in _THREADED:
-        # These ask a second thread of OMPL's whether to end, which waits for the interpreter's lock for ever.
+        # These evaluate the termination condition in a second OMPL thread, which would wait forever for the
+        # interpreter lock.
         setup.solve(base.timedPlannerTerminationCondition(budget.left_s))
     else:
         setup.solve(base.PlannerTerminationCondition(lambda: budget.over))
@@ -109,7 +110,7 @@ def _space(base: Any, task: SearchTask) -> Any:
     bounds = base.RealVectorBounds(len(task.start))
     ends = np.vstack((task.start, task.goals))
     for i, (low, high) in enumerate(zip(problem.limits[2], problem.limits[3], strict=True)):
-        # An end may be beyond a limit by the last digit.
+        # An endpoint may exceed a limit by the last digit.
         bounds.setLow(i, min(float(low), float(ends[:, i].min())))
         bounds.setHigh(i, max(float(high), float(ends[:, i].max())))
     space.setBounds(bounds)

@@ -1,4 +1,4 @@
-"""Confirms a way that was given, exactly and as it is."""
+"""Validates a given path exactly, without changing it."""
 
 from __future__ import annotations
 
@@ -21,34 +21,34 @@ _SAME_RAD = 1e-6
 def validate_path(
     request: PlanRequest, goal: PathGoal, checker: ExactChecker, problem: CompiledProblem
 ) -> tuple[Array, Endpoints] | PlanRefusal:
-    """Return the waypoints (k, n) of a given way and its ends, or why it cannot be gone.
+    """Return the waypoints (k, n) of a given path and its endpoints, or why the arm cannot follow it.
 
     Raises:
-        CellError: the way does not begin where the arm starts.
+        CellError: the path does not begin at the start configuration.
     """
     start = np.array(request.start_rad, dtype=np.float64)
     rows = [np.array(row, dtype=np.float64) for row in goal.waypoints_rad]
     if not rows or rows[0].shape != start.shape or float(np.abs(rows[0] - start).max()) > _SAME_RAD:
         raise CellError(
-            "a given way does not begin where the arm starts",
+            "the given path does not begin at the start configuration",
             where=request.arm,
-            hint="let its first waypoint be the start",
+            hint="use the start configuration as the first waypoint",
         )
     for number, row in enumerate(rows):
         outside = outside_limits(row, problem, checker)
         if outside:
             reason = "goal_outside_limits" if number else "start_outside_limits"
-            message = f"waypoint {number} of the given way: {outside}"
-            return PlanRefusal(reason=reason, message=message, hint="plan another way")
+            message = f"waypoint {number} of the given path: {outside}"
+            return PlanRefusal(reason=reason, message=message, hint="plan another path")
     path = np.vstack(rows)
     hit = checker.first_collision(path, looking=EscapeChecker(checker, start))
     if hit is not None:
         at_start = hit.segment == 0 and hit.share == 0.0
-        where = "at the start" if at_start else f"{hit.share:.0%} of the way from waypoint {hit.segment} to the next"
+        where = "at the start" if at_start else f"at {hit.share:.0%} of the segment from waypoint {hit.segment}"
         return PlanRefusal(
             reason="start_in_collision" if at_start else "way_blocked",
             message=f"{where} {describe_touching(hit.pairs)}",
-            hint="plan another way, or clear this one",
+            hint="plan another path, or remove the obstacle",
             pairs=hit.pairs,
         )
     if request.keep_orientation is not None:
@@ -58,7 +58,7 @@ def validate_path(
             if any(is_tilted(problem, before + (after - before) * (i / count)) for i in range(1, count + 1)):
                 return PlanRefusal(
                     reason="way_blocked",
-                    message=f"the tool turns by more than {problem.tolerance:g} rad on the given way",
-                    hint="plan another way, or allow it to turn farther",
+                    message=f"the tool rotates by more than {problem.tolerance:g} rad on the given path",
+                    hint="plan another path, or increase the tolerance",
                 )
     return path, Endpoints(lead=path[:0], start=path[0], goals=path[-1:], problem=problem)

@@ -1,4 +1,4 @@
-"""A planning scene and one of its arms as the arrays of the compiled core."""
+"""Converts a planning scene and one of its arms to the arrays of the compiled core."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from robots.planning.search.arm_spheres import arm_only_problem, arm_spheres, bo
 from robots.planning.search.sphere_fit import LinkSolid, covering_spheres
 from robots.port import Array
 
-# Of the greatest motion bound, as for the exact check; no finer, the exact check comes after.
+# Share of the largest motion bound, as in the exact check; not finer, as the exact check follows.
 _STEP_SHARE, _LEAST_STEP_M, _MOST_STEP_M = 0.016, 0.01, 0.04
 
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemNames:
-    """The names of a problem's links (held parts among them) and of its solids, in the order of its arrays."""
+    """The names of a problem's links (including held parts) and of its solids, in the order of its arrays."""
 
     links: tuple[str, ...]
     solids: tuple[str, ...]
@@ -47,12 +47,12 @@ class ProblemNames:
 def compile_problem(
     scene: PlanningScene, arm: str, *, margin_m: float = 0.0, among: ArmInScene | None = None
 ) -> tuple[CompiledProblem, ProblemNames]:
-    """Return the problem of moving an arm of a scene; its `margin_m` counts against obstacles and other arms.
+    """Return the problem of moving an arm of a scene; `margin_m` applies to obstacles and other arms.
 
-    `among` is what `arm_in_scene` returns for them, if that is known already.
+    `among` is the result of `arm_in_scene` for this scene and arm, if available.
 
     Raises:
-        CellError: there is no such arm, or a shape or model is wrong.
+        CellError: there is no such arm, or a shape or model is invalid.
     """
     among = among or arm_in_scene(scene, arm)
     placed, model = among.placed, among.model
@@ -93,7 +93,7 @@ def compile_problem(
 def with_voxels(
     problem: CompiledProblem, names: ProblemNames, scene: PlanningScene, voxels: Voxels | None, *, margin_m: float = 0.0
 ) -> tuple[CompiledProblem, ProblemNames]:
-    """Return a problem without voxels with those that cameras see; what moves keeps `margin_m` from them."""
+    """Return the problem with the voxels of the occupancy map added; moving links keep `margin_m` from them."""
     if voxels is None:
         return problem, names
     low, high = voxels.grid[LOW:HIGH], voxels.grid[HIGH:]
@@ -110,7 +110,7 @@ def with_voxels(
 
 
 def voxels_alone(problem: CompiledProblem) -> CompiledProblem:
-    """Return the problem in which nothing counts but the voxels that `with_voxels` has added last."""
+    """Return the problem with only the voxels that `with_voxels` added."""
     return problem._replace(
         solids=problem.solids[-1:],
         solid_gap=np.ascontiguousarray(problem.solid_gap[:, -1:]),
@@ -157,7 +157,7 @@ def _moved(pose: RigidTransform, spheres: Array) -> Array:
 
 
 def _with_held(bound: Array, joints: list[int], spheres: list[Array], own: Indices) -> Array:
-    """Return the motion bound made larger by what is held beyond the arm itself."""
+    """Return the motion bound, enlarged by held parts that extend beyond the arm."""
     farthest = 0.0
     for joint, group in list(zip(joints, spheres, strict=True))[len(own) :]:
         ball = float((np.linalg.norm(group[:, :3], axis=1) + group[:, 3]).max())

@@ -1,4 +1,4 @@
-"""Arms put to targets in a cell as its document draws it, with its fixtures alone; nothing is opened."""
+"""Reachability of targets by the arms of a cell document, with its fixtures alone; opens no simulation or device."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from robots.planning.search.endpoints import describe_touching
 from robots.port import Array
 from robots.sim.scene.scene_builder import build_scene
 
-_IN_M = 0.005
-"""What is no deeper in a fixture than this touches it, as fingers do that reach round a part on a table."""
+_CONTACT_DEPTH_M = 0.005
+"""Up to this depth contact with a fixture is allowed, such as of fingers around a part on a table."""
 _BEYOND_RAD = 1e-6
 _WORLD = "world"
 
 
 class ReachabilityChecker:
-    """The arms of a cell and its fixtures, without those that give way.
+    """Checks targets of the arms of a cell against its fixtures, except those on springs.
 
-    Robots with drivers stand there as simulated ones would.
+    Robots with real drivers are checked like simulated ones.
 
     Args:
         cell: The cell.
@@ -41,10 +41,10 @@ class ReachabilityChecker:
         self._arms: dict[str, _Arm] = {}
 
     def fault(self, target: ArmTarget) -> TargetViolation | None:
-        """Return why an arm cannot be at a target.
+        """Return why an arm cannot reach a target; None if it can, or if another check covers the target.
 
         Raises:
-            CellError: the cell cannot be built.
+            CellError: the scene of the cell cannot be built.
         """
         if target.robot not in self._cell.document.robots:
             return None
@@ -52,23 +52,23 @@ class ReachabilityChecker:
         if arm is None:
             arm = self._arms[target.robot] = _Arm(self._scene, target.robot)
         if target.pose is None:
-            # Joints that the arm has not, or not so far, are another finding.
+            # Unknown joints, or joints outside the limits, are another finding.
             joints = np.array([target.joints])
             return arm.fault_at(joints) if arm.has(joints) else None
         match = PoseMatch[target.match.upper()]
         try:
-            place = arm.in_world(target.pose)
-            if place is None:
+            goal = arm.in_world(target.pose)
+            if goal is None:
                 return None
-            # The list of all takes a hundred times as long, and mostly nobody needs it.
-            if arm.fault_at(arm.inverse.nearest(place, seed=arm.home, match=match)[None]) is None:
+            # Computing all solutions takes a hundred times as long and is rarely needed.
+            if arm.fault_at(arm.inverse.nearest(goal, seed=arm.home, match=match)[None]) is None:
                 return None
-            return arm.fault_at(arm.inverse.all_solutions(place, match=match).joints)
+            return arm.fault_at(arm.inverse.all_solutions(goal, match=match).joints)
         except RobotError as error:
-            message = f"`{target.robot}` does not get there: {error.message}"
+            message = f"`{target.robot}` does not reach it: {error.message}"
             return TargetViolation(kind="unreachable", message=message, hint=error.hint or "")
         except ValueError as error:
-            return TargetViolation(kind="unreachable", message=str(error), hint="give metres, and a quaternion x y z w")
+            return TargetViolation(kind="unreachable", message=str(error), hint="give meters, and a quaternion x y z w")
 
     @cached_property
     def _scene(self) -> PlanningScene:
@@ -85,7 +85,7 @@ class ReachabilityChecker:
 
 
 class _Arm:
-    """One arm among the fixtures, without the other arms, which may be anywhere."""
+    """One arm with the fixtures, without the other arms, whose joints are unknown."""
 
     def __init__(self, scene: PlanningScene, name: str) -> None:
         self._name = name
@@ -97,13 +97,13 @@ class _Arm:
         self.inverse = InverseKinematicsSolver(ArmKinematics(self._checker.model, base=base))
 
     def in_world(self, pose: Pose) -> RigidTransform | None:
-        """Return a pose in the world; None where its frame is neither that nor the base."""
+        """Return a pose in the world; None if its frame is neither the world nor the base."""
         if pose.frame == _WORLD:
             return RigidTransform.from_pose(pose)
         return self._base.then(RigidTransform.from_pose(pose)) if pose.frame == self._base_frame else None
 
     def has(self, rows: Array) -> bool:
-        """Tell whether configurations (k, n) are some of this arm, within its limits."""
+        """Return whether configurations (k, n) fit this arm and its limits."""
         limits = self._checker.model.limits
         lower, upper = np.array(limits.lower_rad), np.array(limits.upper_rad)
         return rows.shape[1:] == lower.shape and bool(
@@ -111,22 +111,25 @@ class _Arm:
         )
 
     def fault_at(self, rows: Array) -> TargetViolation | None:
-        """Return what is wrong with all configurations (k, n); None where one of them is right."""
+        """Return the violation if all configurations (k, n) collide; None if one of them is free."""
         touching: tuple[NamePair, ...] = ()
         for row in rows:
-            found = self._inside(row)
-            if not found:
+            colliding = self._collisions(row)
+            if not colliding:
                 return None
-            touching = touching or found
-        others = "" if len(rows) == 1 else f", and it is no better in {len(rows) - 1} other ways to stand there"
+            touching = touching or colliding
+        others = "" if len(rows) == 1 else f"; {len(rows) - 1} other configurations collide as well"
         hint = "choose another target, or move the fixture"
-        return TargetViolation(kind="collision", message=f"there {describe_touching(touching)}{others}", hint=hint)
+        return TargetViolation(
+            kind="collision", message=f"at the target {describe_touching(touching)}{others}", hint=hint
+        )
 
-    def _inside(self, joints: Array) -> tuple[NamePair, ...]:
-        """Return what is in one another; contact with a fixture is none."""
+    def _collisions(self, joints: Array) -> tuple[NamePair, ...]:
+        """Return the colliding pairs; shallow contact with a fixture is allowed."""
         checker = self._checker
         return tuple(
             pair
             for pair in checker.colliding_pairs(joints)
-            if all(name.startswith(f"{self._name}/") for name in pair) or checker.depth(joints, frozenset(pair)) > _IN_M
+            if all(name.startswith(f"{self._name}/") for name in pair)
+            or checker.depth(joints, frozenset(pair)) > _CONTACT_DEPTH_M
         )

@@ -1,4 +1,4 @@
-"""What every planner gets and gives: start and goals that are free, both checkers, a budget; a way or nothing."""
+"""The interface of all planners: a task with free start and goals and both checkers, a budget; a path or None."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robots.port import Array
 
 
 class SearchBudget:
-    """How long a search may go on: by the clock, or by its checks, so that the answer never depends on the machine.
+    """Budget of a search: by wall time, or by its number of checks, so that the answer does not depend on the machine.
 
     Args:
-        time_s: Seconds that may be spent.
-        check_s: What a check of one configuration counts as; None to go by the clock.
-        cancelled: Asked between pieces of work; True ends the search.
+        time_s: Seconds that the search may take.
+        check_s: Seconds charged for a check of one configuration; None to use wall time.
+        cancelled: Queried between work steps; True ends the search.
     """
 
     def __init__(
@@ -36,27 +36,27 @@ class SearchBudget:
 
     @property
     def left_s(self) -> float:
-        """Seconds that are left, 0 at least."""
+        """Remaining seconds, at least 0."""
         spent_s = time.perf_counter() - self._start_s if self._check_s is None else self.checks * self._check_s
         return max(0.0, self._time_s - spent_s)
 
     def part(self, share: float) -> SearchBudget:
-        """Return a share of what is left, for a piece of the work; who uses it tells this one what it spent."""
+        """Return a share of the remaining budget for a subtask; the caller charges its checks to this budget."""
         return SearchBudget(self.left_s * share, check_s=self._check_s, cancelled=self._cancelled)
 
     @property
     def is_wall_clock(self) -> bool:
-        """Whether the clock decides, not the number of checks."""
+        """True if wall time decides, not the number of checks."""
         return self._check_s is None
 
     @property
     def cancelled(self) -> bool:
-        """Whether the answer is no longer wanted."""
+        """True if the request was canceled."""
         return self._cancelled()
 
     @property
     def over(self) -> bool:
-        """Whether to give up."""
+        """True when the search must end."""
         return self.left_s <= 0.0 or self.cancelled
 
 
@@ -72,7 +72,7 @@ class SearchTask:
 
 
 class SearchAlgorithm(Protocol):
-    """A planner: looks for a way of straight joint lines."""
+    """A planner: searches for a path of straight joint lines."""
 
     def __call__(self, task: SearchTask, budget: SearchBudget) -> Array | None:
         """Return waypoints (k, n) from the start to a goal, None when the budget is spent."""

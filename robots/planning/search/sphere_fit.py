@@ -1,4 +1,4 @@
-"""Covers a link with few spheres that hold all of it and reach little beyond: greedy, kept on disk."""
+"""Covers a link with few spheres that contain it and extend little beyond: a greedy fit, cached on disk."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from robots.planning.scene.convex_shapes import ConvexSolid, convex_solid, to_fr
 from robots.port import Array
 
 _RECIPE = "spheres 6"
-# How far spheres reach beyond a link: a share of its greatest depth, of its length if more, within bounds.
+# Extension of spheres beyond a link: a share of its greatest depth, or of its length if that is more, within bounds.
 _DEPTH_SHARE, _LENGTH_SHARE, _LEAST_GROWTH_M, _MOST_GROWTH_M = 0.4, 0.04, 0.015, 0.07
 _MOST_CANDIDATES = 1500
 
 
 @dataclass(frozen=True, kw_only=True)
 class LinkSolid:
-    """A shape and where it is in the frame of the link."""
+    """A shape and its pose in the frame of the link."""
 
     shape: Shape
     pose: RigidTransform
 
 
 def covering_spheres(solids: Sequence[LinkSolid]) -> Array:
-    """Return spheres, (s, 4) centre and radius in the link's frame, that together hold all of the solids."""
+    """Return spheres, (s, 4) center and radius in the link's frame, that together contain the solids."""
     key = content_key(_content(solids), recipe=_RECIPE)
     folder = cache_dir() / "spheres"
-    kept = read_cached(folder, key)
-    if kept is not None:
-        return np.load(io.BytesIO(kept), allow_pickle=False)
-    spheres = _fitted(solids)
+    cached = read_cached(folder, key)
+    if cached is not None:
+        return np.load(io.BytesIO(cached), allow_pickle=False)
+    spheres = _fit(solids)
     file = io.BytesIO()
     np.save(file, spheres, allow_pickle=False)
     write_cached(folder, key, file.getvalue())
@@ -44,13 +44,13 @@ def covering_spheres(solids: Sequence[LinkSolid]) -> Array:
 
 
 def _content(solids: Sequence[LinkSolid]) -> bytes:
-    places = [[solid.pose.xyz.round(9).tolist(), solid.pose.xyzw.round(9).tolist()] for solid in solids]
-    return msgspec.msgpack.encode([[solid.shape for solid in solids], places])
+    poses = [[solid.pose.xyz.round(9).tolist(), solid.pose.xyzw.round(9).tolist()] for solid in solids]
+    return msgspec.msgpack.encode([[solid.shape for solid in solids], poses])
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Union:
-    """Several solids as one; depths are those of the solid that a point lies deepest in."""
+    """The union of several solids; the depth of a point is its greatest depth in any of them."""
 
     parts: tuple[tuple[ConvexSolid, RigidTransform], ...]
 
@@ -60,25 +60,25 @@ class _Union:
 
     def surface(self, spacing_m: float) -> Array:
         points = np.vstack([to_frame(pose, solid.surface(spacing_m)) for solid, pose in self.parts])
-        # One point for each cell of a grid: meshes have many more.
+        # One point per cell of a grid: meshes have many more.
         cells = np.unique((points / (0.3 * spacing_m)).round().astype(np.int64), axis=0, return_index=True)[1]
         points = points[np.sort(cells)]
         return points[self.depth(points) < 1e-6]
 
     def inside(self, spacing_m: float) -> Array:
-        found: list[Array] = []
+        grids: list[Array] = []
         for solid, pose in self.parts:
             lower, upper = solid.box()
             counts = np.maximum(1, np.ceil((upper - lower) / spacing_m)).astype(int)
-            # The middles of cells: a thin solid has its centre plane among them.
+            # Cell centers: they include the center plane of a thin solid.
             cells = np.indices(tuple(counts.tolist())).reshape(3, -1).T
             grid = lower + (cells + 0.5) * (upper - lower) / counts
             grid = np.vstack((grid[solid.depth(grid) > 0.0], solid.centre))
-            found.append(to_frame(pose, grid))
-        return np.vstack(found)
+            grids.append(to_frame(pose, grid))
+        return np.vstack(grids)
 
 
-def _fitted(solids: Sequence[LinkSolid]) -> Array:
+def _fit(solids: Sequence[LinkSolid]) -> Array:
     union = _Union(parts=tuple((convex_solid(solid.shape), solid.pose) for solid in solids))
     deepest = max(float(union.depth(to_frame(pose, s.centre[None]))[0]) for s, pose in union.parts)
     corners = np.vstack([to_frame(pose, np.array(s.box())) for s, pose in union.parts])
@@ -91,7 +91,7 @@ def _fitted(solids: Sequence[LinkSolid]) -> Array:
     centres = np.vstack((_deepened(union, centres, growth), centres))
     radii = np.maximum(union.depth(centres), 0.0) + growth
     surface = union.surface(spacing)
-    # What a sphere must hold to hold the piece of surface around a point too.
+    # Slack with which a sphere must contain a point to contain the surface around it too.
     wanted = np.vstack((surface, centres))
     slack = np.concatenate((np.full(len(surface), 0.8 * spacing), np.zeros(len(centres))))
     covers = _distances(centres, wanted) <= radii[:, None] - slack[None, :]
@@ -101,20 +101,20 @@ def _fitted(solids: Sequence[LinkSolid]) -> Array:
     while left.any():
         best = int(np.argmax(gains))
         if gains[best] == 0:
-            # No candidate reaches this point: a small sphere of its own does.
+            # No candidate covers this point: add a small sphere for it.
             point = wanted[int(np.argmax(left))]
             sphere = np.append(point, max(float(union.depth(point[None])[0]), 0.0) + growth)
         else:
             sphere = np.append(centres[best], radii[best])
         chosen.append(sphere)
-        held = left & (np.linalg.norm(wanted - sphere[:3], axis=1) <= sphere[3] - slack + 1e-12)
-        gains -= covers[:, held].sum(axis=1)
-        left &= ~held
+        covered = left & (np.linalg.norm(wanted - sphere[:3], axis=1) <= sphere[3] - slack + 1e-12)
+        gains -= covers[:, covered].sum(axis=1)
+        left &= ~covered
     return np.array(chosen)
 
 
 def _deepened(union: _Union, points: Array, step_m: float) -> Array:
-    """Return points moved to where they lie deepest nearby: the best centres are in the middle of a link."""
+    """Return points moved to the greatest depth nearby: the best centers are in the middle of a link."""
     points, depths = points.copy(), union.depth(points)
     directions = np.vstack((np.eye(3), -np.eye(3)))
     for scale in (1.0, 1.0, 0.5, 0.5, 0.25, 0.25, 0.1, 0.1):

@@ -1,4 +1,4 @@
-"""The compiled searches of the fast planner: RRT-Connect, shortcuts, steps back to where the tool stays upright."""
+"""The compiled searches of the fast planner: RRT-Connect, shortcuts, projection onto the orientation constraint."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from robots.planning.search.geometry_kernels import joint_frames, length, neares
 from robots.planning.search.kernels import Counts, Scratch, is_edge_free, new_scratch, tilt_angle
 from robots.port import Array
 
-# `solve` is done by it; the first search would load it in the middle of its work.
+# `np.linalg.solve` uses it; otherwise the first search would load it while it runs.
 import_module("scipy.linalg.cython_lapack")
 
 
 @compiled()
 def _project(p: CompiledProblem, q: Array, s: Scratch) -> bool:
-    """Turn the tool back to how it shall stand, by Newton steps; False where that does not succeed."""
+    """Rotate the tool back to its required orientation by Newton steps; return False on failure."""
     n = len(q)
     a = np.empty((3, 3))
     for _ in range(12):
         joint_frames(p.placements, p.sliding, q, s.frames)
         if tilt_angle(p, s) < 0.2 * p.tolerance:
             return True
-        # J of the turn, without the part about the upright axis where that is free; y = (J Jᵀ + λ)⁻¹ error.
+        # J of the rotation, without the part about the upright axis if that is free; y = (J Jᵀ + λ)⁻¹ error.
         a[:, :] = 0.0
         a[0, 0] = a[1, 1] = a[2, 2] = 1e-4
         for j in range(n):
@@ -46,7 +46,7 @@ def _project(p: CompiledProblem, q: Array, s: Scratch) -> bool:
 
 @compiled()
 def _turn_of(p: CompiledProblem, s: Scratch, j: int) -> tuple[float, float, float]:
-    """Return how joint `j` turns the tool (world axes), without what is free."""
+    """Return the rotation axis of joint `j` (world axes), without the free part."""
     x, y, z = s.frames[j + 1, 2], s.frames[j + 1, 5], s.frames[j + 1, 8]
     if p.orientation == TILT:
         u, v, w = p.upright[0, 2], p.upright[1, 2], p.upright[2, 2]
@@ -67,7 +67,7 @@ def _advance(
     steps: int,
     s: Scratch,
 ) -> tuple[int, int, bool]:
-    """Grow a tree from its node nearest to `target` towards it; return its size, the last node, whether it is there."""
+    """Grow a tree from its node nearest to `target` towards it; return its size, the last node, whether it arrived."""
     n = len(target)
     at = nearest(nodes, tree, count, target)
     away = length(nodes[tree, at], target)
@@ -103,11 +103,10 @@ def grow(
     rounds: int,
     met: Counts,
 ) -> bool:
-    """Let two trees grow for some rounds, RRT-Connect; True when they have met, at the nodes in `met`.
+    """Grow two trees for some rounds by RRT-Connect; return True when they have met, at the nodes in `met`.
 
-    `nodes` (2, size, n), `parents` (2, size) and `counts` (2) hold the trees, which begin at the starts
-    and at the goals; `state` is of the random numbers. `counts` has a
-    third number, the configurations looked at.
+    `nodes` (2, size, n), `parents` (2, size) and `counts` (2) hold the trees, rooted at the start and at the
+    goals; `state` is that of the random numbers. The third number of `counts` is the configurations checked.
     """
     s = new_scratch(p)
     n = len(p.sliding)
@@ -122,7 +121,7 @@ def grow(
         if p.orientation != FREE and not _project(p, sample, s):
             continue
         before = counts[one]
-        # Where the tool must stay upright the steps are short, and so a tree takes several at once.
+        # With an orientation constraint the steps are short, so a tree takes several at once.
         steps = 1 if p.orientation == FREE else 8
         counts[one], at, _ = _advance(p, nodes, parents, one, before, sample, stride, steps, s)
         if counts[one] == before:
@@ -139,7 +138,7 @@ def grow(
 
 @compiled()
 def shorten(p: CompiledProblem, path: Array, state: NDArray[np.uint64], rounds: int, tries: Counts) -> Array:
-    """Return a shorter free way with the same ends: waypoints left out, then random points joined directly."""
+    """Return a shorter free path with the same endpoints: drops waypoints, then connects random points directly."""
     s = new_scratch(p)
     n = path.shape[1]
     out = np.empty((len(path) + rounds + 2, n))
@@ -174,7 +173,7 @@ def shorten(p: CompiledProblem, path: Array, state: NDArray[np.uint64], rounds: 
             b[k] = out[j, k] + (out[j + 1, k] - out[j, k]) * (second - along[j]) / (along[j + 1] - along[j])
         if length(a, b) > 0.98 * (second - first) or not is_edge_free(p, a, b, s):
             continue
-        # Waypoints i + 1 … j give way to a and b.
+        # a and b replace waypoints i + 1 … j.
         rest = out[j + 1 : count].copy()
         out[i + 1], out[i + 2] = a, b
         count = i + 3 + len(rest)

@@ -1,4 +1,4 @@
 """From a path to a trajectory: corner blending and time parameterization (TOPP-RA) within joint limits.
 
-For robots.planning.worker only; knows no scene.
+Used only by robots.planning.worker; independent of the scene.
 """

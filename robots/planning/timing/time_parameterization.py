@@ -1,7 +1,7 @@
-"""How far along a way at each time: as reachability allows, averaged over a moment so that no jerk is too hard.
+"""Time parameterization of a path: time-optimal by reachability analysis, then averaged to respect the jerk limits.
 
-An average over a moving window keeps to the way, since only the time law is averaged; it turns each step of the
-acceleration into a ramp as long as the window (as the finite impulse response filters of Biagiotti and Melchiorri,
+A moving average keeps the path, since only the time law is averaged; it turns each step of the
+acceleration into a ramp as long as the window (like the finite impulse response filters of Biagiotti and Melchiorri,
 "FIR filters for online trajectory planning with time- and frequency-domain specifications", 2012).
 """
 
@@ -20,14 +20,14 @@ from robots.port import Array
 
 _LOOK_S, _SHORTEST_S = 0.001, 0.002
 _WINDOW_ROUNDS = 8
-# What is used beyond the limits is mended where it happens while it is more than a little, the rest by taking longer.
+# Excess over the limits is reduced locally while it is above this ratio, the rest by a longer duration.
 _ROUNDS, _LITTLE = 3, 1.01
 _ANY_SQUARE = 1e12
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointRateLimits:
-    """What each joint may do: rad/s, rad/s², rad/s³, each (n,)."""
+    """Limits of each joint: rad/s, rad/s², rad/s³, each (n,)."""
 
     velocity: Array
     acceleration: Array
@@ -36,10 +36,10 @@ class JointRateLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeParameterization:
-    """Passes a way from rest to rest; times are seconds from its start.
+    """The time law of a path from rest to rest; times are seconds from its start.
 
-    Before the average over `window_s` is taken, the square of the rate, `squares` (points of the way,), is linear
-    between the points; after it everything takes `stretch` times as long.
+    Before the average over `window_s`, the squared rate, `squares` (points of the path,), is linear
+    between the points; after the average the duration is scaled by `stretch`.
     """
 
     along: Array
@@ -51,50 +51,50 @@ class TimeParameterization:
 
     @property
     def duration_s(self) -> float:
-        """How long it takes."""
+        """The duration."""
         return (float(self.passed_s[-1]) + self.window_s) * self.stretch
 
     def sampled(self, times_s: Array) -> tuple[Array, Array]:
         """Return the joints' positions and velocities at times (k,) in order, (k, n) each."""
-        position, velocity = samples(self.along, self.pieces, self._paces(times_s))
+        position, velocity = samples(self.along, self.pieces, self._path_rates(times_s))
         return position, velocity / self.stretch
 
     def uses(self, times_s: Array, limits: JointRateLimits) -> Array:
-        """Return what is used of the limits at times (k,) in order, as the kernel of this name does, unstretched."""
-        pace = self._paces(times_s)
-        return limit_ratios(self.along, self.pieces, pace, limits.velocity, limits.acceleration, limits.jerk)
+        """Return the limit ratios at times (k,) in order, as `limit_ratios` defines, without the stretch."""
+        rates = self._path_rates(times_s)
+        return limit_ratios(self.along, self.pieces, rates, limits.velocity, limits.acceleration, limits.jerk)
 
     def looks(self) -> Array:
-        """Return times so close that nothing happens between them."""
+        """Return times so close that no limit is exceeded unnoticed between them."""
         return np.linspace(0.0, self.duration_s, max(3, math.ceil(self.duration_s / _LOOK_S) + 1))
 
-    def _paces(self, times_s: Array) -> Array:
+    def _path_rates(self, times_s: Array) -> Array:
         return path_rates(self.along, self.squares, self.passed_s, self.window_s, times_s / self.stretch)
 
 
-def time_optimal(way: BlendedPath, limits: JointRateLimits) -> TimeParameterization:
-    """Return how a way is passed, at rest at both ends, as fast as the joints' limits allow, or nearly so.
+def time_optimal(path: BlendedPath, limits: JointRateLimits) -> TimeParameterization:
+    """Return the nearly time-optimal time law of a path within the joints' limits, at rest at both ends.
 
     Raises:
-        RobotError: it cannot be passed at all.
+        RobotError: no time law respects the acceleration limits.
     """
-    first, second, pieces = np.ascontiguousarray(way.first), np.ascontiguousarray(way.second), way.pieces()
-    ceiling = np.full(len(way.along), _ANY_SQUARE)
+    first, second, pieces = np.ascontiguousarray(path.first), np.ascontiguousarray(path.second), path.pieces()
+    ceiling = np.full(len(path.along), _ANY_SQUARE)
     best: TimeParameterization | None = None
     for _ in range(_ROUNDS):
-        squares = passing_rates(first, second, way.along, limits.velocity, limits.acceleration, ceiling.copy())
-        passed_s = passing_times(way.along, squares)
+        squares = passing_rates(first, second, path.along, limits.velocity, limits.acceleration, ceiling.copy())
+        passed_s = passing_times(path.along, squares)
         if not math.isfinite(passed_s[-1]):
             break
-        law = TimeParameterization(along=way.along, pieces=pieces, squares=squares, passed_s=passed_s)
+        law = TimeParameterization(along=path.along, pieces=pieces, squares=squares, passed_s=passed_s)
         law, used = _averaged(law, limits)
-        # Taking longer by a factor divides speeds by it, accelerations by its square, jerks by its cube.
-        longer = replace(law, stretch=max(1.0, float(used.max())))
-        if best is None or longer.duration_s < best.duration_s:
-            best = longer
-        if longer.stretch <= _LITTLE:
+        # Scaling the duration divides speeds by the factor, accelerations by its square, jerks by its cube.
+        stretched = replace(law, stretch=max(1.0, float(used.max())))
+        if best is None or stretched.duration_s < best.duration_s:
+            best = stretched
+        if stretched.stretch <= _LITTLE:
             break
-        ceiling = np.minimum(ceiling, _mended(law, used))
+        ceiling = np.minimum(ceiling, _reduced_ceiling(law, used))
     if best is None:
         raise RobotError(
             "the path cannot be followed within the joints' accelerations", hint="check the model's limits"
@@ -103,20 +103,20 @@ def time_optimal(way: BlendedPath, limits: JointRateLimits) -> TimeParameterizat
 
 
 def _averaged(law: TimeParameterization, limits: JointRateLimits) -> tuple[TimeParameterization, Array]:
-    """Return the law with a window so long that no change of the push within it is too hard, and what it uses then."""
+    """Return the law with a window long enough for the jerk limit of its acceleration changes, and its limit ratios."""
     for _ in range(_WINDOW_ROUNDS):
         hardest = float(law.uses(law.looks(), limits)[1].max())
         if hardest <= 1.0:
             break
-        # The push changes by its whole range at most, so this comes to an end.
+        # The acceleration changes by at most its whole range, so this terminates.
         law = replace(law, window_s=law.window_s * hardest)
     return law, law.uses(law.looks(), limits)[0]
 
 
-def _mended(law: TimeParameterization, used: Array) -> Array:
-    """Return how large the squares of the rates may be where more than the limits is used, at each point."""
+def _reduced_ceiling(law: TimeParameterization, used: Array) -> Array:
+    """Return the upper bound of the squared rate at each point that removes the excess over the limits."""
     over = used > 1.0
-    # What is passed at a moment before averaging counts for a window from then on.
+    # A point passed at some time before averaging affects the window that starts then.
     wait = law.looks()[over][None] - law.passed_s[:, None]
     counts = (wait >= -_LOOK_S) & (wait <= law.window_s + _LOOK_S)
     worst = np.where(counts, used[over][None], 1.0).max(axis=1, initial=1.0)

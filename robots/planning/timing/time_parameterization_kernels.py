@@ -1,6 +1,6 @@
-"""The compiled core of time laws: how a way is passed at each time, what the joints do then, and where they are.
+"""The compiled core of time laws: the motion along a path over time, its limit ratios, and the joints' samples.
 
-Of a way, `along` (k,) are the lengths so far at its points and `pieces` (k - 1, 6, n) the coefficients of each joint's
+Of a path, `along` (k,) are the arc lengths at its points and `pieces` (k - 1, 6, n) the coefficients of each joint's
 polynomial between two of them, by the share u in [0, 1] of the length between.
 """
 
@@ -18,9 +18,9 @@ _ROW, _MATRIX, _PIECES = "f8[::1]", "f8[:,::1]", "f8[:,:,::1]"
 
 @compiled(f"{_MATRIX}({_ROW}, {_ROW}, {_ROW}, f8, {_ROW})")
 def path_rates(along: Array, squares: Array, passed: Array, window: float, at: Array) -> Array:
-    """Return length so far, rate, push and rise, the derivatives by time, averaged over a window, (4, m).
+    """Return the arc length and its time derivatives rate, push and rise, averaged over a window, (4, m).
 
-    The points of the way are passed at times `passed` (k,), the square of the rate being `squares` (k,) there and
+    The points of the path are passed at times `passed` (k,), with the squared rates `squares` (k,),
     linear between. `at` (m,) are times in order; each average is over the window that ends there.
     """
     last = len(along) - 1
@@ -57,10 +57,10 @@ def path_rates(along: Array, squares: Array, passed: Array, window: float, at: A
 
 @compiled(f"{_MATRIX}({_ROW}, {_PIECES}, {_MATRIX}, {_ROW}, {_ROW}, {_ROW})")
 def limit_ratios(along: Array, pieces: Array, pace: Array, fastest: Array, most: Array, hardest: Array) -> Array:
-    """Return how much longer everything would have to take for the joints to keep their limits, at each time, (2, m).
+    """Return the time scaling with which the joints would respect their limits, at each time, (2, m).
 
-    The second row is the share of the jerk that the rise alone takes. `pace` (4, m) is as `path_rates` returns it;
-    `fastest`, `most` and `hardest` (n,) are the limits of speed, acceleration and jerk.
+    The second row is the share of the jerk limit that the rise alone takes. `pace` (4, m) is the result of
+    `path_rates`; `fastest`, `most` and `hardest` (n,) are the limits of speed, acceleration and jerk.
     """
     out = np.zeros((2, pace.shape[1]))
     i = 0

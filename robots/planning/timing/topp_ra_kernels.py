@@ -1,8 +1,8 @@
-"""The compiled core of timing: how fast a way may be passed, by reachability analysis (TOPP-RA), and when it is where.
+"""The compiled core of timing: the time-optimal rates of a path by reachability analysis (TOPP-RA), and its times.
 
-Along a way q(s) the joints' accelerations are q' u + q'' x, with x the square of the rate and u half its
+Along a path q(s) the joints' accelerations are q' u + q'' x, with x the squared rate and u half its
 derivative. After Pham and Pham, "A New Approach to Time-Optimal Path Parameterization Based on
-Reachability Analysis" (2018); the linear programmes have one unknown each, once x is found by halving.
+Reachability Analysis" (2018); the linear programs have one unknown each, as x is found by bisection.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ _MATRIX = "f8[:,::1]"
 
 @compiled()
 def _range(first: Array, second: Array, i: int, x: float, step: float, most: Array) -> tuple[float, float]:
-    """Return the least and the greatest u that the joints' accelerations allow from point i, with this x, to the next.
+    """Return the least and the greatest u that the acceleration limits allow from point i, with this x, to the next.
 
-    At both points: with them at the first only, a curve that begins would be entered too fast.
+    The limits apply at both points: with the first alone, a curve would be entered too fast.
     """
     low, high = -1e12, 1e12
     for j in range(first.shape[1]):
@@ -45,10 +45,10 @@ def _can_follow(first: Array, second: Array, i: int, x: float, step: float, late
 
 @compiled(f"f8[::1]({_MATRIX}, {_MATRIX}, f8[::1], f8[::1], f8[::1], f8[::1])")
 def passing_rates(first: Array, second: Array, along: Array, fastest: Array, most: Array, top: Array) -> Array:
-    """Return x, the square of the rate, at each point of a way, at rest at both ends; as fast as is allowed.
+    """Return x, the squared rate, at each point of a path: the fastest allowed, at rest at both ends.
 
-    `first` and `second` (k, n) are the derivatives of the way at the points `along` (k,), `fastest` and
-    `most` (n,) the joints' speeds and accelerations. `top` (k,), the largest x wanted, is overwritten.
+    `first` and `second` (k, n) are the derivatives of the path at the points `along` (k,), `fastest` and
+    `most` (n,) the limits of the joints' speeds and accelerations. `top` (k,), an upper bound of x, is overwritten.
     """
     count = len(along)
     for i in range(count):
@@ -79,7 +79,7 @@ def passing_rates(first: Array, second: Array, along: Array, fastest: Array, mos
 
 @compiled("f8[::1](f8[::1], f8[::1])")
 def passing_times(along: Array, x: Array) -> Array:
-    """Return when each point is passed, with x linear between points; infinite where it stands still between two."""
+    """Return the time of each point, with x linear between points; infinite from two successive points of rate 0."""
     times = along.copy()
     times[0] = 0.0
     for i in range(1, len(along)):

@@ -1,4 +1,4 @@
-"""A confirmed way as a trajectory: corners rounded where that is free, as fast as the limits of the joints allow."""
+"""Converts a validated path to a trajectory: blends corners where that is free, as fast as the joint limits allow."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from robots.planning.timing.time_parameterization import JointRateLimits, time_o
 from robots.port import Array, JointTrajectory
 
 _SAMPLE_S = 0.002
-# Between two samples a follower may go a little beyond.
+# Safety factor of the limits: between two samples an interpolator may exceed them slightly.
 _SHARE = 0.995
 _DEVIATION_RAD, _LONGEST_CUT_RAD = 0.05, 0.5
 _HALVINGS = 4
-# Of a corner, the length of the middle between the two directions; below it the arm turns back and stops there.
+# Length of the mean of the two directions at a corner; below it the path reverses and the arm stops there.
 _TURNING_BACK = 0.2
 
 
@@ -34,7 +34,7 @@ class TimedTrajectory:
 
     @property
     def duration_s(self) -> float:
-        """How long it takes."""
+        """The duration."""
         return self.trajectory.dt_s * (len(self.trajectory.position_rad) - 1)
 
 
@@ -45,43 +45,50 @@ def time_path(
     is_free: Callable[[Array], bool],
     speed: float = 1.0,
 ) -> TimedTrajectory:
-    """Return a trajectory along a way of straight joint lines, (waypoints, n), at rest at both ends.
+    """Return a trajectory along a path of straight joint lines, (waypoints, n), at rest at both ends.
 
-    Corners are rounded by at most `_DEVIATION_RAD`, less where `is_free` refuses the rounding, a way
-    (k, n); where it refuses any, the arm stops at the corner. `speed` in (0, 1] is the share of the joint
-    speed limits; of the accelerations half is used at speed 1, as by all motions, and all of the jerks at any.
+    Blended corners deviate by at most `_DEVIATION_RAD`, less where `is_free` rejects the blend, a path
+    (k, n); where it rejects every blend, the arm stops at the corner. `speed` in (0, 1] is the share of the joint
+    speed limits; at speed 1 half of the acceleration limits is used, as by all motions, and the full jerk limits at
+    any speed.
 
     Raises:
-        RobotError: `speed` is not in (0, 1], the way is empty, or the joints' limits let nothing move.
+        RobotError: `speed` is not in (0, 1], the path is empty, or the joint limits allow no motion.
     """
     if not 0.0 < speed <= 1.0 or len(path) == 0:
-        raise RobotError(f"{len(path)} waypoints cannot be passed at speed {speed}", hint="give a speed in (0, 1]")
-    way = remove_duplicates(path)
-    if len(way) == 1:
-        standing = JointTrajectory(
-            dt_s=_SAMPLE_S, position_rad=np.repeat(way, 2, axis=0), velocity_rad_s=np.zeros((2, path.shape[1]))
+        raise RobotError(
+            f"no trajectory for {len(path)} waypoints at speed {speed}", hint="give waypoints and a speed in (0, 1]"
         )
-        return TimedTrajectory(trajectory=standing, stops=0)
-    cuts = _free_cuts(way, is_free)
-    corners = [0, *(i for i in range(1, len(way) - 1) if cuts[i] == 0.0), len(way) - 1]
-    sections = tuple(blend_corners(way[first : last + 1], cuts[first : last + 1]) for first, last in pairwise(corners))
-    return TimedTrajectory(trajectory=_played(sections, limits, speed), stops=len(sections) - 1)
+    waypoints = remove_duplicates(path)
+    if len(waypoints) == 1:
+        rest = JointTrajectory(
+            dt_s=_SAMPLE_S, position_rad=np.repeat(waypoints, 2, axis=0), velocity_rad_s=np.zeros((2, path.shape[1]))
+        )
+        return TimedTrajectory(trajectory=rest, stops=0)
+    cuts = _free_cuts(waypoints, is_free)
+    corners = [0, *(i for i in range(1, len(waypoints) - 1) if cuts[i] == 0.0), len(waypoints) - 1]
+    sections = tuple(
+        blend_corners(waypoints[first : last + 1], cuts[first : last + 1]) for first, last in pairwise(corners)
+    )
+    return TimedTrajectory(trajectory=_concatenate(sections, limits, speed), stops=len(sections) - 1)
 
 
-def _free_cuts(way: Array, is_free: Callable[[Array], bool]) -> Array:
-    """Return for each waypoint how far from it its rounding begins: as far as wanted and free, 0 for a stop."""
-    lengths = np.linalg.norm(np.diff(way, axis=0), axis=1)
-    directions = np.diff(way, axis=0) / lengths[:, None]
-    cuts = np.zeros(len(way))
-    for i in range(1, len(way) - 1):
+def _free_cuts(waypoints: Array, is_free: Callable[[Array], bool]) -> Array:
+    """Return for each waypoint the length of its blend: as long as desired and free, 0 for a stop."""
+    lengths = np.linalg.norm(np.diff(waypoints, axis=0), axis=1)
+    directions = np.diff(waypoints, axis=0) / lengths[:, None]
+    cuts = np.zeros(len(waypoints))
+    for i in range(1, len(waypoints) - 1):
         before, after = directions[i - 1], directions[i]
         if float(np.linalg.norm(before + after)) < 2.0 * _TURNING_BACK:
             continue
-        # The curve is farthest from the corner in its middle, 3/16 of a cut times the change of direction.
-        wanted = _DEVIATION_RAD / max(1e-9, 0.1875 * float(np.linalg.norm(after - before)))
-        cut = min(wanted, _LONGEST_CUT_RAD, 0.5 * float(lengths[i - 1]), 0.5 * float(lengths[i]))
+        # The largest deviation from the corner is in the middle: 3/16 of a cut times the change of direction.
+        desired = _DEVIATION_RAD / max(1e-9, 0.1875 * float(np.linalg.norm(after - before)))
+        cut = min(desired, _LONGEST_CUT_RAD, 0.5 * float(lengths[i - 1]), 0.5 * float(lengths[i]))
         for _ in range(_HALVINGS):
-            corner = way[i] + np.outer((-cut, 0.0, cut), np.ones(way.shape[1])) * np.vstack((before, before, after))
+            corner = waypoints[i] + np.outer((-cut, 0.0, cut), np.ones(waypoints.shape[1])) * np.vstack(
+                (before, before, after)
+            )
             if is_free(blend_corners(corner, np.array([0.0, cut, 0.0])).position):
                 cuts[i] = cut
                 break
@@ -89,8 +96,8 @@ def _free_cuts(way: Array, is_free: Callable[[Array], bool]) -> Array:
     return cuts
 
 
-def _played(sections: tuple[BlendedPath, ...], limits: JointLimits, speed: float) -> JointTrajectory:
-    """Return the sections one after the other, at rest between them, on one grid of samples."""
+def _concatenate(sections: tuple[BlendedPath, ...], limits: JointLimits, speed: float) -> JointTrajectory:
+    """Return the concatenated sections, at rest between them, on one grid of samples."""
     allowed = JointRateLimits(
         velocity=np.array(limits.velocity_rad_s) * (speed * _SHARE),
         acceleration=np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE),
@@ -103,8 +110,8 @@ def _played(sections: tuple[BlendedPath, ...], limits: JointLimits, speed: float
     position, velocity = np.empty((samples, len(allowed.jerk))), np.empty((samples, len(allowed.jerk)))
     section_of = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(sections) - 1)
     for k, law in enumerate(laws):
-        mine = section_of == k
-        position[mine], velocity[mine] = law.sampled(at[mine] - ends[k])
+        in_section = section_of == k
+        position[in_section], velocity[in_section] = law.sampled(at[in_section] - ends[k])
     position[0], position[-1] = sections[0].position[0], sections[-1].position[-1]
     velocity[0], velocity[-1] = 0.0, 0.0
     return JointTrajectory(dt_s=float(ends[-1]) / (samples - 1), position_rad=position, velocity_rad_s=velocity)

@@ -1,4 +1,4 @@
-"""Who answers planning requests: in this process under virtual time, else in a process of its own.
+"""The planning services: inline under virtual time, else in a separate process.
 
-Others enter by `plan_service`; what is asked and answered is `robots.planning.request`.
+The entry point for other packages is `plan_service`; requests and answers are in `robots.planning.request`.
 """

@@ -1,4 +1,4 @@
-"""Plans on the event loop itself, for virtual time."""
+"""Plans inline on the event loop, for virtual time."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from robots.planning.request import (
 from robots.planning.worker.scene_planner import ScenePlanner
 
 INLINE_CHECK_S = 2e-5
-"""What a check counts as in virtual time: 50,000 a second, as many as a slow machine does."""
+"""Virtual duration of a check: 50,000 per second, as on a slow machine."""
 PLAN_FIXED_S = 0.004
-"""What of an answer in virtual time does not depend on the checks: both ends, timing, both ways to the process."""
+"""Virtual duration of a plan besides its checks: endpoints, timing, communication with the process."""
 LOOK_FIXED_S = 0.002
-"""What a check of a way, or a look, takes in virtual time, both ways to the process among it."""
+"""Virtual duration of a path check or a collision query, including communication with the process."""
 
 
 class InlinePlanner:
-    """Plans on the loop itself, by effort instead of by the clock: for virtual time, where answers must repeat.
+    """Plans inline with a budget of counted work: for virtual time, where answers must be reproducible.
 
-    With a clock, answers come after the time that their counted work stands for: `PLAN_FIXED_S` and what
-    all checks take, or `LOOK_FIXED_S`. Without one no time passes.
+    With a clock, answers arrive after the virtual duration of their work: `PLAN_FIXED_S` plus the time of
+    all checks, or `LOOK_FIXED_S`. Without a clock no time passes.
     """
 
     def __init__(self, clock: Clock | None = None) -> None:
@@ -37,7 +37,7 @@ class InlinePlanner:
         self.gone = ""
 
     def start(self) -> None:
-        """It is always there."""
+        """Do nothing: an inline planner is always ready."""
 
     async def __aenter__(self) -> Self:
         return self
@@ -46,28 +46,28 @@ class InlinePlanner:
         return None
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none. Raises CellError as `PlanService` says."""
+        """Return a validated path, or why there is none. Raises CellError as `PlanService.plan` does."""
         answer = self._planner.plan(request)
         await self._pass(PLAN_FIXED_S + self._planner.effort_s)
         return answer
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where an arm that follows a trajectory would touch something first. Raises CellError."""
-        found = self._planner.check_path(request)
+        """Return the first collision of an arm that follows a trajectory. Raises CellError."""
+        result = self._planner.check_path(request)
         await self._pass(LOOK_FIXED_S)
-        return found
+        return result
 
     async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
-        """Return where what an arm holds would touch something first on a trajectory. Raises CellError."""
-        found = self._planner.check_attached_parts(request)
+        """Return the first collision of an attached part on a trajectory. Raises CellError."""
+        result = self._planner.check_attached_parts(request)
         await self._pass(LOOK_FIXED_S)
-        return found
+        return result
 
     async def look(self, request: CollisionRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to the rest. Raises CellError."""
-        found = self._planner.look(request)
+        """Return the collisions and the clearance of an arm in a configuration. Raises CellError."""
+        result = self._planner.look(request)
         await self._pass(LOOK_FIXED_S)
-        return found
+        return result
 
     async def _pass(self, time_s: float) -> None:
         if self._clock is not None:

@@ -1,4 +1,4 @@
-"""Who answers planning requests on an event loop; what plans, and the compilers for it, is loaded by who needs it."""
+"""The interface of planning services on an event loop; planners and compilers are loaded only where needed."""
 
 from __future__ import annotations
 
@@ -17,49 +17,49 @@ from robots.planning.request import (
 
 
 class PlanService(Protocol):
-    """Who answers planning requests on an event loop. All of them raise as `plan` does."""
+    """Answers planning requests on an event loop. All requests raise as `plan` does."""
 
     @property
     def gone(self) -> str:
-        """Why who answered is gone, so that an answer takes as long as another one takes to start; else empty."""
+        """Why the process has ended, so that the next answer waits for a new process to start; else empty."""
         ...
 
     def start(self) -> None:
-        """Have one started in the background where none is there."""
+        """Start the process in the background if there is none."""
         ...
 
     async def __aenter__(self) -> Any:
-        """Start."""
+        """Start the service."""
         ...
 
     async def __aexit__(self, *error: object) -> None:
-        """End."""
+        """Stop the service."""
         ...
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none.
+        """Return a validated path, or why there is none.
 
         Raises:
-            CellError: the scene has no such arm, or something in it is wrong.
-            RobotError: the planning process ended; the next request finds a new one.
+            CellError: the scene has no such arm, or is invalid.
+            RobotError: the planning process has ended; the next request starts a new one.
         """
         ...
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where an arm that follows a trajectory would touch something first."""
+        """Return the first collision of an arm that follows a trajectory."""
         ...
 
     async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
-        """Return where what an arm holds would touch something first on a trajectory."""
+        """Return the first collision of an attached part on a trajectory."""
         ...
 
     async def look(self, request: CollisionRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to what it must not touch."""
+        """Return the collisions and the clearance of an arm in a configuration."""
         ...
 
 
 def new_plan_service(clock: Clock) -> PlanService:
-    """Return who plans under a clock: inline in virtual time, else a process; to be entered with `async with`."""
+    """Return the planning service for a clock: inline in virtual time, else a process; enter it with `async with`."""
     if clock.virtual:
         from robots.planning.worker.inline_planner import InlinePlanner
 

@@ -1,4 +1,4 @@
-"""What the planning process and its client say to each other, length-prefixed msgpack over a socket."""
+"""Messages between the planning process and its client: length-prefixed msgpack over a socket."""
 
 from __future__ import annotations
 
@@ -17,35 +17,35 @@ from robots.planning.request import (
 
 
 class AskPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
-    """Plan this; `number` is the request's own."""
+    """Requests a plan; `number` identifies the request."""
 
     number: int
     request: PlanRequest
 
 
 class AskPathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
-    """Check this way."""
+    """Requests a path check."""
 
     number: int
     request: PathCheckRequest
 
 
 class AskAttachedPartCheck(msgspec.Struct, frozen=True, kw_only=True, tag="carry"):
-    """Check what is held on this way."""
+    """Requests a check of the attached parts."""
 
     number: int
     request: AttachedPartCheckRequest
 
 
 class AskCollisions(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
-    """Look at this configuration."""
+    """Requests the collisions in a configuration."""
 
     number: int
     request: CollisionRequest
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, tag="withdraw"):
-    """A request is no longer wanted; it is answered all the same, as cancelled."""
+    """Cancels a request; it is still answered, as canceled."""
 
     number: int
 
@@ -65,7 +65,7 @@ class CollisionReply(msgspec.Struct, frozen=True, kw_only=True, tag="reported"):
 
 
 class RequestFailure(msgspec.Struct, frozen=True, kw_only=True, tag="failed"):
-    """A request that could not be worked on: its scene or model is wrong."""
+    """Reports a failed request: its scene or model is invalid."""
 
     number: int
     message: str

@@ -1,4 +1,4 @@
-"""Plans in a process of its own, for asyncio: the loop stays free while coal and OMPL hold the interpreter lock."""
+"""Plans in a separate process, for asyncio: the loop stays free while Coal and OMPL hold the interpreter lock."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ from robots.planning.worker.planning_messages import (
 
 _START = "from robots.planning.worker.planning_worker_main import main; main()"
 _WHAT = "the planning process"
-# The first start on a machine compiles everything.
+# Timeout of a start: the first one on a machine compiles all kernels.
 _START_S = 300.0
 _OVERDUE_S = 5.0
-# Before its first answer a process loads the models of all arms, on a machine that may have much else to do.
+# Timeout of the first answer: the process loads the models of all arms, on a machine that may be busy.
 _LOADING_S = 60.0
-# What a request that is no search may take.
+# Longest time of a request without a search.
 _LOOK_S = 1.0
 
 
 class PlanningWorker:
-    """The planning process and its requests, in turn; started by `async with`, again by the next request if it died.
+    """The planning process and its queue of requests; `async with` starts it, the next request restarts a dead one.
 
-    Ways and configurations are looked at between the pieces of work of a plan, so that they do not wait for it
-    (but for PRM and PRMstar, which have none). Cancelling the task that awaits a plan withdraws the request: the
-    process stops looking for a way at the next piece of work. A request that stays unanswered well beyond its
-    time ends the process. A start takes seconds and goes on when a request that waits for it is cancelled:
-    `start` only sets it off, so that the process warms up beside other work.
+    Path checks and collision queries run between the work steps of a plan, so that they do not wait for it
+    (except PRM and PRMstar, which have no steps). Cancelling the task that awaits a plan cancels the request: the
+    process stops the search at the next work step. A request that stays unanswered well beyond its
+    time ends the process. A start takes seconds and continues if a request that waits for it is cancelled:
+    `start` only triggers it, so that the process warms up in parallel to other work.
     """
 
     def __init__(self) -> None:
@@ -68,14 +68,14 @@ class PlanningWorker:
 
     @property
     def pid(self) -> int:
-        """The process id, 0 while there is none."""
+        """The process id, 0 without a process."""
         return self._process.pid if self._process is not None and self._process.poll() is None else 0
 
     async def __aenter__(self) -> Self:
         try:
-            await self._running()
+            await self._connected_wire()
         except BaseException:
-            # Nobody leaves what was not entered.
+            # `__aexit__` is not called if entering fails.
             await self.__aexit__()
             raise
         return self
@@ -89,70 +89,70 @@ class PlanningWorker:
         self._end()
 
     def start(self) -> None:
-        """Start the process if there is none, without waiting for it; to be closed by `async with` all the same."""
+        """Start the process if there is none, without waiting for it; `async with` still closes it."""
         if not self._closed and (self._wire is None or self._wire.lost) and self._starting is None:
             self._end()
             self._starting = asyncio.ensure_future(self._start())
-            self._starting.add_done_callback(self._started_or_not)
+            self._starting.add_done_callback(self._on_start_done)
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none.
+        """Return a validated path, or why there is none.
 
         Raises:
-            CellError: the scene has no such arm, or something in it is wrong.
-            RobotError: the planning process ended or hangs; the next request finds a new one.
+            CellError: the scene has no such arm, or is invalid.
+            RobotError: the planning process has ended or hangs; the next request starts a new one.
         """
-        found = await self._answer(lambda number: AskPlan(number=number, request=request), request.time_s)
-        assert isinstance(found, PlanningReply)
-        assert not isinstance(found.answer, PathCheck)
-        return found.answer
+        reply = await self._answer(lambda number: AskPlan(number=number, request=request), request.time_s)
+        assert isinstance(reply, PlanningReply)
+        assert not isinstance(reply.answer, PathCheck)
+        return reply.answer
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where an arm that follows a trajectory would touch something first. Raises as `plan` does."""
-        return await self._checked(lambda number: AskPathCheck(number=number, request=request))
+        """Return the first collision of an arm that follows a trajectory. Raises as `plan` does."""
+        return await self._path_check(lambda number: AskPathCheck(number=number, request=request))
 
     async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
-        """Return where what an arm holds would touch something first on a trajectory. Raises as `plan` does."""
-        return await self._checked(lambda number: AskAttachedPartCheck(number=number, request=request))
+        """Return the first collision of an attached part on a trajectory. Raises as `plan` does."""
+        return await self._path_check(lambda number: AskAttachedPartCheck(number=number, request=request))
 
     async def look(self, request: CollisionRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to the rest. Raises as `plan` does."""
-        found = await self._answer(lambda number: AskCollisions(number=number, request=request), _LOOK_S)
-        assert isinstance(found, CollisionReply)
-        return found.answer
+        """Return the collisions and the clearance of an arm in a configuration. Raises as `plan` does."""
+        reply = await self._answer(lambda number: AskCollisions(number=number, request=request), _LOOK_S)
+        assert isinstance(reply, CollisionReply)
+        return reply.answer
 
-    async def _checked(self, make: Callable[[int], PlanningRequest]) -> PathCheck:
-        found = await self._answer(make, _LOOK_S)
-        assert isinstance(found, PlanningReply)
-        assert isinstance(found.answer, PathCheck)
-        return found.answer
+    async def _path_check(self, make: Callable[[int], PlanningRequest]) -> PathCheck:
+        reply = await self._answer(make, _LOOK_S)
+        assert isinstance(reply, PlanningReply)
+        assert isinstance(reply.answer, PathCheck)
+        return reply.answer
 
     async def _answer(self, make: Callable[[int], PlanningRequest], time_s: float) -> PlanningReply | CollisionReply:
-        """Return what the process answers to a request, which has a number once it is sent."""
-        wire = await self._running()
+        """Send a request with a new number and return the answer of the process."""
+        wire = await self._connected_wire()
         self._numbers += 1
         number = self._numbers
         answer = wire.ask(make(number), time_s)
-        # Others before it in turn take their time too.
+        # Includes the time of queued requests before it.
         allowed_s = wire.promised_s + (_OVERDUE_S if wire.has_answered else _LOADING_S)
         try:
             async with asyncio.timeout(allowed_s):
-                found = await asyncio.shield(answer)
+                reply = await asyncio.shield(answer)
         except TimeoutError as error:
             self._end()
             raise RobotError(
                 f"the planning process has not answered within {allowed_s:.1f} s and was ended",
-                hint="plan again; a new process is started",
+                hint="plan again; the next request starts a new process",
             ) from error
         except asyncio.CancelledError:
             wire.withdraw(number)
             raise
-        if isinstance(found, RequestFailure):
-            raise CellError(found.message, where=found.where or None, hint=found.hint or None)
-        return found
+        if isinstance(reply, RequestFailure):
+            raise CellError(reply.message, where=reply.where or None, hint=reply.hint or None)
+        return reply
 
-    async def _running(self) -> _Wire:
-        """Return the wire to the process, which is started if there is none."""
+    async def _connected_wire(self) -> _Wire:
+        """Return the connection to the process; starts the process if there is none."""
         if self._closed:
             raise RobotError("the planning worker was closed", hint="enter a new one with `async with`")
         if self._wire is not None and not self._wire.lost:
@@ -160,13 +160,13 @@ class PlanningWorker:
         self.start()
         starting = self._starting
         assert starting is not None
-        # Others may wait for the same start.
+        # Other requests may wait for the same start.
         await asyncio.wait([starting])
         if starting.cancelled():
             raise RobotError("the planning worker was closed", hint="enter a new one with `async with`")
         return starting.result()
 
-    def _started_or_not(self, starting: asyncio.Task[_Wire]) -> None:
+    def _on_start_done(self, starting: asyncio.Task[_Wire]) -> None:
         if not starting.cancelled() and starting.exception() is None:
             self._wire, self.gone = starting.result(), ""
         if self._starting is starting:
@@ -177,9 +177,9 @@ class PlanningWorker:
         try:
             self._process = start_child(_START, (theirs.fileno(),), what=_WHAT)
             theirs.close()
-            _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._it_ended), sock=ours)
+            _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._describe_end), sock=ours)
         except BaseException:
-            # Whatever went wrong, cancellation included, no process may be left behind.
+            # After any failure, including cancellation, no process may remain.
             ours.close()
             theirs.close()
             self._end()
@@ -199,11 +199,11 @@ class PlanningWorker:
             wire.close()
         process, self._process = self._process, None
         if process is not None:
-            # It holds nothing that could be lost.
+            # The process has no state that could be lost.
             process.kill()
             process.wait()
 
-    def _it_ended(self) -> str:
+    def _describe_end(self) -> str:
         self.gone = describe_exit(self._process, what=_WHAT)
         return self.gone
 
@@ -214,8 +214,8 @@ _Answer = PlanningReply | CollisionReply | RequestFailure
 class _Wire(asyncio.Protocol):
     """The client's end of the socket."""
 
-    def __init__(self, it_ended: Callable[[], str]) -> None:
-        self._it_ended = it_ended
+    def __init__(self, describe_end: Callable[[], str]) -> None:
+        self._describe_end = describe_end
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(FromWorker).decode
         self._transport: asyncio.Transport | None = None
@@ -226,13 +226,13 @@ class _Wire(asyncio.Protocol):
 
     @property
     def promised_s(self) -> float:
-        """The time that all requests which are not answered may take together."""
+        """The total time that all unanswered requests may take."""
         return sum(time_s for _, time_s in self._asked.values())
 
     def ask(self, ask: PlanningRequest, time_s: float) -> asyncio.Future[_Answer]:
         future: asyncio.Future[_Answer] = asyncio.get_running_loop().create_future()
         if self.lost:
-            future.set_exception(_gone(self._it_ended()))
+            future.set_exception(_process_ended(self._describe_end()))
             return future
         self._asked[ask.number] = (future, time_s)
         self._send(ask)
@@ -264,13 +264,13 @@ class _Wire(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         self.lost = True
-        reason = self._it_ended()
+        reason = self._describe_end()
         waiting = [future for future, _ in self._asked.values()]
         self._asked.clear()
         for future in (self.ready, *waiting):
             if not future.done():
-                future.set_exception(_gone(reason))
-                # Who asked may have gone; then nobody else hears of it.
+                future.set_exception(_process_ended(reason))
+                # Marks the exception as retrieved: the caller may no longer wait.
                 future.exception()
 
     def _send(self, message: ToWorker) -> None:
@@ -278,5 +278,5 @@ class _Wire(asyncio.Protocol):
         self._transport.write(frame_message(msgspec.msgpack.encode(message)))
 
 
-def _gone(reason: str) -> RobotError:
-    return RobotError(reason, hint="plan again; a new process is started")
+def _process_ended(reason: str) -> RobotError:
+    return RobotError(reason, hint="plan again; the next request starts a new process")

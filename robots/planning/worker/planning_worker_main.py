@@ -1,4 +1,4 @@
-"""The planning process: takes requests from a socket, plans one at a time, and looks at ways meanwhile."""
+"""The planning process: reads requests from a socket, plans one at a time, and checks paths between work steps."""
 
 from __future__ import annotations
 
@@ -43,35 +43,35 @@ class _Mailbox:
         self._decode = msgspec.msgpack.Decoder(ToWorker).decode
         self._waiting: deque[PlanningRequest] = deque()
         self._open: set[int] = set()
-        self._withdrawn: set[int] = set()
+        self._canceled: set[int] = set()
 
     def next(self) -> PlanningRequest:
-        """Return the next request, once there is one."""
+        """Wait for the next request and return it."""
         while not self._waiting:
             self._read()
         return self._waiting.popleft()
 
-    def quick_ones(self) -> list[AskPathCheck | AskAttachedPartCheck | AskCollisions]:
-        """Return the requests that take milliseconds, reading what has arrived meanwhile; they are not waiting then."""
+    def take_quick_requests(self) -> list[AskPathCheck | AskAttachedPartCheck | AskCollisions]:
+        """Read new messages, and remove and return the queued requests that take milliseconds."""
         while select.select([self._connection], [], [], 0.0)[0]:
             self._read()
-        found = [ask for ask in self._waiting if not isinstance(ask, AskPlan)]
-        if found:
+        quick = [ask for ask in self._waiting if not isinstance(ask, AskPlan)]
+        if quick:
             self._waiting = deque(ask for ask in self._waiting if isinstance(ask, AskPlan))
-        return found
+        return quick
 
-    def is_withdrawn(self, number: int) -> bool:
-        """Return whether a request, as far as was read, is no longer wanted."""
-        return number in self._withdrawn
+    def is_canceled(self, number: int) -> bool:
+        """Return whether a cancellation of the request has been read."""
+        return number in self._canceled
 
     def send(self, message: FromWorker) -> None:
         """Send a message."""
         self._messages.send(msgspec.msgpack.encode(message))
 
     def done(self, number: int) -> None:
-        """Forget about a request that was answered."""
+        """Remove an answered request."""
         self._open.discard(number)
-        self._withdrawn.discard(number)
+        self._canceled.discard(number)
 
     def _read(self) -> None:
         for frame in self._messages.receive():
@@ -80,7 +80,7 @@ class _Mailbox:
                 self._waiting.append(message)
                 self._open.add(message.number)
             elif message.number in self._open:
-                self._withdrawn.add(message.number)
+                self._canceled.add(message.number)
 
 
 def main() -> None:
@@ -90,7 +90,7 @@ def main() -> None:
     mailbox = _Mailbox(connection)
     planner = ScenePlanner()
     try:
-        _warm(planner)
+        _warm_up(planner)
         mailbox.send(PlannerReady())
         while True:
             _serve(planner, mailbox, mailbox.next())
@@ -104,16 +104,16 @@ def _serve(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> No
 
 
 def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> FromWorker:
-    def is_withdrawn() -> bool:
-        # An arm under way must not wait for the plan of another.
-        for quick in mailbox.quick_ones():
+    def is_canceled() -> bool:
+        # A moving arm must not wait for the plan of another.
+        for quick in mailbox.take_quick_requests():
             _serve(planner, mailbox, quick)
-        return mailbox.is_withdrawn(ask.number)
+        return mailbox.is_canceled(ask.number)
 
     try:
         match ask:
             case AskPlan(number=number, request=request):
-                return PlanningReply(number=number, answer=planner.plan(request, cancelled=is_withdrawn))
+                return PlanningReply(number=number, answer=planner.plan(request, cancelled=is_canceled))
             case AskPathCheck(number=number, request=request):
                 return PlanningReply(number=number, answer=planner.check_path(request))
             case AskAttachedPartCheck(number=number, request=request):
@@ -125,8 +125,8 @@ def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> F
         return RequestFailure(number=ask.number, message=error.message, where=where, hint=error.hint or "")
 
 
-def _warm(planner: ScenePlanner) -> None:
-    """Have everything compiled and loaded that a first request would wait for."""
+def _warm_up(planner: ScenePlanner) -> None:
+    """Compile and load everything that a first request would wait for."""
     placement = ArmPlacement(name="arm", model="servo_arm", base=Pose(xyz=(0.0, 0.0, 0.0)))
     far = Obstacle.of("far", Box(size_m=(0.1, 0.1, 0.1)), Pose(xyz=(5.0, 0.0, 0.0)))
     scene = PlanningScene(arms=(SceneArm(placement=placement),), obstacles=(far,))

@@ -1,4 +1,4 @@
-"""Answers plan requests in this process: checks start and goal, runs the planner asked for, confirms every way."""
+"""Answers plan requests in this process: checks start and goal, runs the requested planner, validates every path."""
 
 from __future__ import annotations
 
@@ -57,20 +57,20 @@ from robots.sim.scene.sim_scene import ArmPlacement
 _Result = TypeVar("_Result")
 
 GIVEN_PATH = "given"
-"""Who found a way that came with the request."""
+"""Value of `found_by` for a path that was given in the request."""
 
-_KEPT = 4
+_CACHE_SIZE = 4
 _ATTEMPTS = 4
-# Share of the time after which the fast planner, whose spheres are larger than the arm, gives way to the exact one.
+# Share of the time for the fast planner, whose spheres are larger than the arm, before the exact one takes over.
 _FAST_SHARE = 0.6
 _FALL_BACK = "RRTConnect"
-# What a look of the spheres, and one of the exact checker, takes on the machine of the benchmark.
+# Duration of a sphere check and of an exact check on the benchmark machine.
 _FAST_CHECK_S, _EXACT_CHECK_S = 2e-6, 1.5e-5
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlanningContext:
-    """One arm in one scene, ready for requests."""
+    """One arm in one scene, prepared for requests."""
 
     checker: ExactChecker
     problem: CompiledProblem
@@ -78,11 +78,11 @@ class PlanningContext:
 
 
 class ScenePlanner:
-    """Answers requests one after the other; keeps what it prepared for the latest scenes.
+    """Answers requests one after the other; caches the contexts of the latest scenes.
 
     Args:
-        check_s: What a check counts as when time is to be counted by work done, so that answers repeat
-            whatever the machine does; None goes by the clock.
+        check_s: Seconds charged for a check if the budget counts work, so that answers do not depend on the
+            machine; None uses wall time.
     """
 
     def __init__(self, *, check_s: float | None = None) -> None:
@@ -90,16 +90,16 @@ class ScenePlanner:
         self._warm = False
         self._models: dict[ArmPlacement, RobotModel] = {}
         self._voxels = VoxelCache()
-        self._own_ways = SelfCollisionCache()
+        self._self_collision_cache = SelfCollisionCache()
         self.effort_s = 0.0
-        """The time that the counted work of the latest plan stands for, whatever the machine."""
-        self._kept: OrderedDict[tuple[PlanningScene, str, float], PlanningContext] = OrderedDict()
+        """The duration of the counted work of the latest plan, independent of the machine."""
+        self._contexts: OrderedDict[tuple[PlanningScene, str, float], PlanningContext] = OrderedDict()
 
     def plan(self, request: PlanRequest, *, cancelled: Callable[[], bool] = lambda: False) -> PlanAnswer:
-        """Return a confirmed way, or why there is none; `cancelled` is asked between pieces of work.
+        """Return a validated path, or why there is none; queries `cancelled` between work steps.
 
         Raises:
-            CellError: the scene has no such arm, or something in it is wrong.
+            CellError: the scene has no such arm, or is invalid.
         """
         if request.planner not in PLANNERS:
             return _unknown(request.planner)
@@ -124,27 +124,27 @@ class ScenePlanner:
             answer = attempt.answer()
         self.effort_s = attempt.effort_s
         if isinstance(answer, PathPlan) and answer.timed is not None:
-            self._own_ways.add(request.scene, request.arm, answer.timed, 0.0)
+            self._self_collision_cache.add(request.scene, request.arm, answer.timed, 0.0)
         return answer
 
     def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where an arm that follows a trajectory would touch something first.
+        """Return the first collision of an arm that follows a trajectory.
 
         Raises:
-            CellError: the scene has no such arm, something in it is wrong, or the way is not this arm's.
+            CellError: the scene has no such arm or is invalid, or the trajectory does not fit the arm.
         """
         prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
-        return check_path(request, prepared.checker, prepared.problem, self._own_ways)
+        return check_path(request, prepared.checker, prepared.problem, self._self_collision_cache)
 
     def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
-        """Return where what an arm holds would touch something first on a trajectory; raises as `check_path` does."""
+        """Return the first collision of an attached part on a trajectory; raises as `check_path` does."""
         return check_attached_parts(request, robot=self._robot)
 
     def look(self, request: CollisionRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to what it must not touch.
+        """Return the collisions and the clearance of an arm in a configuration.
 
         Raises:
-            CellError: the scene has no such arm, something in it is wrong, or the joints are not this arm's.
+            CellError: the scene has no such arm or is invalid, or the joints do not fit the arm.
         """
         checker = self.prepared(
             request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy
@@ -163,42 +163,42 @@ class ScenePlanner:
     def prepared(
         self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0, occupancy: OccupancyGrid | None = None
     ) -> PlanningContext:
-        """Return what checks and plans for an arm in a scene; raises CellError when the scene or the grid is wrong."""
-        # Where the arm is itself, is asked about with every request.
+        """Return the context of an arm in a scene; raises CellError if the scene or the grid is invalid."""
+        # The joints of the arm itself come with every request.
         scene = scene.with_joints(arm, ())
         key = (scene, arm, margin_m)
-        found = self._kept.pop(key, None)
-        if found is None:
+        context = self._contexts.pop(key, None)
+        if context is None:
             among = arm_in_scene(scene, arm, robot=self._robot)
             problem, names = compile_problem(scene, arm, margin_m=margin_m, among=among)
             checker = ExactChecker(scene, arm, margin_m=margin_m, among=among)
-            found = PlanningContext(checker=checker, problem=problem, names=names)
+            context = PlanningContext(checker=checker, problem=problem, names=names)
             if not self._warm:
-                # Else the first request would spend its time on compiling.
+                # Otherwise the first request would spend its budget on compilation.
                 warm_up(problem)
                 self._warm = True
-        self._kept[key] = found
-        if len(self._kept) > _KEPT:
-            self._kept.popitem(last=False)
+        self._contexts[key] = context
+        if len(self._contexts) > _CACHE_SIZE:
+            self._contexts.popitem(last=False)
         voxels = self._voxels.of(occupancy)
         if voxels is None:
-            return found
-        problem, names = with_voxels(found.problem, found.names, scene, voxels, margin_m=margin_m)
-        seen = voxels_alone(problem)
-        # The spheres hold all of the arm: where they meet no voxel, the arm does not.
-        checker = found.checker.seeing(voxels, may_meet=lambda joints: blocked_at(seen, joints[None]) >= 0)
+            return context
+        problem, names = with_voxels(context.problem, context.names, scene, voxels, margin_m=margin_m)
+        voxel_problem = voxels_alone(problem)
+        # The spheres contain the arm: where they touch no voxel, the arm does not either.
+        checker = context.checker.seeing(voxels, may_meet=lambda joints: blocked_at(voxel_problem, joints[None]) >= 0)
         return PlanningContext(checker=checker, problem=problem, names=names)
 
     def _robot(self, placement: ArmPlacement) -> RobotModel:
-        """Return the model of an arm as it was when it was first met: what stands in the cell does not change."""
-        found = self._models.get(placement)
-        if found is None:
-            found = self._models[placement] = placement.robot()
-        return found
+        """Return the cached model of an arm: the arms of a cell do not change."""
+        model = self._models.get(placement)
+        if model is None:
+            model = self._models[placement] = placement.robot()
+        return model
 
 
 class _Attempt:
-    """One request under way."""
+    """The planning of one request."""
 
     def __init__(self, request: PlanRequest, prepared: PlanningContext, ends: Endpoints, budget: SearchBudget) -> None:
         self._request = request
@@ -213,31 +213,31 @@ class _Attempt:
     def answer(self) -> PlanAnswer:
         name = self._request.planner
         if name == FAST:
-            found = self._fast()
-            if found is None and not self._budget.over:
-                name, found = _FALL_BACK, self._by_name(_FALL_BACK)
+            path = self._fast()
+            if path is None and not self._budget.over:
+                name, path = _FALL_BACK, self._by_name(_FALL_BACK)
         else:
-            found = self._by_name(name)
-        if found is None:
-            return self._nothing()
-        return self._plan(np.vstack((self._ends.lead, found)), name)
+            path = self._by_name(name)
+        if path is None:
+            return self._refusal()
+        return self._plan(np.vstack((self._ends.lead, path)), name)
 
     def given(self, path: Array) -> PathPlan:
-        """Return the plan that a way is that was confirmed already."""
+        """Return the plan for a path that is already validated."""
         self._exact_checks += count_exact_checks(self._prepared.checker, path)
         return self._plan(path, GIVEN_PATH)
 
     @property
     def effort_s(self) -> float:
-        """The time that the work so far stands for."""
+        """The duration of the counted work so far."""
         exact = self._exact_checks + self._budget.checks - self._fast_checks
         return self._fast_checks * _FAST_CHECK_S + exact * _EXACT_CHECK_S
 
-    def _plan(self, found: Array, name: str) -> PathPlan:
-        way = None
+    def _plan(self, path: Array, name: str) -> PathPlan:
+        timed = None
         if self._request.speed is not None:
-            trajectory = self._timed("timing", lambda w=found, v=self._request.speed: self._trajectory(w, v))
-            way = SampledTrajectory.of(trajectory)
+            trajectory = self._timed("timing", lambda w=path, v=self._request.speed: self._trajectory(w, v))
+            timed = SampledTrajectory.of(trajectory)
         stats = PlanStats(
             search_s=self._spent["search"],
             shortening_s=self._spent["shortening"],
@@ -248,11 +248,11 @@ class _Attempt:
             refused_ways=self._refused,
             found_by=name,
         )
-        rows: list[list[float]] = found.tolist()
-        return PathPlan(waypoints_rad=tuple(tuple(row) for row in rows), stats=stats, timed=way)
+        rows: list[list[float]] = path.tolist()
+        return PathPlan(waypoints_rad=tuple(tuple(row) for row in rows), stats=stats, timed=timed)
 
     def _fast(self) -> Array | None:
-        """Return a confirmed way of the fast planner; what the exact check refuses teaches the next attempt."""
+        """Return a validated path of the fast planner; paths that the exact check rejects widen the gaps."""
         problem = self._ends.problem
         known_free = np.vstack((self._ends.start, self._ends.goals))
         share = SearchBudget(
@@ -280,7 +280,7 @@ class _Attempt:
         return path
 
     def _by_name(self, name: str) -> Array | None:
-        """Return a confirmed way of STOMP or of a planner of OMPL."""
+        """Return a validated path of STOMP or of an OMPL planner."""
         search: SearchAlgorithm = stomp_search if name == STOMP else ompl_search(name)
         for attempt in range(_ATTEMPTS):
             path = self._timed("search", lambda a=attempt: search(self._task(self._ends.problem, a), self._budget))
@@ -299,20 +299,20 @@ class _Attempt:
         return None
 
     def _shorter(self, path: Array) -> Array:
-        """Return the way shortened where the spheres allow that; OMPL finds ways where they do not."""
+        """Return the path, shortened where the spheres are free; OMPL also finds paths where they are not."""
         problem = with_room_for(self._ends.problem, path[1:-1])
         shorter = shorten_path(problem, path, seed=self._request.seed, budget=self._budget)
         return shorter if self._prepared.checker.first_collision(shorter) is None else path
 
     def _trajectory(self, path: Array, speed: float) -> JointTrajectory:
         checker = self._prepared.checker
-        way = time_path(
+        timed = time_path(
             path,
             limits=checker.model.limits,
             is_free=lambda piece: checker.first_collision(piece) is None and self._keeps_orientation(piece),
             speed=speed,
         )
-        return way.trajectory
+        return timed.trajectory
 
     def _keeps_orientation(self, path: Array) -> bool:
         problem = self._ends.problem
@@ -338,23 +338,23 @@ class _Attempt:
         self._spent[what] += time.perf_counter() - start
         return result
 
-    def _nothing(self) -> PlanRefusal:
+    def _refusal(self) -> PlanRefusal:
         if self._budget.cancelled:
-            return PlanRefusal(reason="cancelled", message="the plan is no longer wanted")
-        looked = f"{self._budget.checks} configurations looked at, {self._refused} ways refused by the exact check"
+            return PlanRefusal(reason="cancelled", message="the plan request was canceled")
+        effort = f"{self._budget.checks} configurations checked, {self._refused} paths rejected by the exact check"
         return PlanRefusal(
             reason="no_path_in_time",
-            message=f"{self._request.planner} found no path within {self._request.time_s:g} s ({looked})",
-            hint="give it more time, another planner, or clear the way",
+            message=f"{self._request.planner} found no path within {self._request.time_s:g} s ({effort})",
+            hint="allow more time, choose another planner, or remove obstacles",
         )
 
 
 def _unknown(name: str) -> PlanRefusal:
-    message = f"no planner is called {name}"
+    message = f"unknown planner {name}"
     if name.upper() in UNAVAILABLE_PLANNERS:
-        message = f"the installed OMPL gives Python no {name.upper()}"
+        message = f"the installed Python package of OMPL does not provide {name.upper()}"
     return PlanRefusal(
         reason="unknown_planner",
         message=message,
-        hint=f"{did_you_mean(name, PLANNERS) or ''} there are {', '.join(PLANNERS)}".strip(),
+        hint=f"{did_you_mean(name, PLANNERS) or ''} available: {', '.join(PLANNERS)}".strip(),
     )

@@ -97,7 +97,7 @@ def test_a_hand_that_stays_over_the_place_is_waited_for_and_then_named(tmp_path:
     result = waited.run(tmp_path)
     assert result.outcome == "blocked"
     assert "no path is free for 4 s" in causes(result)
-    assert "what the cameras see" in causes(result)
+    assert "an obstacle seen by the cameras" in causes(result)
     assert waited.left[-3:] == [f"{TRANSFER} blocked", "root/carry blocked", "root blocked"]
     assert waited.last("plate").xyz[2] > 0.75
     assert waited.greatest_last_speed_rad_s < REST_RAD_S

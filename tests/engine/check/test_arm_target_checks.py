@@ -112,7 +112,7 @@ def test_what_is_wrong_is_said_with_both_names_and_by_how_much(tmp_path: Path) -
         f"motion.MovePose robot: left, target: {{xyz: [1.6, 0, 0.3], {DOWN}}}",
         f"motion.MovePose robot: left, target: {{xyz: [0.5, 0, -0.03], {DOWN}}}",
     )
-    assert far.message.startswith("`target`: `left` does not get there: (1.600, 0.000, 0.300) is out of reach by ")
+    assert far.message.startswith("`target`: `left` does not reach it: (1.600, 0.000, 0.300) is out of reach by ")
     assert "left/panda_leftfinger touches table" in low.message
 
 

@@ -30,7 +30,7 @@ def test_a_goal_that_is_rejected_says_why_and_has_an_exit_code_of_its_own() -> N
     """Nothing has moved."""
     said = CliRunner().invoke(app, ["bus", "goal", "left/jog_joints", '{"duration_s": 1.0}', *WHERE])
     assert (said.exit_code, json.loads(said.stdout)["status"]) == (1, "rejected")
-    assert "a velocity and `duration_s` belong together" in said.stderr
+    assert "a velocity and `duration_s` are only valid together" in said.stderr
 
 
 def test_a_message_is_published_as_often_as_told() -> None:

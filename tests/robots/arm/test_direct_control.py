@@ -80,7 +80,7 @@ async def test_it_is_not_turned_on_after_a_reflex() -> None:
 async def test_switching_twice_is_the_same_as_once() -> None:
     """On and off alike."""
     async with served() as cell:
-        for request, words in ((OFF, "is off"), (ON, "is on"), (ON, "is on already"), (OFF, "is off"), (OFF, "is off")):
+        for request, words in ((OFF, "is off"), (ON, "is on"), (ON, "is already on"), (OFF, "is off"), (OFF, "is off")):
             answer = await cell.bus.call(request, to="left")
             assert answer == SwitchResult(success=True, message=f"direct joint control {words}")
 

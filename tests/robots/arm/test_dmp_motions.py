@@ -148,7 +148,7 @@ async def test_what_cannot_be_learned_from_fails_with_the_reason() -> None:
         register_store(cell.bus, store)
         with pytest.raises(StoreError, match="there is no trajectory entry called wav"):
             await cell.bus.call(LearnJointDmp(entry="wav"), to="left")
-        with pytest.raises(SkillFailed, match="the recording is of the joints a, b") as foreign:
+        with pytest.raises(SkillFailed, match="the recording has the joints a, b") as foreign:
             await cell.bus.call(LearnJointDmp(trajectory=renamed), to="left")
         assert foreign.value.hint is not None
         with pytest.raises(SkillFailed, match="nothing moves in the recording"):

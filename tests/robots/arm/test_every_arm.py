@@ -200,7 +200,7 @@ def expected(dof: int) -> dict[str, str]:
         "held": "held, at rest",
         "resumed": "succeeded",
         "cancelled": "canceled, at rest",
-        "stopped": "aborted: the arm was told to stop, at rest",
+        "stopped": "aborted: the arm was stopped by another command, at rest",
         "next": "succeeded",
         "jogged": "succeeded",
         "stepped": "succeeded",

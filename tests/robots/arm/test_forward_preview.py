@@ -64,9 +64,9 @@ async def test_primitives_go_along_the_demonstration() -> None:
 async def test_what_the_arm_cannot_do_is_said() -> None:
     async with served() as cell:
         far = await traced(cell, "pose", Pose(xyz=(3.0, 0.0, 0.3)))
-        with pytest.raises(SkillFailed, match="this is of 2 joints"):
+        with pytest.raises(SkillFailed, match="the entry has 2 joints"):
             await traced(cell, "joints", Joints(joints=(0.0, 0.0)))
-        with pytest.raises(SkillFailed, match="this is no joints"):
+        with pytest.raises(SkillFailed, match="not a valid joints"):
             await traced(cell, "joints", Pose(xyz=(0.0, 0.0, 0.0)))
     assert far.joints == ()
     assert "out of reach" in far.remark

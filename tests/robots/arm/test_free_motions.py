@@ -53,7 +53,7 @@ def preview(cell: FakeCell) -> PathPreview:
     [
         (MotionTarget(), PlanOptions(), "either `joints` or `pose`"),
         (MotionTarget(joints=THERE, pose=FAR), PlanOptions(), "either `joints` or `pose`"),
-        (MotionTarget(joints=(0.0, 1.0)), PlanOptions(), "2 joints were given"),
+        (MotionTarget(joints=(0.0, 1.0)), PlanOptions(), "got 2 joints"),
         (MotionTarget(joints=(float("nan"), *THERE[1:])), PlanOptions(), "not finite"),
         (MotionTarget(joints=(9.0, *THERE[1:])), PlanOptions(), "panda_joint1 at 9.0000 rad is outside"),
         (MotionTarget(pose=FAR), PlanOptions(), "reach"),
@@ -107,7 +107,7 @@ async def test_a_plan_may_begin_elsewhere_and_is_then_not_gone_from_here() -> No
         assert plan is not None
         assert plan.waypoints[0] == pytest.approx(THERE)
         end = await cell.bus.send_goal(ExecutePlan(plan=plan), to="left").result()
-        assert (end.status, "does not start where the arm stands" in str(end.cause)) == (GoalStatus.REJECTED, True)
+        assert (end.status, "does not start at the arm's current" in str(end.cause)) == (GoalStatus.REJECTED, True)
 
 
 @pytest.mark.virtual
@@ -115,9 +115,9 @@ async def test_plans_that_make_no_sense_are_rejected() -> None:
     async with fake_cell() as cell:
         plan = await planned(cell)
         for changed, words in (
-            (msgspec.structs.replace(plan, robot="right"), "a plan for right"),
+            (msgspec.structs.replace(plan, robot="right"), "the plan is for right"),
             (msgspec.structs.replace(plan, waypoints=()), "no waypoints"),
-            (msgspec.structs.replace(plan, waypoints=((0.0,),)), "1 joints were given"),
+            (msgspec.structs.replace(plan, waypoints=((0.0,),)), "got 1 joints"),
             (msgspec.structs.replace(plan, waypoints=(plan.waypoints[0], (float("inf"),) * 7)), "not finite"),
             (msgspec.structs.replace(plan, waypoints=(plan.waypoints[0], (9.0, *THERE[1:]))), "outside"),
         ):
@@ -153,7 +153,7 @@ async def test_what_the_cameras_see_is_gone_around_and_they_are_only_needed_mean
         end = await handle.result()
         assert end.result is not None, end.cause
         assert (end.status, end.result.stops, end.result.replans) == (GoalStatus.SUCCEEDED, 1, 1)
-        assert any("would touch what the cameras see" in message.reason for message in cell.told)
+        assert any("would touch an obstacle seen by the cameras" in message.reason for message in cell.told)
         assert cell.cameras.required == 0
 
 
@@ -169,7 +169,7 @@ async def test_who_stands_at_the_goal_before_the_motion_begins_is_waited_for() -
         followed = len(cell.port.followed)
         handle = await cell.begun(free(ACROSS, time_s=0.2), after_s=2.0)
         assert (cell.told[-1].phase, len(cell.port.followed)) == ("waiting", followed)
-        assert "what the cameras see" in cell.told[-1].reason or "no way" in cell.told[-1].reason
+        assert "an obstacle seen by the cameras" in cell.told[-1].reason or "no path" in cell.told[-1].reason
         cell.cameras.see()
         end = await handle.result()
         assert end.result is not None, end.cause
@@ -364,7 +364,7 @@ async def test_a_stop_by_somebody_else_ends_a_waiting_goal() -> None:
         await cell.bus.clock.sleep(1.0)
         await cell.arm.stop()
         end = await handle.result()
-        assert (end.status, "told to stop" in str(end.cause)) == (GoalStatus.ABORTED, True)
+        assert (end.status, "stopped by another command" in str(end.cause)) == (GoalStatus.ABORTED, True)
         assert cell.cameras.required == 0
 
 

@@ -159,7 +159,7 @@ async def test_what_appears_too_near_to_stop_before_it_stops_the_arm_all_the_sam
         x, y, z = (await opened.bus.call(ForwardKinematics(), to="left")).xyz
         await opened.put(box("hand", (0.1, 0.05, 0.1), (x + 0.03, y - 0.08, z)))
         await opened.until_phase("waiting")
-        assert any("too near to stop before it" in message.reason for message in opened.told)
+        assert any("too late to stop before it" in message.reason for message in opened.told)
         assert opened.speed_rad_s() < REST_RAD_S
         handle.cancel()
         assert (await handle.result()).status is GoalStatus.CANCELED

@@ -43,6 +43,6 @@ async def test_killed_planning_processes_stop_the_arm_and_new_ones_take_it_to_it
         assert (end.status, end.result.stops >= 1) == (GoalStatus.SUCCEEDED, True)
         assert np.abs(opened.joints() - ACROSS).max() < 0.01
         # Who was asked just then ended with the process; who asks later waits in vain for the next one to start.
-        assert any(re.search("SIGKILL|was not looked at", message.reason) for message in opened.told)
+        assert any(re.search("SIGKILL|was not checked", message.reason) for message in opened.told)
         assert all(worker.pid not in (0, *killed) for worker in workers)
     assert [worker.pid for worker in workers] == [0, 0]

@@ -25,7 +25,7 @@ async def test_a_hand_that_reaches_into_the_way_is_gone_around_without_a_contact
         assert end.result is not None, end.cause
         assert (end.status, end.result.stops >= 1, end.result.replans >= 1) == (GoalStatus.SUCCEEDED, True, True)
         assert np.abs(opened.joints() - ACROSS).max() < 0.005
-        assert any("would touch what the cameras see" in message.reason for message in opened.told)
+        assert any("would touch an obstacle seen by the cameras" in message.reason for message in opened.told)
         assert (await opened.bus.call(CountContacts(person="anna"), to="cell")).contacts == 0
 
 
@@ -41,6 +41,6 @@ async def test_a_hand_at_the_goal_is_waited_for_and_the_arm_goes_on_when_it_has_
         await opened.until_phase("waiting")
         await opened.bus.clock.sleep(2.0)
         assert (opened.told[-1].phase, opened.speed_rad_s() < REST_RAD_S) == ("waiting", True)
-        assert "what the cameras see" in opened.told[-1].reason
+        assert "an obstacle seen by the cameras" in opened.told[-1].reason
         assert (await handle.result()).status is GoalStatus.SUCCEEDED
         assert (await opened.bus.call(CountContacts(person="anna"), to="cell")).contacts == 0

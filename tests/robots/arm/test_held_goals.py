@@ -156,7 +156,7 @@ async def test_a_stop_during_a_hold_ends_the_goal_at_rest(tmp_path: Path) -> Non
         await cell.robots["left"].stop()
         end = await handle.result()
         assert end.cause is not None
-        assert (end.status, end.cause.message) == (GoalStatus.ABORTED, "the arm was told to stop")
+        assert (end.status, end.cause.message) == (GoalStatus.ABORTED, "the arm was stopped by another command")
 
 
 @pytest.mark.virtual

@@ -42,5 +42,5 @@ def test_a_claimed_place_is_touched_like_the_arm_itself() -> None:
 
 
 def test_claims_are_spoken_of_in_words() -> None:
-    assert describe_names("left touches right~12/panda_link7") == "left touches right/panda_link7 on its way"
+    assert describe_names("left touches right~12/panda_link7") == "left touches right/panda_link7 on its planned path"
     assert describe_names("table") == "table"

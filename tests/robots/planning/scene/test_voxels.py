@@ -173,5 +173,5 @@ def test_a_grid_whose_bytes_do_not_fit_its_shape_is_refused() -> None:
 
 
 def test_no_obstacle_may_have_the_name_of_what_cameras_see() -> None:
-    with pytest.raises(CellError, match="occupancy is in the scene already"):
+    with pytest.raises(CellError, match="occupancy is already in the scene"):
         PANDA.with_obstacles(Obstacle.of("occupancy", Box(size_m=(0.1, 0.1, 0.1)), Pose(xyz=(1.0, 0.0, 0.0))))

@@ -191,5 +191,5 @@ def test_a_given_way_that_cannot_be_is_refused_with_the_reason() -> None:
     assert isinstance(
         given_way(PANDA, HOME, AWAY, keep_orientation=PathOrientationConstraint(free_about=(0, 0, 1))), PathPlan
     )
-    with pytest.raises(CellError, match="does not begin where the arm starts"):
+    with pytest.raises(CellError, match="does not begin at the start configuration"):
         given_way(PANDA, AWAY, HOME)

@@ -195,12 +195,12 @@ BLOCK = box("block", (0.3, 0.3, 0.3), (0.31, 0.0, 0.5))
         ),
         ({"start_rad": (9.0, *HOME[1:])}, "start_outside_limits", "panda_joint1 at 9.0000 rad"),
         ({"goal": JointGoal(joints_rad=((9.0, *HOME[1:]),))}, "goal_outside_limits", "panda_joint1 at 9.0000 rad"),
-        ({"goal": JointGoal(joints_rad=((1.0, 2.0),))}, "goal_outside_limits", "no configuration of an arm with 7"),
+        ({"goal": JointGoal(joints_rad=((1.0, 2.0),))}, "goal_outside_limits", "not a configuration of an arm with 7"),
         ({"goal": JointGoal(joints_rad=())}, "goal_outside_limits", "no goal is given"),
         ({"goal": PoseGoal(pose=Pose(xyz=(3.0, 0.0, 0.0)))}, "goal_unreachable", "m"),
-        ({"planner": "EST"}, "unknown_planner", "no EST"),
+        ({"planner": "EST"}, "unknown_planner", "does not provide EST"),
         ({"planner": "stomp", "keep_orientation": PathOrientationConstraint()}, "unknown_planner", "stomp cannot keep"),
-        ({"planner": "RRTconnect"}, "unknown_planner", "no planner is called RRTconnect"),
+        ({"planner": "RRTconnect"}, "unknown_planner", "unknown planner RRTconnect"),
     ],
 )
 def test_a_plan_that_cannot_be_is_refused_with_the_reason(changes: dict[str, object], reason: str, words: str) -> None:
@@ -230,7 +230,7 @@ def test_no_path_in_time_is_said_with_what_was_tried(planner: str) -> None:
     answer = plan(_caged(), planner=planner, time_s=0.2)
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "no_path_in_time"
-    assert "configurations looked at" in answer.message
+    assert "configurations checked" in answer.message
 
 
 def test_a_plan_no_longer_wanted_ends() -> None:
