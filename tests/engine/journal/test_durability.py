@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[3]
 WRITER = """
 import asyncio, resource, sys
 from engine.errors import JournalError
-from engine.event import Logged
+from engine.event import MessageLogged
 from engine.journal import Journal
 
 async def main(place, limit_bytes, inline):
@@ -26,7 +26,7 @@ async def main(place, limit_bytes, inline):
 
         async def write(run):
             for seq in range(1, 1_000_000):
-                run.append(Logged(seq=seq, time_s=0.0, path="root", level="info", message="m" * 200))
+                run.append(MessageLogged(seq=seq, time_s=0.0, path="root", level="info", message="m" * 200))
                 await run.commit()
                 print(run.run_id, seq, flush=True)
 
