@@ -81,7 +81,7 @@ async def test_a_row_of_a_store_that_is_none_is_a_damaged_file(tmp_path: Path) -
     async with SqliteStore.open(tmp_path / "s.db") as store:
         await store.put("record", "a", {"n": 1})
         changed(tmp_path / "s.db", "UPDATE note SET tags = '[1, {'")
-        with pytest.raises(StoreError, match=r"s\.db: the store cannot be read: a row is none of an entry"):
+        with pytest.raises(StoreError, match=r"s\.db: the store cannot be read: a row is not an entry"):
             await store.get("record", "a")
         changed(tmp_path / "s.db", "UPDATE note SET tags = '[]'; UPDATE entry SET value = '{\"n\": '")
         with pytest.raises(StoreError, match="record a"):

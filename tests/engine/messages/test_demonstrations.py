@@ -49,7 +49,7 @@ def test_a_recording_that_does_not_fit_together_is_refused(change: dict[str, obj
 
 
 def test_numbers_that_are_not_finite_are_refused() -> None:
-    with pytest.raises(msgspec.ValidationError, match=r"joints\[0\] has a number that is not finite"):
+    with pytest.raises(msgspec.ValidationError, match=r"joints\[0\] has a non-finite number"):
         msgspec.convert({**LED, "joints": [[0.0, float("nan")], [0.0, 0.0]]}, Trajectory)
     with pytest.raises(msgspec.ValidationError, match="times_s"):
         msgspec.convert({**LED, "times_s": [0.0, float("inf")]}, Trajectory)
