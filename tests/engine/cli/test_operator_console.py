@@ -211,7 +211,7 @@ def test_breakpoints_beside_the_behavior_are_used_with_an_operator_only(nested: 
 
 @pytest.mark.parametrize(
     ("policy", "code", "reason"),
-    [("continue", 0, ""), ("stop", 1, "the operator was lost"), ("hold", 3, "nothing can happen any more")],
+    [("continue", 0, ""), ("stop", 1, "the operator was lost"), ("hold", 3, "virtual time cannot advance")],
 )
 def test_the_end_of_input_is_the_operators_leaving(nested: Path, policy: str, code: int, reason: str) -> None:
     """Held for ever, virtual time cannot pass: that is an error, not a hang."""
@@ -232,7 +232,7 @@ def test_what_waits_for_ever_in_virtual_time_is_named_and_its_events_kept(nested
     )  # fmt: skip
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")
-    assert "waiting for ever: root/two (autonomy)" in result["cause"][0]["message"]
+    assert "waiting: root/two (autonomy)" in result["cause"][0]["message"]
     last = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert (last["event"], last["status"]) == ("run_ended", "errored")
 
