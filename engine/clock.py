@@ -205,8 +205,8 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Return whether anything besides `timers` timers can wake the loop."""
         if self._working or self._outside or any(simulation.busy for simulation in self._stepped):
             return True
-        due: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - asyncio's own, of no public name
-        return sum(not each.cancelled() for each in due) > timers
+        scheduled: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - private to asyncio
+        return sum(not each.cancelled() for each in scheduled) > timers
 
     async def idle(self, rank: Rank) -> None:
         """Return when no callback is ready at this instant; the waiter of the highest rank is resumed first, alone."""
@@ -234,9 +234,9 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Advance virtual time to the next timer; return the real time to wait for files."""
         if self._working:
             return None
-        due = [entry for entry in self._idle_waiters if not entry[1].done()]
-        if due:
-            max(due, key=lambda entry: entry[0])[1].set_result(None)
+        idle = [entry for entry in self._idle_waiters if not entry[1].done()]
+        if idle:
+            max(idle, key=lambda entry: entry[0])[1].set_result(None)
             return 0
         target_s = math.inf if timeout_s is None else self._now_s + timeout_s
         busy = [simulation for simulation in self._stepped if simulation.busy]
@@ -298,11 +298,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def _close_down(self) -> None:
         self._outside += 1  # the executor's threads report their end from outside
-        left = asyncio.all_tasks(self)
-        for task in left:
+        remaining = asyncio.all_tasks(self)
+        for task in remaining:
             task.cancel()
-        if left:
-            _, unfinished = self.run_until_complete(asyncio.wait(left, timeout=_CLOSING_S))
+        if remaining:
+            _, unfinished = self.run_until_complete(asyncio.wait(remaining, timeout=_CLOSING_S))
             for task in unfinished:
                 _log.error("the virtual loop is closed while %s has not ended after its cancellation", task.get_name())
         self.run_until_complete(self.shutdown_asyncgens())

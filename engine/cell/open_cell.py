@@ -213,10 +213,10 @@ class OpenCell:
         robots: dict[str, Robot] = {}
         for name, entry in cell.document.robots.items():
             try:
-                made = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
+                device = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
             except FlexcellError as error:
                 raise CellError(error.message, where=f"robot {name} of {cell.file}", hint=error.hint) from error
-            robot = await self._stack.enter_async_context(made)
+            robot = await self._stack.enter_async_context(device)
             robot.register(self.bus)
             robots[name] = robot
             self._connections.follow(robot)
@@ -235,15 +235,15 @@ async def _wait_uncancelled(tasks: tuple[asyncio.Task[None], ...]) -> None:
     loop = asyncio.get_running_loop()
     deadline_s = loop.time() + _PATIENCE_S
     cancelled: asyncio.CancelledError | None = None
-    left = set(tasks)
-    while left and loop.time() < deadline_s:
+    pending = set(tasks)
+    while pending and loop.time() < deadline_s:
         try:
-            _, left = await asyncio.wait(left, timeout=deadline_s - loop.time())
+            _, pending = await asyncio.wait(pending, timeout=deadline_s - loop.time())
         except asyncio.CancelledError as error:
             cancelled = error
     # A task that suppresses its cancellation is abandoned and named in the log.
     with suppress(NotStopped):
-        late = [task for task in tasks if task in left]
+        late = [task for task in tasks if task in pending]
         await preempt(late, OverduePolicy(tell=_log_overdue, abandon=_log_abandoned, abandon_after_s=_PATIENCE_S))
     if cancelled is not None:
         raise cancelled

@@ -188,8 +188,9 @@ class GroupCommitWriter:
 
     def _requeue(self, ledgers: Iterable[RunWriteQueue]) -> None:
         """Queue ledgers again that received data while they were emptied: such data queues no ledger itself."""
-        if left := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
-            self.queue.extend(left)
+        if nonempty := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
+            self.queue.extend(nonempty)
+
             self._wake.set()
 
     def _serve(self) -> None:

@@ -125,22 +125,22 @@ class TableStore:
         self, entries: Iterable[EntryRecord], *, overwrite: bool = False, by: str = "", reason: str = ""
     ) -> tuple[EntryKey, ...]:
         """Write the missing entries (with `overwrite` also those that differ), all or none."""
-        given = tuple(entries)
+        records = tuple(entries)
         stamp = self._stamp("seed", by, reason)
 
         def write() -> tuple[RevisionRow, ...]:
-            drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in given]
+            drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in records]
             return self._table.seed(drafts, stamp, overwrite=overwrite)
 
         return tuple(map(key_of, await self._change(write)))
 
     async def import_histories(self, histories: Iterable[Sequence[EntryChange]]) -> int:
         """Import entries with their whole histories; raises EntryConflict for an entry with another history."""
-        given = tuple(histories)
+        all_histories = tuple(histories)
 
         def write() -> tuple[RevisionRow, ...]:
             return self._table.import_histories(
-                [[self._imported_row(change) for change in history] for history in given]
+                [[self._imported_row(change) for change in history] for history in all_histories]
             )
 
         return len(await self._change(write))

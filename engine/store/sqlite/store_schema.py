@@ -99,21 +99,21 @@ def word_ranges(selection: EntryQuery) -> tuple[tuple[str, str], ...]:
 def conditions(selection: EntryQuery, *, rarest: tuple[str, str] | None) -> tuple[str, list[object]]:
     """Return the WHERE clause of a query with its arguments; `rarest` is the word range to search first."""
     if rarest is None:
-        where, given = _plain_conditions(selection, "r")
-        return (f" WHERE {where}" if where else ""), given
+        where, arguments = _plain_conditions(selection, "r")
+        return (f" WHERE {where}" if where else ""), arguments
     # The index of words finds the entries of a page without a scan of all entries.
-    parts, given = ["w.word >= ? AND w.word < ?"], list[object](rarest)
+    parts, arguments = ["w.word >= ? AND w.word < ?"], list[object](rarest)
     where, more = _plain_conditions(selection, "w")
     parts += [where] if where else []
-    given += more
+    arguments += more
     for span in word_ranges(selection):
         if span != rarest:
             parts.append(
                 "EXISTS (SELECT 1 FROM word v WHERE v.kind = w.kind AND v.name = w.name AND v.word >= ? AND v.word < ?)"
             )
-            given += span
+            arguments += span
     found = f"SELECT DISTINCT w.kind, w.name FROM word w WHERE {' AND '.join(parts)} ORDER BY w.kind, w.name LIMIT ?"
-    return f" WHERE (r.kind, r.name) IN ({found})", [*given, limit_of(selection)]
+    return f" WHERE (r.kind, r.name) IN ({found})", [*arguments, limit_of(selection)]
 
 
 def limit_of(selection: EntryQuery) -> int:
@@ -123,14 +123,14 @@ def limit_of(selection: EntryQuery) -> int:
 
 def _plain_conditions(selection: EntryQuery, table: str) -> tuple[str, list[object]]:
     parts: list[str] = []
-    given: list[object] = []
+    arguments: list[object] = []
     if selection.kind:
         parts.append(f"{table}.kind = ?")
-        given.append(selection.kind)
+        arguments.append(selection.kind)
     if selection.prefix:
         parts.append(f"{table}.name >= ? AND {table}.name < ?")
-        given += [selection.prefix, selection.prefix + AFTER_PREFIX]
+        arguments += [selection.prefix, selection.prefix + AFTER_PREFIX]
     if selection.after is not None:
         parts.append(f"({table}.kind, {table}.name) > (?, ?)")
-        given += selection.after
-    return " AND ".join(parts), given
+        arguments += selection.after
+    return " AND ".join(parts), arguments

@@ -232,7 +232,7 @@ def test_what_waits_for_ever_in_virtual_time_is_named_and_its_events_kept(nested
     )  # fmt: skip
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")
-    assert "waiting: root/two (autonomy)" in result["cause"][0]["message"]
+    assert "waiting for ever: root/two (autonomy)" in result["cause"][0]["message"]
     last = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert (last["event"], last["status"]) == ("run_ended", "errored")
 
