@@ -1,7 +1,7 @@
-"""The engine: documents, runs, bus, journal and store; knows no robot and no browser.
+"""The engine: documents, runs, bus, journal and store; independent of robots and browsers.
 
-Importing it has every module of ours make its message and document types ready as it is imported;
-two threads that did so at once would end the process, see `engine.type_preparation`.
+Importing it makes every module of the project prepare its message and document types on import;
+two threads that prepared a type at once would crash the process, see `engine.type_preparation`.
 """
 
 from engine.type_preparation import prepare_on_import

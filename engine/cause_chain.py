@@ -1,4 +1,4 @@
-"""Turns an exception with everything that caused it into the chain of causes that events carry."""
+"""Converts an exception and its causes to the chain of causes in events."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.event import Cause
 
 
 def cause_of(error: BaseException) -> Cause:
-    """Return the chain: this error first, what it was raised from below it."""
+    """Return the chain of an error: the error first, then the exceptions that it was raised from."""
     below = error.__cause__
     because = cause_of(below) if below is not None else None
     if isinstance(error, FlexcellError):
@@ -23,17 +23,17 @@ def cause_of(error: BaseException) -> Cause:
 
 
 def links_from_root(cause: Cause | None) -> tuple[Cause, ...]:
-    """Return the links of a chain as people are told them: what was measured first, then what followed from it."""
+    """Return the links of a chain in the order of messages: from the root cause outwards."""
     return cause.chain()[::-1] if cause is not None else ()
 
 
 def describe_cause(cause: Cause) -> str:
-    """Write a chain on one line, from what was measured outwards, joined by `so`."""
+    """Return a chain on one line, from the root cause outwards, joined by `so`."""
     return ", so ".join(map(link_text, links_from_root(cause)))
 
 
 def link_text(link: Cause) -> str:
-    """Write one link: what is said of a node by its name is said by its path."""
+    """Return the text of one link, with the name of a node replaced by its path."""
     name = link.where.rpartition("/")[2]
     if name and link.message.startswith((f"{name} ended with ", f"{name} was left for ")):
         return f"{link.where}{link.message[len(name) :]}"
@@ -41,12 +41,12 @@ def link_text(link: Cause) -> str:
 
 
 def wrap_cause(message: str, because: Cause | None, *, where: str = "", kind: str = "") -> Cause:
-    """Put a new outermost link on top of a chain."""
+    """Add an outermost link to a chain."""
     return Cause(message=message, where=where, kind=kind, because=because)
 
 
 def storable_cause(cause: Cause | None) -> Cause | None:
-    """Return a chain that a state has made, as events can keep it."""
+    """Return a chain made by a state in a form that events can store."""
     if cause is None:
         return None
     message, where, kind = (
@@ -59,7 +59,7 @@ def storable_cause(cause: Cause | None) -> Cause | None:
 
 
 def escape_surrogates(text: str) -> str:
-    """Return text in which halves of characters (lone surrogates, which no UTF-8 holds) are written out."""
+    """Return the text with lone surrogates, which UTF-8 cannot encode, written as escapes."""
     try:
         text.encode()
     except UnicodeEncodeError:

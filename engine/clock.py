@@ -1,9 +1,9 @@
-"""Time of a run: the real clock, or a virtual one that jumps to the next thing that is due.
+"""The time of a run: real time, or virtual time that jumps to the next timer.
 
-The event loop is the clock: `RealClock` and `VirtualClock` only read its time. Under a
-`VirtualLoop` nothing waits: when no callback is ready, time jumps to the next timer, and every
-simulation attached to the loop is stepped up to there first. Time stands still while worker
-threads are at work, so their results arrive at a definite instant.
+The event loop is the clock: `LoopClock` only reads its time. A `VirtualLoop` never waits:
+when no callback is ready, time jumps to the next timer, and every simulation attached to the
+loop is stepped up to it first. Virtual time is frozen while worker threads work, so their
+results arrive at a definite instant.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _log = logging.getLogger(__name__)
 
 
 class Clock(Protocol):
-    """What states, runs and devices ask for time."""
+    """The clock of states, runs and devices."""
 
     @property
     def virtual(self) -> bool:
-        """True when time passes only as fast as the work that needs it."""
+        """True when time is virtual and passes without waiting."""
         ...
 
     def now_s(self) -> float:
@@ -37,42 +37,42 @@ class Clock(Protocol):
         ...
 
     def sleep(self, duration_s: float) -> Coroutine[Any, Any, None]:
-        """Let `duration_s` pass; 0 lets everything that is ready run first."""
+        """Wait for `duration_s`; 0 lets all ready callbacks run first."""
         ...
 
 
 class LockstepSimulation(Protocol):
-    """A simulation that advances only when the virtual loop lets time pass."""
+    """A simulation that advances only with the time of the virtual loop."""
 
     @property
     def busy(self) -> bool:
-        """True while it can still wake somebody."""
+        """True while it may still schedule a callback."""
         ...
 
     def advance(self, until_s: float) -> float:
-        """Step towards `until_s` (may be infinite); return early once a callback was scheduled."""
+        """Step towards `until_s` (may be infinite); return early when a callback was scheduled."""
         ...
 
 
 Rank = tuple[int, bool]
-"""How deep inside of others something is that decides, and whether it is the thing itself and not what is around it."""
+"""The nesting depth of a node that decides, and whether it is the node itself and not its container."""
 
 _ONE_STEP = (None,)
 _GRID_S = 1e-9
 _CLOSING_S = 60.0
-"""How long, in virtual time, a task may take to end after it was cancelled because the loop is closed."""
+"""Time limit, in virtual time, for cancelled tasks to end when the loop is closed."""
 _LEAP_S = 0.25
-"""How far a simulation is stepped at a time before the loop looks outside again."""
+"""Maximum simulated time before the loop polls signals and sockets again."""
 
 
 class VirtualTimeDeadlock(FlexcellError):
-    """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
+    """Virtual time cannot advance: no timer is set, no simulation is busy, no thread works."""
 
 
 class OneTurn(Coroutine[None, None, None]):
-    """Lets everything that is ready run first: what `asyncio.sleep(0)` does, at less cost.
+    """Lets all ready callbacks run first, as `asyncio.sleep(0)` does, at less cost.
 
-    Whoever awaits it goes through no frame of its own, neither to wait nor when he is woken.
+    Awaiting it adds no coroutine frame, neither when waiting nor when resumed.
     """
 
     __slots__ = ("_steps",)
@@ -80,7 +80,7 @@ class OneTurn(Coroutine[None, None, None]):
     __await__ = staticmethod(partial(iter, _ONE_STEP))  # pyright: ignore[reportAssignmentType]
 
     def send(self, value: None, /) -> None:
-        """Take a step: a task carries it so."""
+        """Advance one step; called by the task."""
         try:
             steps = self._steps
         except AttributeError:
@@ -88,15 +88,15 @@ class OneTurn(Coroutine[None, None, None]):
         return next(steps)
 
     def throw(self, error: Any, value: object = None, trace: object = None, /) -> NoReturn:
-        """Raise the error: there is nothing to clean up."""
+        """Raise the error; there is nothing to clean up."""
         raise value if isinstance(value, BaseException) else error
 
     def close(self) -> None:
-        """Be done; nothing is open."""
+        """Do nothing; there is nothing to close."""
 
 
 class LoopClock:
-    """The time of the running event loop, counted from the clock's making."""
+    """The time of the running event loop since the clock was created."""
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -108,16 +108,16 @@ class LoopClock:
         return isinstance(self._loop, VirtualLoop)
 
     def now_s(self) -> float:
-        """Seconds since the clock was made, or since the virtual loop started."""
+        """Seconds since the clock was created, or since the virtual loop started."""
         return self._loop.time() - self._start_s
 
     async def sleep(self, duration_s: float) -> None:
-        """Let `duration_s` pass."""
+        """Wait for `duration_s`."""
         await asyncio.sleep(duration_s)
 
 
 class _JumpingSelector(selectors.BaseSelector):
-    """Polls real files without waiting and lets virtual time pass instead."""
+    """Polls real files without waiting and advances virtual time instead."""
 
     def __init__(self) -> None:
         self._real = selectors.DefaultSelector()
@@ -148,10 +148,10 @@ class _JumpingSelector(selectors.BaseSelector):
 
 
 class _Instant(float):
-    """A time on the grid of nanoseconds; of two equal ones the one asked for first comes first.
+    """A time on a grid of nanoseconds; equal times are ordered by the order of their requests.
 
-    The heap of asyncio orders equal times by chance: by which other timers there are. Sums of
-    floats that mean the same instant differ in the last bit. Neither may decide what a run does.
+    The heap of asyncio orders equal times depending on the other timers. Sums of floats for the
+    same instant differ in the last bit. Neither may affect a run.
     """
 
     __slots__ = ("order",)
@@ -164,7 +164,7 @@ class _Instant(float):
 
 
 class VirtualLoop(asyncio.SelectorEventLoop):
-    """An event loop whose time jumps; make it with `run_virtual`."""
+    """An event loop with virtual time; run it with `run_virtual`."""
 
     def __init__(self) -> None:
         self._jumping = _JumpingSelector()
@@ -178,38 +178,38 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._idle_waiters: list[tuple[Rank, asyncio.Future[None]]] = []
 
     def time(self) -> float:
-        """Virtual seconds since the loop was made."""
+        """Virtual seconds since the loop was created."""
         return self._now_s
 
     def call_at(
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> asyncio.TimerHandle:
-        """Call back at `when`, to the nanosecond; at one instant in the order of asking."""
+        """Call back at `when`, rounded to nanoseconds; callbacks of one instant run in the order of their requests."""
         instant = _Instant(round(when * 1e9) / 1e9 if math.isfinite(when) else when)
         instant.order = self._timers = self._timers + 1
         return super().call_at(instant, callback, *args, context=context)
 
     def attach(self, simulation: LockstepSimulation) -> None:
-        """Step `simulation` along with time from now on."""
+        """Step `simulation` with virtual time."""
         self._stepped.append(simulation)
 
     def detach(self, simulation: LockstepSimulation) -> None:
-        """Stop stepping it."""
+        """Stop stepping `simulation`."""
         self._stepped.remove(simulation)
 
     def expect_outside(self, change: int) -> None:
-        """Count (+1) or discount (-1) something real that will wake the loop, such as a server."""
+        """Add (+1) or remove (-1) a real source that will wake the loop, such as a server."""
         self._outside += change
 
     def expects_more_than(self, timers: int) -> bool:
-        """Tell whether anything but so many timers can bring something about."""
+        """Return whether anything besides `timers` timers can wake the loop."""
         if self._working or self._outside or any(simulation.busy for simulation in self._stepped):
             return True
-        due: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - asyncio's own, of no public name
-        return sum(not each.cancelled() for each in due) > timers
+        scheduled: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - private to asyncio
+        return sum(not each.cancelled() for each in scheduled) > timers
 
     async def idle(self, rank: Rank) -> None:
-        """Return when nothing more is ready at this instant; the waiter of the highest rank goes first, alone."""
+        """Return when no callback is ready at this instant; the waiter of the highest rank is resumed first, alone."""
         waiter: asyncio.Future[None] = self.create_future()
         entry = (rank, waiter)
         self._idle_waiters.append(entry)
@@ -221,7 +221,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     def run_in_executor(  # type: ignore[override]
         self, executor: Executor | None, func: Callable[..., T], *args: Any
     ) -> asyncio.Future[T]:
-        """Run in a thread while virtual time stands still."""
+        """Run in a thread while virtual time is frozen."""
         self._working += 1
         future = super().run_in_executor(executor, func, *args)
         future.add_done_callback(self._work_done)
@@ -231,12 +231,12 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._working -= 1
 
     def _pass_time(self, timeout_s: float | None) -> float | None:
-        """Let time pass up to the next timer; return how long to really wait for files."""
+        """Advance virtual time to the next timer; return the real time to wait for files."""
         if self._working:
             return None
-        due = [entry for entry in self._idle_waiters if not entry[1].done()]
-        if due:
-            max(due, key=lambda entry: entry[0])[1].set_result(None)
+        idle = [entry for entry in self._idle_waiters if not entry[1].done()]
+        if idle:
+            max(idle, key=lambda entry: entry[0])[1].set_result(None)
             return 0
         target_s = math.inf if timeout_s is None else self._now_s + timeout_s
         busy = [simulation for simulation in self._stepped if simulation.busy]
@@ -246,25 +246,25 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             self.call_soon(self._nothing_can_wake)
             return 0
         if self._stepped:
-            # In long waits the loop must still look at signals and sockets now and then.
+            # In long waits the loop must still poll signals and sockets.
             target_s = min(target_s, self._now_s + _LEAP_S)
-        # Simulations that are not busy still take part: parts fall while a behavior sleeps.
+        # Simulations that are not busy are stepped too: parts fall while a behavior sleeps.
         for simulation in self._stepped if not math.isinf(target_s) else busy:
             target_s = min(target_s, simulation.advance(target_s))
         self._now_s = max(self._now_s, target_s)
-        # What is added to the time to find what is due must change it, also after months.
+        # The clock resolution, added to the time to find due timers, must change it even after months.
         self._clock_resolution = max(_GRID_S, math.ulp(self._now_s))
         return 0
 
     def _nothing_can_wake(self) -> None:
         waiting = sorted(task.get_name() for task in asyncio.all_tasks(self) if not task.done())
         error = VirtualTimeDeadlock(
-            f"nothing can happen any more at t={self._now_s:.3f} s",
-            hint=f"waiting for ever: {', '.join(waiting)}",
+            f"virtual time cannot advance at t={self._now_s:.3f} s: every task waits and no timer is set",
+            hint=f"waiting: {', '.join(waiting)}",
         )
-        told, self.when_stuck = self.when_stuck, None
-        if told is not None:
-            told(error)
+        when_stuck, self.when_stuck = self.when_stuck, None
+        if when_stuck is not None:
+            when_stuck(error)
             return
         main = self._main_task
         if main is not None and not main.done():
@@ -276,13 +276,13 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     _main_task: asyncio.Task[Any] | None = None
     stuck: VirtualTimeDeadlock | None = None
     when_stuck: Callable[[VirtualTimeDeadlock], None] | None = None
-    """Called the first time that nothing can wake, instead of cancelling the main task."""
+    """Called at the first deadlock, instead of cancelling the main task."""
 
     def run_main(self, main: Coroutine[Any, Any, T]) -> T:
-        """Run `main` to its end, then cancel what it left behind; what takes no notice of that is named in the log.
+        """Run `main` to its end, then cancel the remaining tasks; a task that does not end is named in the log.
 
         Raises:
-            VirtualTimeDeadlock: everything waits and nothing is due.
+            VirtualTimeDeadlock: every task waits and no timer is set.
         """
         asyncio.set_event_loop(self)
         try:
@@ -298,15 +298,13 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def _close_down(self) -> None:
         self._outside += 1  # the executor's threads report their end from outside
-        left = asyncio.all_tasks(self)
-        for task in left:
+        remaining = asyncio.all_tasks(self)
+        for task in remaining:
             task.cancel()
-        if left:
-            _, deaf = self.run_until_complete(asyncio.wait(left, timeout=_CLOSING_S))
-            for task in deaf:
-                _log.error(
-                    "the virtual loop is closed over %s, which does not end when it is cancelled", task.get_name()
-                )
+        if remaining:
+            _, unfinished = self.run_until_complete(asyncio.wait(remaining, timeout=_CLOSING_S))
+            for task in unfinished:
+                _log.error("the virtual loop is closed while %s has not ended after its cancellation", task.get_name())
         self.run_until_complete(self.shutdown_asyncgens())
         self.run_until_complete(self.shutdown_default_executor())
         asyncio.set_event_loop(None)
@@ -314,7 +312,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
 
 def run_virtual(main: Coroutine[Any, Any, T]) -> T:
-    """Run a coroutine on a fresh virtual loop: hours pass in milliseconds, twice the same."""
+    """Run a coroutine on a new virtual loop: hours pass in milliseconds, and runs are repeatable."""
     return VirtualLoop().run_main(main)
 
 

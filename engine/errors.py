@@ -1,15 +1,15 @@
-"""The one family of errors: each says what failed, where, and what the reader can do."""
+"""The errors of the project: each states what failed, where, and what to do."""
 
 from __future__ import annotations
 
 import msgspec
 
 CONNECT_AGAIN = "connect the cell again: `flexcell cell connect`, or Connect on the page"
-"""What to do about a lost device."""
+"""The hint for a lost device."""
 
 
 class Position(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """A place in a source file; lines and columns count from 1."""
+    """A position in a source file; lines and columns count from 1."""
 
     file: str
     line: int
@@ -20,12 +20,12 @@ class Position(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 class FlexcellError(Exception):
-    """Root of every error this project raises on purpose.
+    """Base of all errors that this project raises on purpose.
 
     Args:
         message: What happened, in one line.
-        where: The file position, node path, device or frame it is about.
-        hint: What the reader can do about it.
+        where: The file position, node path, device or frame of the error.
+        hint: What to do about it.
     """
 
     def __init__(self, message: str, *, where: object | None = None, hint: str | None = None) -> None:
@@ -34,7 +34,7 @@ class FlexcellError(Exception):
         self.where = where
         self.hint = hint
         self.nodes: tuple[str, ...] = ()
-        """The nodes of a behavior that it came through, `path at file:line:column`, innermost first."""
+        """The nodes of the behavior that the error passed through, `path at file:line:column`, innermost first."""
 
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where is not None else ""
@@ -46,7 +46,7 @@ class DocumentError(FlexcellError):
     """A behavior, cell or entries document cannot be used; `where` is a `Position`."""
 
     others: tuple[DocumentError, ...] = ()
-    """The other mistakes of the same document, where this is the first of several."""
+    """The other errors of the same document, when this is the first of several."""
 
 
 class ExpressionError(FlexcellError):
@@ -62,23 +62,23 @@ class StateError(FlexcellError):
 
 
 class NotStopped(StateError):
-    """A node was told to stop and has not in time; it was abandoned, and what it commands stays leased."""
+    """A node did not stop in time and was abandoned; the resources that it commands stay leased."""
 
 
 class ControlError(FlexcellError):
-    """A command of the operator cannot be carried out; nothing has changed."""
+    """A command of the operator cannot be executed; nothing has changed."""
 
 
 class RegistryError(FlexcellError):
-    """A name resolves to no state, robot or store."""
+    """A name does not resolve to a state, robot or store."""
 
 
 class ModuleNotAllowed(RegistryError):
-    """A document names a class of a module that the project does not allow; nothing was imported."""
+    """A document names a class of a module that the project does not allow; the module was not imported."""
 
 
 class BusError(FlexcellError):
-    """Root of everything the skill bus refuses."""
+    """Base of all errors of the skill bus."""
 
 
 class HandlerNotTyped(BusError):
@@ -90,21 +90,21 @@ class NoSuchSkill(BusError):
 
 
 class LeaseRefused(BusError):
-    """A resource is held by somebody else; the message names the holder."""
+    """A resource is leased by another holder; the message names it."""
 
 
 class GoalRejected(BusError):
-    """An action server refused a goal before executing any of it."""
+    """An action server rejected a goal before executing it."""
 
 
 class SkillFailed(BusError):
-    """A skill was accepted and could not be carried out; `result` is what it says all the same, as in `GoalEnd`."""
+    """A skill was accepted and failed; `result` is its partial result, as in `GoalEnd`."""
 
     result: object | None = None
 
 
 class StoreError(FlexcellError):
-    """The store refused or lost something."""
+    """A store refused a request, is damaged, or cannot be accessed."""
 
 
 class EntryNotFound(StoreError):
@@ -120,11 +120,11 @@ class JournalError(FlexcellError):
 
 
 class RecordingError(FlexcellError):
-    """A recording cannot be begun, read or replayed; `where` is the file."""
+    """A recording cannot be started, read or replayed; `where` is the file."""
 
 
 class CellError(FlexcellError):
-    """A cell document names something that cannot be built or connected."""
+    """A cell document names an element that cannot be built or connected."""
 
 
 class RobotError(FlexcellError):
@@ -132,4 +132,4 @@ class RobotError(FlexcellError):
 
 
 class PathBlocked(RobotError):
-    """Something of the planning scene is in the way of a motion that looks for no other; the message names both."""
+    """An obstacle of the planning scene blocks the path of a motion without replanning; the message names both."""

@@ -1,7 +1,7 @@
-"""Events: the frozen facts of a run, the only thing journal, browser and replay ever see.
+"""Events: the immutable facts of a run, the only input of journal, browser and replay.
 
 `time_s` is the run's own clock (0 at the start); `seq` counts from 1 without gaps. `path` is the
-node path `root/approach/left`; `visit` counts the activations of that path in this run.
+node path, such as `root/approach/left`; `visit` counts the activations of that path in this run.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import msgspec
 
 
 class Cause(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One link of the chain that explains a failure; `because` is the link below it.
+    """One link of the cause chain of a failure; `because` is the next link towards the root cause.
 
-    `nodes` is the way an error took through the behavior, `path at file:line:column`, innermost first.
+    `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first.
     """
 
     message: str
@@ -31,7 +31,7 @@ class Cause(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         return tuple(links)
 
 
-# None of them can be part of a circle, and a server keeps hundreds of thousands: the collector need not look at them.
+# Events cannot be part of a reference cycle, and a server keeps hundreds of thousands: the collector can skip them.
 class Event(msgspec.Struct, frozen=True, tag_field="event", gc=False):
     """One fact of a run."""
 
@@ -40,7 +40,7 @@ class Event(msgspec.Struct, frozen=True, tag_field="event", gc=False):
 
 
 class RunStarted(Event, frozen=True, kw_only=True, tag="run_started"):
-    """The run begins; `document` is the content hash of the behavior's meaning."""
+    """The run started; `document` is the semantic hash of the behavior."""
 
     behavior: str
     document: str
@@ -60,7 +60,7 @@ class NodeEntered(Event, frozen=True, kw_only=True, tag="entered"):
 
 
 class NodeExited(Event, frozen=True, kw_only=True, tag="exited", omit_defaults=True):
-    """A node finished with an outcome; `preempted` when it was told to stop instead."""
+    """A node ended with an outcome, or was `preempted`."""
 
     path: str
     visit: int
@@ -70,7 +70,7 @@ class NodeExited(Event, frozen=True, kw_only=True, tag="exited", omit_defaults=T
 
 
 class UserdataWritten(Event, frozen=True, kw_only=True, tag="userdata", omit_defaults=True):
-    """A node wrote `key` into the scope of the container `scope`, or a post-condition of it did, which `post` names."""
+    """A node, or its post-condition named by `post`, wrote `key` into the scope of the container `scope`."""
 
     path: str
     scope: str
@@ -89,7 +89,7 @@ class UserdataAppended(Event, frozen=True, kw_only=True, tag="userdata_appended"
 
 
 class TransitionTaken(Event, frozen=True, kw_only=True, tag="transition"):
-    """Machine `path` follows the outcome of `source` to `target`, a child or an own outcome."""
+    """State machine `path` takes the transition of `source` to `target`, a child or an outcome of its own."""
 
     path: str
     source: str
@@ -107,7 +107,7 @@ class GoalSent(Event, frozen=True, kw_only=True, tag="goal"):
 
 
 class GoalFinished(Event, frozen=True, kw_only=True, tag="goal_finished", omit_defaults=True):
-    """The goal ended: succeeded, canceled, aborted or rejected."""
+    """A goal ended: succeeded, canceled, aborted or rejected."""
 
     path: str
     goal: str
@@ -117,21 +117,21 @@ class GoalFinished(Event, frozen=True, kw_only=True, tag="goal_finished", omit_d
 
 
 class GoalHeld(Event, frozen=True, kw_only=True, tag="goal_held"):
-    """The device confirmed that it is at rest and keeps the goal."""
+    """The device confirmed rest and keeps the goal."""
 
     path: str
     goal: str
 
 
 class GoalResumed(Event, frozen=True, kw_only=True, tag="goal_resumed"):
-    """A goal that was held goes on."""
+    """A held goal was resumed."""
 
     path: str
     goal: str
 
 
 class ServiceCalled(Event, frozen=True, kw_only=True, tag="call"):
-    """A state asked a service; `call` numbers the calls of one activation, from 1."""
+    """A state called a service; `call` numbers the calls of one activation from 1."""
 
     path: str
     call: str
@@ -140,7 +140,7 @@ class ServiceCalled(Event, frozen=True, kw_only=True, tag="call"):
 
 
 class ServiceAnswered(Event, frozen=True, kw_only=True, tag="answer", omit_defaults=True):
-    """The service answered, or failed with `cause`."""
+    """The service responded, or failed with `cause`."""
 
     path: str
     call: str
@@ -167,9 +167,9 @@ class NodeDiverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaul
 
 
 class BranchesPreempted(Event, frozen=True, kw_only=True, tag="branches_preempted"):
-    """A condition of concurrency container `path` holds that preempts some branches, while the others go on.
+    """A condition of concurrency container `path` preempts some branches while the others continue.
 
-    `branches` are those of them that had not ended; each counts as ended, without an outcome, when it has cleaned up.
+    `branches` are the preempted branches that had not ended; each has ended, without an outcome, after its clean-up.
     """
 
     path: str
@@ -178,10 +178,10 @@ class BranchesPreempted(Event, frozen=True, kw_only=True, tag="branches_preempte
 
 
 class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
-    """A composite or decorator of a behavior tree has another status: success, failure, running, skipped or invalid.
+    """The status of a behavior tree node changed: success, failure, running, skipped or invalid.
 
-    A leaf is invalid when it is halted, or its end counts no more; running when it has ended and a tick has not come to
-    it, as the condition of a `while_do_else` around it is running. When one comes to it at last, its status is told.
+    A leaf is invalid when it is halted or its result is discarded. It is running when it has ended but is not ticked
+    because the condition of an enclosing `while_do_else` is running; its status is reported at its next tick.
     """
 
     path: str
@@ -189,7 +189,7 @@ class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
 
 
 class OperatorCommanded(Event, frozen=True, kw_only=True, tag="command"):
-    """The operator commanded something; `command` is a name of `engine.runtime.control.Control`."""
+    """A command of the operator; `command` is a name of `engine.runtime.control.Control`."""
 
     command: str
     path: str
@@ -197,7 +197,7 @@ class OperatorCommanded(Event, frozen=True, kw_only=True, tag="command"):
 
 
 class GateReached(Event, frozen=True, kw_only=True, tag="gate", omit_defaults=True):
-    """A node waits `before` its entry or `after` its outcome, for one of `reasons`."""
+    """A node waits `before` its entry or `after` its outcome because of `reasons`."""
 
     path: str
     visit: int
@@ -207,7 +207,7 @@ class GateReached(Event, frozen=True, kw_only=True, tag="gate", omit_defaults=Tr
 
 
 class GatePassed(Event, frozen=True, kw_only=True, tag="gate_passed"):
-    """It waits no longer."""
+    """The node continues after the gate."""
 
     path: str
     visit: int
@@ -215,7 +215,7 @@ class GatePassed(Event, frozen=True, kw_only=True, tag="gate_passed"):
 
 
 class OutcomeRequested(Event, frozen=True, kw_only=True, tag="outcome_requested"):
-    """The run's autonomy is below what `outcome` requires; the operator is asked once."""
+    """The run's autonomy is below the level that `outcome` requires; the operator is asked once."""
 
     path: str
     visit: int
@@ -224,7 +224,7 @@ class OutcomeRequested(Event, frozen=True, kw_only=True, tag="outcome_requested"
 
 
 class OutcomeWithdrawn(Event, frozen=True, kw_only=True, tag="outcome_withdrawn"):
-    """The question of `OutcomeRequested` has become void, answered or not."""
+    """The request of `OutcomeRequested` is withdrawn or has been answered."""
 
     path: str
     visit: int
@@ -232,24 +232,24 @@ class OutcomeWithdrawn(Event, frozen=True, kw_only=True, tag="outcome_withdrawn"
 
 
 class PauseConfirmed(Event, frozen=True, kw_only=True, tag="pause_confirmed", omit_defaults=True):
-    """Everything that was to be held is at rest; `cannot` names goals that cannot be held."""
+    """All held goals are at rest; `cannot` names the goals that cannot be held."""
 
     cannot: tuple[str, ...] = ()
 
 
 class OperatorChanged(Event, frozen=True, kw_only=True, tag="operator"):
-    """The operator is `attached`, `detached` or `lost`."""
+    """The operator's status changed to `attached`, `detached` or `lost`."""
 
     status: str
 
 
 class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed", omit_defaults=True):
-    """A new version of the document took the place of the running one; `report` has a line for each change.
+    """A new version of the document replaced the running one; `report` has a line for each change.
 
-    `restarted` are the active nodes that are preempted and entered anew, `removed` the branches of active concurrency
-    containers that are gone; `preempt` says that the operator wanted that. `replaced` are the nodes of the old version
-    that are of another class or kind now. `documents` are the texts of the version,
-    where they can be kept, and `behavior` is the name of the behavior among them.
+    `restarted` are the active nodes that are preempted and entered again, `removed` the removed branches of active
+    concurrency containers; `preempt` is true when the operator allowed that. `replaced` are the nodes of the old
+    version whose class or kind has changed. `documents` are the texts of the new version,
+    when they can be stored, and `behavior` names the behavior among them.
     """
 
     document: str
@@ -263,7 +263,7 @@ class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed", 
 
 
 class UndoStarted(Event, frozen=True, kw_only=True, tag="undo_began"):
-    """A step back began to undo a state: what its activation `undoes` had done; `visit` numbers the undoing."""
+    """A step back started to undo activation `undoes` of a state; `visit` numbers the undo."""
 
     path: str
     visit: int
@@ -271,7 +271,7 @@ class UndoStarted(Event, frozen=True, kw_only=True, tag="undo_began"):
 
 
 class UndoEnded(Event, frozen=True, kw_only=True, tag="undo_ended", omit_defaults=True):
-    """It is undone; not where it failed with `cause`, or was `preempted`."""
+    """The undo ended: done, failed with `cause`, or `preempted`."""
 
     path: str
     visit: int
@@ -281,7 +281,7 @@ class UndoEnded(Event, frozen=True, kw_only=True, tag="undo_ended", omit_default
 
 
 class FormerValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What `key` of the scope of a container held before what was taken back; not `defined` where it held nothing."""
+    """The restored value of `key` in the scope of a container; `defined` is false when it had no value."""
 
     scope: str
     key: str
@@ -290,10 +290,11 @@ class FormerValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
 
 
 class RunSteppedBack(Event, frozen=True, kw_only=True, tag="stepped_back", omit_defaults=True):
-    """The run stands before the entry of `path` again, `source` having been given up for that.
+    """The run stepped back to before the entry of `path` and abandoned `source`.
 
-    `values` are in userdata again. `went_wrong` and `reason` are what the container knew then of the course of its
-    children. With `cause` it was not possible: something may have been undone, and it stands where it was.
+    `values` are restored in userdata. `went_wrong` and `reason` are the causes that the container had recorded of its
+    children at that time. With `cause` the step back failed: some states may have been undone, and the run stays where
+    it was.
     """
 
     path: str
@@ -305,7 +306,7 @@ class RunSteppedBack(Event, frozen=True, kw_only=True, tag="stepped_back", omit_
 
 
 class RunResumed(Event, frozen=True, kw_only=True, tag="resumed"):
-    """The run goes on after its engine died; nodes in `rerun` are entered again, others took an outcome."""
+    """The run was resumed after its engine died; nodes in `rerun` are entered again, others got an outcome."""
 
     after_seq: int
     epoch: int
@@ -322,7 +323,7 @@ class FaultInjected(Event, frozen=True, kw_only=True, tag="fault", omit_defaults
 
 
 class LoopBlocked(Event, frozen=True, kw_only=True, tag="loop_blocked"):
-    """A state kept the event loop from running: every other state had to wait."""
+    """A state blocked the event loop; all other states had to wait."""
 
     path: str
     blocked_s: float
@@ -330,14 +331,14 @@ class LoopBlocked(Event, frozen=True, kw_only=True, tag="loop_blocked"):
 
 
 class NodeAbandoned(Event, frozen=True, kw_only=True, tag="abandoned"):
-    """A node did not confirm in time that it stopped; the run goes on without it."""
+    """A node did not stop in time and was abandoned; the run continues without it."""
 
     path: str
     waited_s: float
 
 
 class MessageLogged(Event, frozen=True, kw_only=True, tag="log"):
-    """A state or the runner says something; `level` is debug, info, warning or error."""
+    """A log message of a state or the runner; `level` is debug, info, warning or error."""
 
     path: str
     level: str
@@ -354,13 +355,13 @@ class NodeRetried(Event, frozen=True, kw_only=True, tag="retry"):
 
 
 class StopRequested(Event, frozen=True, kw_only=True, tag="stop"):
-    """Somebody asked the run to stop."""
+    """A stop of the run was requested."""
 
     reason: str
 
 
 class RunEnded(Event, frozen=True, kw_only=True, tag="run_ended", omit_defaults=True):
-    """The run is over; `status` is finished, stopped or errored."""
+    """The run ended; `status` is finished, stopped or errored."""
 
     status: str
     outcome: str | None = None

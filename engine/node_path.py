@@ -1,8 +1,8 @@
-"""Paths of nodes: `root/approach/left` lies in `root/approach`."""
+"""Node paths: `root/approach/left` is inside `root/approach`."""
 
 from __future__ import annotations
 
 
 def is_inside(outer: str, path: str) -> bool:
-    """Tell whether `path` is `outer` or lies in it."""
+    """Return whether `path` is `outer` or inside it."""
     return path == outer or path.startswith(f"{outer}/")

@@ -1,7 +1,7 @@
-"""Preempting tasks: asked once, in order, and waited for until their clean-up is done.
+"""Preemption of tasks: each is cancelled once, in order, and awaited until its clean-up ends.
 
-A task hears of it once: whoever asks while it cleans up waits for the same clean-up. A task that an order of the
-operator preempts goes on after it, unless somebody else has asked meanwhile.
+A task is cancelled once: a second preemption during its clean-up waits for the same clean-up. A task that is preempted
+by an order of the operator continues after its clean-up, unless it has been preempted for another reason meanwhile.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from typing import Any
 from engine.errors import NotStopped
 
 OVERDUE_S = 5.0
-"""How long a clean-up may take before somebody is told, and then again and again."""
+"""Duration of a clean-up after which it is reported, and the period of further reports."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class OverduePolicy:
-    """What becomes of tasks that take their time: `tell` names them, `abandon` says that they are given up.
+    """Handling of tasks that do not end in time: `tell` reports them, `abandon` is called when one is abandoned.
 
     Time in which a task `stands_still`, as in a pause, is not counted.
     """
@@ -33,40 +33,40 @@ class OverduePolicy:
 
 
 _ASKED: set[asyncio.Task[Any]] = set()
-"""The tasks that were asked to end and have not; what a state does with its own count of cancels does not matter."""
+"""The preempted tasks that have not ended; independent of a task's own cancellation count, which a state may change."""
 _FOR_ORDERS: set[asyncio.Task[Any]] = set()
-"""Those of them that clean up for an order, and are to go on."""
+"""Those of them that clean up for an order and continue afterwards."""
 
 
 def being_cancelled(loop: asyncio.AbstractEventLoop) -> bool:
-    """Tell whether the running branch has been asked to stop.
+    """Return whether the running branch is preempted.
 
     Args:
-        loop: The running one, which to find out costs more than the rest of a state that ends at once.
+        loop: The running loop; looking it up would dominate the cost of a state that ends at once.
     """
     task = current_task(loop)
     return task is not None and (task.cancelling() > 0 or task in _ASKED)
 
 
 def is_preempted(task: asyncio.Task[Any]) -> bool:
-    """Tell whether a task was asked to end and has not."""
+    """Return whether a task is preempted and has not ended."""
     return task in _ASKED
 
 
 def preempt_for_order(task: asyncio.Task[Any]) -> None:
-    """Ask a task to clean up for an order, unless it does already; see `take_order_preemption`."""
+    """Preempt a task for an order, unless it is already preempted; see `take_order_preemption`."""
     if _ask(task):
         _FOR_ORDERS.add(task)
 
 
 def preempt_finally(task: asyncio.Task[Any]) -> None:
-    """Ask a task to clean up and end; a clean-up for an order is the one that it ends with."""
+    """Preempt a task for good; an active clean-up for an order becomes its last one."""
     _ask(task)
     _FOR_ORDERS.discard(task)
 
 
 def take_order_preemption() -> bool:
-    """Tell, once and after its clean-up, whether the running branch was preempted by an order and by nothing else."""
+    """Return, once after the clean-up, whether the running branch was preempted only by an order."""
     task = asyncio.current_task()
     if task is None or task not in _FOR_ORDERS:
         return False
@@ -95,16 +95,16 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: OverduePolicy) ->
     """Cancel the unfinished tasks once, in the order given, and wait for all of them to end.
 
     Args:
-        tasks: The tasks; their exceptions count as seen, whoever asked for the stop raises them with `raise_failure`.
-        overdue: Told the name and the seconds waited of each task that takes its time.
+        tasks: The tasks; their exceptions are marked as retrieved, the caller raises them with `raise_failure`.
+        overdue: Receives the name and the waited seconds of each overdue task.
 
     Raises:
-        NotStopped: some have not ended in time and were abandoned; names them.
-        CancelledError: the caller was cancelled meanwhile; the tasks have ended all the same.
+        NotStopped: tasks have not ended in time and were abandoned; the message names them.
+        CancelledError: the caller was cancelled meanwhile; the tasks have ended nevertheless.
     """
-    asked = tuple(tasks)
-    unfinished = {task for task in asked if not task.done()}
-    for task in asked:
+    preempted = tuple(tasks)
+    unfinished = {task for task in preempted if not task.done()}
+    for task in preempted:
         preempt_finally(task)
     cancelled: asyncio.CancelledError | None = None
     waited_s = 0.0
@@ -121,28 +121,28 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: OverduePolicy) ->
         if waited_s < overdue.abandon_after_s:
             for late in sorted(task.get_name() for task in unfinished):
                 overdue.tell(late, waited_s)
-    late_tasks = [task for task in asked if task in unfinished]
+    late_tasks = [task for task in preempted if task in unfinished]
     for task in late_tasks:
         overdue.abandon(task, waited_s)
-    for task in asked:
+    for task in preempted:
         if task.done() and not task.cancelled():
             task.exception()
     if late_tasks:
         names = ", ".join(task.get_name() for task in late_tasks)
         raise NotStopped(
             f"{names} did not stop within {waited_s:g} s and was abandoned",
-            hint="let the state's clean-up end, and CancelledError pass",
+            hint="end the state's clean-up in time and do not suppress CancelledError",
         )
     if cancelled is not None:
         raise cancelled
 
 
 class BackgroundPreemptions:
-    """Preemptions that others go on beside, each bounded and told of as `preempt` does it.
+    """Preemptions that run in the background, each limited and reported as by `preempt`.
 
     Args:
-        overdue: What becomes of tasks that take their time.
-        on_failure: Called when a task was abandoned; `raise_failure` raises what it is about.
+        overdue: Handling of overdue tasks.
+        on_failure: Called when a task was abandoned; `raise_failure` raises its error.
     """
 
     def __init__(self, overdue: OverduePolicy, on_failure: Callable[[], None]) -> None:
@@ -151,11 +151,11 @@ class BackgroundPreemptions:
         self._waits: dict[asyncio.Task[Any], asyncio.Task[None]] = {}
 
     def __contains__(self, task: asyncio.Task[Any]) -> bool:
-        """Tell whether a task is preempted by this."""
+        """Return whether a task is preempted by this object."""
         return task in self._waits
 
     def begin(self, task: asyncio.Task[Any]) -> None:
-        """Ask a task to clean up and end, unless it was asked before."""
+        """Preempt a task, unless it was preempted before."""
         if task in self._waits:
             return
         preempt_finally(task)
@@ -168,11 +168,11 @@ class BackgroundPreemptions:
         raise_failure(wait for wait in self._waits.values() if wait.done())
 
     async def finish(self, tasks: Iterable[asyncio.Task[Any]]) -> None:
-        """Return when those of some tasks that are preempted by this have ended.
+        """Return when those of `tasks` that are preempted by this object have ended.
 
         Raises:
             NotStopped: a task was abandoned.
-            CancelledError: the caller was cancelled meanwhile; the tasks have ended all the same.
+            CancelledError: the caller was cancelled meanwhile; the tasks have ended nevertheless.
         """
         waits = [self._waits[task] for task in tasks if task in self._waits]
         cancelled: asyncio.CancelledError | None = None
@@ -191,7 +191,7 @@ class BackgroundPreemptions:
 
 
 def raise_failure(tasks: Iterable[asyncio.Task[Any]]) -> None:
-    """Raise the error, with its own cause, of the first of these tasks, all ended, that has one."""
+    """Raise the error, with its cause, of the first of these ended tasks that has one."""
     for task in tasks:
         if not task.cancelled() and (error := task.exception()) is not None:
             raise error from error.__cause__

@@ -1,10 +1,10 @@
 """Finds states, worlds, drivers and servers by name, through the entry points of installed packages.
 
 Groups: `flexcell.states` (a mapping of state name → class), `flexcell.worlds` and
-`flexcell.drivers` (a maker per `kind`), `flexcell.servers`, `flexcell.models` (see
-`engine.cell.robot_models`). A user's own states stand in modules that the project file allows, and are
-found as `module:Class`. `load_states` is the one place where such modules are imported: at the
-start of a command or server, never because a document names them.
+`flexcell.drivers` (a factory per `kind`), `flexcell.servers`, `flexcell.models` (see
+`engine.cell.robot_models`). A user's own states are in modules that the project file allows, and are
+named `module:Class`. Only `load_states` imports such modules: at the start of a command or server,
+never because a document names them.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ MODELS = "flexcell.models"
 def load_states(start: Path | None = None) -> StateCatalogue:
     """Load the states of installed packages, and those of the modules that a project allows.
 
-    What raises while it is loaded is left out, and named by the catalogue to whoever needs it.
+    A package or module that fails to load is skipped; the catalogue reports its error when it is needed.
 
     Args:
-        start: A file or folder; the nearest project file in its folder or above counts. None for no project.
+        start: A file or folder; the nearest project file in its folder or above is used. None for no project.
 
     Raises:
         DocumentError: the project file is not valid.
@@ -58,7 +58,7 @@ def load_states(start: Path | None = None) -> StateCatalogue:
 
 
 def state_by_path(name: str) -> type[State]:
-    """Import and return the state class that a person at the command line names as `package.module:Class`.
+    """Import and return the state class named `package.module:Class` on the command line.
 
     Raises:
         RegistryError: the module or class does not exist or is not a state.
@@ -83,7 +83,7 @@ def load_factory(group: str, kind: str) -> Any:
     """Return what is registered as `kind` in `group`.
 
     Raises:
-        RegistryError: nothing is; names near ones, or the extra that would bring it.
+        RegistryError: nothing is; suggests similar names, or the extra that provides it.
     """
     points = {point.name: point for point in entry_points(group=group)}
     if kind not in points:
@@ -97,7 +97,7 @@ def load_factory(group: str, kind: str) -> Any:
 
 
 class _Loading:
-    """What has been loaded so far, and what could not be."""
+    """The states loaded so far, and the errors of those that could not be loaded."""
 
     def __init__(self) -> None:
         self.states: dict[str, type[State]] = {}
@@ -115,14 +115,14 @@ class _Loading:
     def add_project(self, project: Project) -> None:
         folder = str(project.folder)
         if folder not in sys.path:
-            # At the end: a module of the project stands in for none of the libraries that are loaded later.
+            # At the end: a module of the project must not shadow a library that is imported later.
             sys.path.append(folder)
         importlib.invalidate_caches()
         for index, name in enumerate(project.document.states):
             loaded = load_isolated(name, partial(_own_module, name, project.folder))
             if isinstance(loaded, LoadFailure):
                 where = project.position(index)
-                self.broken[name] = RegistryError(str(loaded), where=where, hint="mend the module and start again")
+                self.broken[name] = RegistryError(str(loaded), where=where, hint="fix the module and restart")
                 continue
             self.modules[name], states = loaded
             for class_name, state in states.items():
@@ -135,13 +135,13 @@ class _Loading:
         if name in self.broken or (known is not None and known is not state):
             self.states.pop(name, None)
             hint = "rename one of them, or uninstall one package"
-            self.broken[name] = RegistryError(f"two packages offer the state {name}", where=origin, hint=hint)
+            self.broken[name] = RegistryError(f"two packages provide the state {name}", where=origin, hint=hint)
         else:
             self.states[name] = state
 
 
 def _offered(point: EntryPoint) -> dict[str, type[State]]:
-    """Return what an entry point offers, having looked at each: it may be anything."""
+    """Return the states of an entry point after checking their types: it may return anything."""
     offered: dict[str, type[State]] = {}
     for name, state in cast("Mapping[str, object]", point.load()).items():
         if not (isinstance(state, type) and issubclass(state, State)):
@@ -151,7 +151,7 @@ def _offered(point: EntryPoint) -> dict[str, type[State]]:
 
 
 def _own_module(name: str, folder: Path) -> tuple[ModuleType, dict[str, type[State]]]:
-    """Import a module with its states; one of the project's folder must not be hidden by another of its name."""
+    """Import a module with its states; another module of the same name must not shadow that of the project folder."""
     module = importlib.import_module(name)
     path = folder.joinpath(*name.split("."))
     own = [file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
@@ -173,4 +173,4 @@ def _broken_point(point: EntryPoint, failure: LoadFailure) -> RegistryError:
             hint="pip install 'flexcell[all]'",
         )
     package = point.dist.name if point.dist is not None else "its package"
-    return RegistryError(str(failure), where=point.value, hint=f"mend or uninstall {package}")
+    return RegistryError(str(failure), where=point.value, hint=f"fix or uninstall {package}")

@@ -1,8 +1,8 @@
-"""The contract of everything a cell connects: robots, grippers, tools, equipment modules, worlds.
+"""The interface of all devices of a cell: robots, grippers, tools, equipment modules, worlds.
 
-A driver, simulated or real, is a plain class with these members. States never see it: they
-meet its skills on the bus under `name`. It belongs to the cell's event loop; whatever threads
-or processes it needs are its own and end in `__aexit__`.
+A driver, simulated or real, is a plain class with these members. States never access it: they
+use its skills on the bus under `name`. It belongs to the cell's event loop; its threads and
+processes are its own and end in `__aexit__`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from engine.bus import SkillBus
 
 
 class DeviceStatus(Enum):
-    """Where a device stands between unplugged and moving."""
+    """The status of a device."""
 
     DISCONNECTED = "disconnected"
     CONNECTED = "connected"
@@ -28,7 +28,7 @@ class DeviceStatus(Enum):
 
 @runtime_checkable
 class Robot(Protocol):
-    """A device that connects, answers skills, stops and closes."""
+    """A device that connects, serves skills, stops and closes."""
 
     @property
     def name(self) -> str:
@@ -37,7 +37,7 @@ class Robot(Protocol):
 
     @property
     def status(self) -> DeviceStatus:
-        """Where it stands now."""
+        """The present status."""
         ...
 
     def register(self, bus: SkillBus) -> None:
@@ -45,10 +45,10 @@ class Robot(Protocol):
         ...
 
     async def stop(self) -> None:
-        """Decelerate to standstill and return when measured at rest.
+        """Decelerate to rest and return when rest is measured.
 
         Raises:
-            RobotError: standstill could not be confirmed.
+            RobotError: rest could not be confirmed.
         """
         ...
 
@@ -65,41 +65,41 @@ class Robot(Protocol):
 
 @runtime_checkable
 class Reconnectable(Protocol):
-    """A device whose connection can be lost and made anew while the cell stays open."""
+    """A device whose connection can be lost and restored while the cell stays open."""
 
     @property
     def lost_reason(self) -> str:
-        """Why the connection is lost, in words; empty while it stands."""
+        """Why the connection is lost; empty while it is connected."""
         ...
 
     def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell`, on the event loop, when the connection is lost and when it is back."""
+        """Call `tell`, on the event loop, when the connection is lost and when it is restored."""
         ...
 
     async def reconnect(self) -> str:
-        """Connect again under the same names, at rest, and return what is not as it was before, empty for nothing.
+        """Reconnect under the same names, at rest, and return the differences from before, empty for none.
 
-        Skills, topics and leases go on working. Does nothing while the connection stands.
+        Skills, topics and leases stay valid. Does nothing while connected.
 
         Raises:
-            RobotError: it does not come back, with what to check.
+            RobotError: it cannot be reconnected; the hint says what to check.
         """
         ...
 
 
 class World(Robot, Protocol):
-    """Simulated surroundings: makes the simulated robots and publishes scene, frames and parts.
+    """A simulated world: creates the simulated robots and publishes scene, frames and parts.
 
-    A cell that was killed goes on in a new world, brought to where the old one was: `snapshot`, then
-    `restore`. On a `VirtualLoop` it attaches itself to the loop while it is open and is stepped by it.
+    A killed cell is resumed in a new world with the state of the old one: `snapshot`, then `restore`.
+    On a `VirtualLoop` the world attaches itself to the loop while it is open and is stepped by it.
     """
 
     def robots(self) -> tuple[Robot, ...]:
-        """The simulated robots and grippers that live in this world, not yet connected."""
+        """The simulated robots and grippers of this world, not yet connected."""
         ...
 
     def snapshot(self) -> bytes:
-        """Return everything needed to go on from here; in real time it may be a few milliseconds old.
+        """Return the complete state of the world; in real time it may be a few milliseconds old.
 
         Cheap enough for every commit of a journal. Equal states give equal bytes.
 
@@ -109,12 +109,12 @@ class World(Robot, Protocol):
         ...
 
     async def restore(self, snapshot: bytes) -> None:
-        """Bring everything to where `snapshot` was made, at rest; world and robots are connected.
+        """Restore the state of `snapshot`, at rest; world and robots are connected.
 
-        Whatever moved stands still there, and what a gripper held it still holds.
+        Moving bodies are restored at rest, and a gripper still holds its part.
 
         Raises:
-            RobotError: something moves, the world is gone, or these bytes are no snapshot of this very
+            RobotError: something moves, the world has ended, or the bytes are not a snapshot of this
                 world: damaged, or of another cell, seed or version.
         """
         ...

@@ -1,7 +1,7 @@
-"""A skill is a frozen, typed request whose result type travels with it.
+"""A skill is a frozen, typed request that declares its result type.
 
 `class Move(Action[Reached, Progress])` declares the goal, the result and the feedback of an
-action in one place; `class Read(Service[Entry])` declares a request and its answer. The bus
+action; `class Read(Service[Entry])` declares a request and its response. The bus
 address of a skill is `<namespace>/<skill_name>`.
 """
 
@@ -17,7 +17,7 @@ F = TypeVar("F")
 
 
 class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Root of services and actions; subclass `Service` or `Action`."""
+    """Base of services and actions; subclass `Service` or `Action`."""
 
     @classmethod
     def skill_name(cls) -> str:
@@ -26,16 +26,16 @@ class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknow
 
     @classmethod
     def result_type(cls) -> Any:
-        """Return the type that answers this skill."""
+        """Return the result type of this skill."""
         return _type_arguments(cls)[0]
 
 
 class Service(Skill[R], Generic[R], frozen=True, kw_only=True):
-    """A request that is answered once and at once."""
+    """A request with a single, immediate response."""
 
 
 class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
-    """A goal that takes time: accepted or rejected, gives feedback, can be held and cancelled."""
+    """A goal that takes time: it is accepted or rejected, sends feedback, and can be held and cancelled."""
 
     holdable: ClassVar[bool] = True
 

@@ -1,20 +1,20 @@
 """A state is one step of a behavior: a frozen set of typed parameters and a coroutine.
 
     class Wait(State, frozen=True, kw_only=True):
-        '''Let time pass.'''
+        '''Wait for a duration.'''
 
         state_name: ClassVar[str] = "flow.Wait"
         outcomes: ClassVar[tuple[str, ...]] = ("done",)
-        duration_s: Annotated[float, Meta(ge=0, description="How long", extra_json_schema={"unit": "s"})]
+        duration_s: Annotated[float, Meta(ge=0, description="Duration", extra_json_schema={"unit": "s"})]
 
         async def run(self, ctx: Context) -> Outcome:
             await ctx.clock.sleep(self.duration_s)
             return Outcome("done")
 
 Fields are the parameters (`with:`). Keyword-only arguments of `run` after `ctx` are the input keys
-(`in:`) with their types and defaults. Keys of `outputs` are the output keys (`out:`). Being
-preempted is being cancelled: clean up in `try/finally` and let CancelledError pass. A state that
-can be taken back has an `undo` as well.
+(`in:`) with their types and defaults. Keys of `outputs` are the output keys (`out:`). A preempted
+state is cancelled: clean up in `try/finally` and do not suppress CancelledError. A state that can
+be undone also has an `undo`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _ALWAYS_WRITTEN: Mapping[str, tuple[str, ...]] = {}
 
 
 class Outcome(msgspec.Struct, frozen=True):
-    """How a state ended: a declared outcome name, its output keys, and why where it went wrong."""
+    """The result of a state: a declared outcome name, its output keys, and the cause of a failure."""
 
     name: str
     outputs: Mapping[str, object] = _NO_OUTPUT
@@ -48,7 +48,7 @@ class Outcome(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class ActionEnd(Generic[R]):
-    """How an action goal ended: `status` succeeded, canceled, aborted or rejected."""
+    """The end of an action goal; `status` is succeeded, canceled, aborted or rejected."""
 
     status: str
     result: R | None
@@ -56,10 +56,10 @@ class ActionEnd(Generic[R]):
 
 
 class RequestRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """A goal that a state had sent, or a call, and what came of it.
+    """A goal or call of a state, with its result.
 
-    `status` is succeeded, canceled, aborted or rejected for a goal, answered or failed for a call, and empty where no
-    end is known, as after a crash.
+    `status` is succeeded, canceled, aborted or rejected for a goal, answered or failed for a call, and empty when the
+    end is unknown, as after a crash.
     """
 
     address: str
@@ -69,9 +69,9 @@ class RequestRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ActivationRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """What one activation of a state has done, for its `undo`: from the events of the run, also those before a crash.
+    """The effects of one activation of a state, for its `undo`: from the events of the run, also those before a crash.
 
-    `outcome` is empty where it was preempted or failed with an error. `outputs` are as plain data.
+    `outcome` is empty when it was preempted or failed with an error. `outputs` are plain data.
     """
 
     inputs: Mapping[str, object]
@@ -81,25 +81,25 @@ class ActivationRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Context(Protocol):
-    """What a running state may touch; nothing else is passed to it."""
+    """The interface of a running state to the run; nothing else is passed to it."""
 
     @property
     def clock(self) -> Clock:
-        """The run's time; the only one a state may ask."""
+        """The clock of the run, the only one that a state may use."""
         ...
 
     @property
     def path(self) -> str:
-        """Where this state stands in its behavior, `root/approach/left`."""
+        """The node path of this state, such as `root/approach/left`."""
         ...
 
     async def call(self, request: Service[R], *, to: str) -> R:
-        """Ask the service `<to>/<skill_name>`.
+        """Call the service `<to>/<skill_name>`.
 
         Raises:
-            NoSuchSkill: nobody answers there.
-            SkillFailed: the handler raised something that is not of our family; its error is the cause.
-            FlexcellError: the handler's own, such as EntryNotFound, unchanged.
+            NoSuchSkill: there is no such service.
+            SkillFailed: the handler raised an error that is not a FlexcellError; it is the cause.
+            FlexcellError: the handler's own error, such as EntryNotFound, unchanged.
         """
         ...
 
@@ -107,12 +107,12 @@ class Context(Protocol):
         """Send a goal to `<to>/<skill_name>` and wait for its end.
 
         A preempted state cancels the goal and waits until the device confirms rest before
-        CancelledError goes on. Pausing the run holds the goal.
+        CancelledError is raised. Pausing the run holds the goal.
         """
         ...
 
     async def latest(self, topic: str, kind: type[S]) -> S:
-        """Return the newest message of a topic, waiting for the first one."""
+        """Return the newest message of a topic; wait for the first one."""
         ...
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
@@ -120,10 +120,10 @@ class Context(Protocol):
         ...
 
     async def offer(self, outcome: str) -> None:
-        """Return when the operator agrees to `outcome`, at once where the run's autonomy lets it pass.
+        """Return when the operator approves `outcome`, at once when the run's autonomy permits it.
 
-        A state that changes its mind cancels this call, which withdraws the question. Returning
-        the outcome afterwards asks no second time.
+        Cancelling this call withdraws the request. Returning the outcome afterwards does not ask
+        the operator again.
         """
         ...
 
@@ -137,11 +137,11 @@ class Context(Protocol):
 
 
 async def nothing_to_undo(self: State, ctx: Context, done: ActivationRecord) -> None:
-    """Undo a state that leaves nothing behind but what it wrote; in its class as `undo = nothing_to_undo`."""
+    """Undo a state without effects other than its outputs; assign it in the class as `undo = nothing_to_undo`."""
 
 
 class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One step. Subclasses give `state_name`, `outcomes`, parameters as fields, and `run`."""
+    """One step of a behavior. Subclasses define `state_name`, `outcomes`, parameters as fields, and `run`."""
 
     state_name: ClassVar[str] = ""
     outcomes: ClassVar[tuple[str, ...]] = ()
@@ -150,44 +150,44 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     success: ClassVar[tuple[str, ...]] = ()
     """Outcomes that mean SUCCESS to a behavior tree; the others mean FAILURE."""
     resume: ClassVar[str] = ""
-    """What to do after a crash in mid-state: rerun, ask, or an outcome; by default ask where it commands
+    """Action after a crash during the state: rerun, ask, or an outcome; by default ask when it commands
     hardware and an operator is demanded, else rerun."""
     instant: ClassVar[bool] = False
-    """True when it waits for nothing, and parameters and inputs alone decide its outcome; loops of them are found."""
+    """True when it never waits, and only parameters and inputs decide its outcome; the check finds loops of them."""
     observes: ClassVar[bool] = False
-    """True when it only reads what others measure, at little cost and without an effect: a behavior tree then asks it
-    again on its own while what stands behind it is at work, and no event tells of that unless the answer changes."""
+    """True when it only reads measurements, at little cost and without effects: a behavior tree then evaluates it
+    again while a later node is running, and records events only when the result changes."""
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = _ALWAYS_WRITTEN
-    """Outcome → output keys that are not written with it; the check takes all others for written."""
+    """Outcome → output keys that are not written with it; the check assumes that all others are written."""
 
     def resources(self) -> tuple[str, ...]:
-        """Names of the robots and devices this state commands; leased while it runs."""
+        """Names of the robots and devices that this state commands; leased while it runs."""
         return ()
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget | ToolChange, ...]:
-        """Where this state takes arms; asked by a check, before any run, and on objects with some parameters unknown.
+        """Targets of arms in this state; called by a check before any run, also with some parameters unknown.
 
         Args:
-            stored: The entries that the store of the cell begins with.
+            stored: The initial entries of the cell's store.
         """
         return ()
 
     async def on_pause(self, ctx: Context) -> None:
-        """Come to rest; called while `run` goes on when the run is paused, beside holding its goals."""
+        """Come to rest; called during `run` when the run is paused, in addition to holding its goals."""
 
     async def on_resume(self, ctx: Context) -> None:
-        """Go on after a pause."""
+        """Resume after a pause."""
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """Return why what an activation has done cannot be undone; empty where it can. Asked before anything moves."""
+        """Return why an activation cannot be undone; empty when it can. Called before anything moves."""
         return ""
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Undo what an activation has done, for a step back; a class without its own cannot be taken back.
+        """Undo the effects of an activation, for a step back; a class without its own `undo` cannot be undone.
 
-        What the state wrote into userdata is taken back without its help. An error says that it could not be undone.
+        The values that the state wrote into userdata are restored separately. An error means that the undo failed.
         """
         raise NotImplementedError
 
     run: ClassVar[Callable[..., Coroutine[Any, Any, Outcome]]]
-    """Do the step: subclasses write `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""
+    """Execute the step: subclasses define `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""

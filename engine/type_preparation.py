@@ -1,12 +1,12 @@
-"""Makes every msgspec type ready before a second thread can see it.
+"""Prepares every msgspec type before a second thread can use it.
 
-msgspec builds what it knows of a `Struct` when the type is first decoded or converted to. It publishes
+msgspec builds its type information of a `Struct` at the first decoding or conversion. It publishes
 that record before its fields are filled in, so a second thread that uses the type meanwhile reads
 null pointers and the process ends with SIGSEGV (msgspec 0.22.0, decision 0023).
 
-`prepare_on_import` has every module of a package make its types ready as the last step of its import,
-under one lock: until then no other thread can reach them. Types made in another way (a class in a
-notebook, a module of a user) are made ready by `prepare_type` or `prepare_types`.
+`prepare_on_import` makes every module of a package prepare its types as the last step of its import,
+under one lock: until then no other thread can access them. Types created in other ways (a class in a
+notebook, a module of a user) are prepared by `prepare_type` or `prepare_types`.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from importlib.abc import Loader, MetaPathFinder
 
-    # Loaded with the first module that defines a type: the command that stops a cell does without.
+    # Imported with the first module that defines a type: `flexcell stop` does not need it.
     from msgspec import Struct, StructMeta
 else:
-    # The classes themselves would be a third of what that command imports.
+    # Importing the classes themselves would be a third of the imports of that command.
     Loader = MetaPathFinder = object
 
 _lock = RLock()
 _waiting: list[StructMeta] = []
-"""Types that name others which do not exist yet, as in modules that import one another."""
+"""Types that refer to types that do not exist yet, as in modules that import each other."""
 
 
 def prepare_type(kind: type[Struct]) -> None:
-    """Make one type, and all types of its fields, ready."""
+    """Prepare one type and all types of its fields."""
     with _lock:
         _prepare([kind])
 
 
 def prepare_types() -> None:
-    """Make all types of this process ready, whoever defined them; cheap for those that are."""
+    """Prepare all types of this process; cheap for types that are already prepared."""
     from msgspec import Struct
 
     with _lock:
@@ -47,7 +47,7 @@ def prepare_types() -> None:
 
 
 def prepare_on_import(*packages: str) -> None:
-    """Have the modules of these packages, by their top-level names, make their types ready on import."""
+    """Make the modules of these packages, by top-level name, prepare their types on import."""
     _importer.packages |= set(packages)
     if _importer not in sys.meta_path:
         sys.meta_path.insert(0, _importer)
@@ -56,16 +56,16 @@ def prepare_on_import(*packages: str) -> None:
 def _prepare(kinds: list[StructMeta]) -> None:
     from msgspec.json import Decoder
 
-    due = [*_waiting, *kinds]
+    pending = [*_waiting, *kinds]
     _waiting.clear()
-    for kind in due:
+    for kind in pending:
         try:
             Decoder(kind)
         except (NameError, AttributeError):
-            # An annotation names what comes later in a module, or in one that imports this one.
+            # An annotation refers to a later definition in this module, or in one that imports it.
             _waiting.append(kind)
         except TypeError:
-            # msgspec cannot decode such a type; whoever tries gets this error, and no half-made record.
+            # msgspec cannot decode such a type; its use raises this error, without an incomplete record.
             continue
 
 
@@ -76,22 +76,22 @@ def _subclasses(kind: StructMeta) -> Iterator[StructMeta]:
 
 
 def _types_of(module: ModuleType) -> Iterator[StructMeta]:
-    """Go through the types that a module holds, in its classes too; those it imported cost next to nothing."""
+    """Yield the types of a module and its classes; imported types cost almost nothing."""
     from msgspec import StructMeta
 
-    due: list[Mapping[str, object]] = [vars(module)]
+    pending: list[Mapping[str, object]] = [vars(module)]
     seen: set[type] = set()
-    for names in due:
+    for names in pending:
         for value in tuple(names.values()):
             if isinstance(value, StructMeta):
                 yield value
             if isinstance(value, type) and value.__module__ == module.__name__ and value not in seen:
                 seen.add(value)
-                due.append(vars(value))
+                pending.append(vars(value))
 
 
 class _PreparingLoader(Loader):
-    """Loads a module as its own loader does, and then makes its types ready."""
+    """Loads a module with its own loader and then prepares its types."""
 
     def __init__(self, own: Loader) -> None:
         self._own = own
@@ -110,7 +110,7 @@ class _PreparingLoader(Loader):
 
 
 class _Importer(MetaPathFinder):
-    """Finds the modules of some packages where the other finders do."""
+    """Finds the modules of the prepared packages with the other finders."""
 
     def __init__(self) -> None:
         self.packages: set[str] = set()

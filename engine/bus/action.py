@@ -1,8 +1,8 @@
-"""Actions: goals that are accepted or rejected, give feedback, and can be held and cancelled.
+"""Actions: goals that are accepted or rejected, send feedback, and can be held and cancelled.
 
-The server's handler is one coroutine per goal, run in a task that the bus owns. It sees its goal
-through `ActiveGoal`; the client sees it through `GoalHandle`. A cancel is a request: the goal
-has ended only when the handler has, so the next goal finds the device at rest.
+The server's handler is one coroutine per goal, run in a task that the bus owns. The handler accesses
+its goal through `ActiveGoal`, the client through `GoalHandle`. A cancel is a request: the goal ends
+only when its handler does, so the next goal starts with the device at rest.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _log = logging.getLogger("flexcell.bus")
 
 
 class GoalStatus(Enum):
-    """Where a goal stands; the last four are final."""
+    """The status of a goal; the last four are final."""
 
     PENDING = "pending"
     ACTIVE = "active"
@@ -39,7 +39,7 @@ class GoalStatus(Enum):
 
 @dataclass(frozen=True)
 class GoalEnd(Generic[R]):
-    """How a goal ended; `result` may be partial unless it succeeded, `cause` says why it did not."""
+    """The end of a goal; `result` may be partial unless it succeeded, `cause` is the reason of a failure."""
 
     status: GoalStatus
     result: R | None
@@ -68,7 +68,7 @@ class ActiveGoal(Generic[F]):
         self.resume_callback: Callable[[], Awaitable[None]] | None = None
 
     def accept(self) -> None:
-        """Declare that the goal will be executed; raise GoalRejected instead to refuse it."""
+        """Accept the goal for execution; a handler that rejects it raises GoalRejected instead."""
         if self.cancel_requested:
             raise GoalCanceledEarly("cancelled before it was accepted", where=self.address)
         if self.status is GoalStatus.PENDING:
@@ -76,23 +76,23 @@ class ActiveGoal(Generic[F]):
             self.accepted.set()
 
     def feedback(self, message: F) -> None:
-        """Tell the client how far it is."""
+        """Send a feedback message to the client."""
         self.latest_feedback = message
         for listener in self.feedback_listeners:
             listener(message)
 
     def on_cancel(self, callback: Callable[[], None]) -> None:
-        """Register what starts the stop; without it a cancel cancels the handler's task."""
+        """Register the callback that starts the stop; without one a cancel cancels the handler's task."""
         self.cancel_callback = callback
         if self.cancel_requested:
             callback()
 
     def on_hold(self, callback: Callable[[], Awaitable[None]]) -> None:
-        """Register what brings the work to rest without ending it; returns when at rest."""
+        """Register the callback that brings the device to rest and keeps the goal; it returns at rest."""
         self.hold_callback = callback
 
     def on_resume(self, callback: Callable[[], Awaitable[None]]) -> None:
-        """Register what lets held work go on."""
+        """Register the callback that resumes a held goal."""
         self.resume_callback = callback
 
 
@@ -105,7 +105,7 @@ class GoalHandle(Generic[R, F]):
 
     @property
     def id(self) -> str:
-        """The goal's identity, the idempotence key given by the sender."""
+        """The goal's identifier, the idempotence key given by the sender."""
         return self._goal.id
 
     @property
@@ -115,12 +115,12 @@ class GoalHandle(Generic[R, F]):
 
     @property
     def holder_run(self) -> str:
-        """The run that sent it."""
+        """The run that sent the goal."""
         return self._goal.holder.run
 
     @property
     def holder(self) -> Holder:
-        """Who sent it."""
+        """The sender of the goal."""
         return self._goal.holder
 
     @property
@@ -130,7 +130,7 @@ class GoalHandle(Generic[R, F]):
 
     @property
     def status(self) -> GoalStatus:
-        """Where it stands now."""
+        """The present status."""
         return self._goal.status
 
     @property
@@ -146,9 +146,9 @@ class GoalHandle(Generic[R, F]):
         """Wait until the server has accepted.
 
         Raises:
-            GoalRejected: it refused; the message says why.
+            GoalRejected: the server rejected the goal; the message is the reason.
         """
-        await self._begun()
+        await self._accepted_or_ended()
         if self._task.done() and self._task.result().status is GoalStatus.REJECTED:
             cause = self._task.result().cause
             raise GoalRejected(cause.message if cause else "refused", where=self.address)
@@ -158,7 +158,7 @@ class GoalHandle(Generic[R, F]):
         return await asyncio.shield(self._task)
 
     def cancel(self) -> None:
-        """Ask the server to stop; `result` tells when it has."""
+        """Request a stop from the server; `result` returns when the goal has ended."""
         if self._task.done() or self._goal.cancel_requested:
             return
         self._goal.cancel_requested = True
@@ -168,22 +168,22 @@ class GoalHandle(Generic[R, F]):
             try:
                 self._goal.cancel_callback()
             except Exception:
-                # The stop must go on to the other goals, and this handler must end all the same.
+                # The stop must reach the other goals too, and this handler must still end.
                 _log.exception("the cancel callback of %s raised; its handler is cancelled", self.address)
                 self._task.cancel()
         elif self._goal.started:
             self._task.cancel()
 
     async def hold(self) -> None:
-        """Bring the work to rest and keep the goal; returns when the server confirms.
+        """Bring the device to rest and keep the goal; returns when the server confirms.
 
-        A goal that is still being prepared is held as soon as it has been accepted.
+        A pending goal is held as soon as it is accepted.
 
         Raises:
             BusError: this skill cannot be held.
         """
         if self._goal.status is GoalStatus.PENDING:
-            await self._begun()
+            await self._accepted_or_ended()
         if self._task.done() or self._goal.status is not GoalStatus.ACTIVE:
             return
         if self._goal.hold_callback is None:
@@ -193,14 +193,14 @@ class GoalHandle(Generic[R, F]):
             self._goal.status = GoalStatus.HELD
 
     async def resume(self) -> None:
-        """Let held work go on; returns when the server confirms."""
+        """Resume a held goal; returns when the server confirms."""
         if self._goal.status is not GoalStatus.HELD or self._task.done():
             return
         self._goal.status = GoalStatus.ACTIVE
         if self._goal.resume_callback is not None:
             await self._goal.resume_callback()
 
-    async def _begun(self) -> None:
+    async def _accepted_or_ended(self) -> None:
         """Wait until the server has accepted or the goal has ended."""
         waiter = asyncio.ensure_future(self._goal.accepted.wait())
         try:
@@ -212,17 +212,17 @@ class GoalHandle(Generic[R, F]):
 async def execute_goal(
     handler: Callable[[Any, ActiveGoal[Any]], Awaitable[Any]], request: object, goal: ActiveGoal[Any]
 ) -> GoalEnd[Any]:
-    """Run a handler to its end and say how that was; never raises but for the bus closing."""
+    """Run a handler to its end and return the goal's end; raises only when the bus closes."""
     goal.started = True
     if goal.cancel_requested:
         end: GoalEnd[Any] = GoalEnd(GoalStatus.CANCELED, None, None)
     else:
-        end = await _ended(handler, request, goal)
+        end = await _run_handler(handler, request, goal)
     goal.status = end.status
     return end
 
 
-async def _ended(
+async def _run_handler(
     handler: Callable[[Any, ActiveGoal[Any]], Awaitable[Any]], request: object, goal: ActiveGoal[Any]
 ) -> GoalEnd[Any]:
     try:
@@ -244,7 +244,7 @@ async def _ended(
             task.uncancel()
         return GoalEnd(GoalStatus.CANCELED, None, cause_of(error) if str(error) else None)
     except Exception as error:
-        # A driver's bug must end its goal with the reason, not the bus and the other robots.
+        # A defect of a driver must end its own goal, with the reason, and not the bus or other robots.
         _log.exception("the handler of %s raised", goal.address)
         return GoalEnd(GoalStatus.ABORTED, None, cause_of(error))
     if goal.cancel_requested:

@@ -1,6 +1,6 @@
 """The skill bus: topics, services, actions, parameters and leases of one cell, in one process.
 
-It belongs to the event loop it was made on. Other threads enter through `post` only.
+It belongs to the event loop that created it. Other threads use `post` only.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class BusEntry:
 
 
 class SkillBus:
-    """Where states and robots meet by name."""
+    """Connects states and robots by name."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
@@ -77,30 +77,30 @@ class SkillBus:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Cancel what still runs and wait until every handler has confirmed."""
+        """Cancel all active goals and wait until every handler has ended."""
         await self.cancel_goals()
 
     async def cancel_goals(self, run: str | None = None) -> None:
-        """Cancel the goals of one run (of everybody when None) and wait for their ends."""
-        chosen = [(h, t) for h, t in self._goals.items() if run is None or h.holder_run == run]
-        for handle, _ in chosen:
+        """Cancel the goals of one run (of all holders when None) and wait for their ends."""
+        selected = [(h, t) for h, t in self._goals.items() if run is None or h.holder_run == run]
+        for handle, _ in selected:
             handle.cancel()
-        if chosen:
-            await asyncio.wait([task for _, task in chosen])
+        if selected:
+            await asyncio.wait([task for _, task in selected])
 
     def goals(self, run: str | None = None) -> tuple[GoalHandle[Any, Any], ...]:
-        """Return the goals under way, of one run or of everybody."""
+        """Return the active goals of one run, or of all holders when None."""
         return tuple(h for h in self._goals if run is None or h.holder_run == run)
 
     def post(self, callback: Callable[[], None]) -> None:
-        """Run `callback` on the loop thread; the only entry from other threads."""
+        """Run `callback` on the loop thread; the only method for other threads."""
         self._loop.call_soon_threadsafe(callback)
 
     def topic(self, name: str, kind: type[M]) -> Topic[M]:
-        """Return the topic `name`, made at first use.
+        """Return the topic `name`, created at first use.
 
         Raises:
-            BusError: it exists with another message type.
+            BusError: the topic exists with another message type.
         """
         known = self._topics.get(name)
         if known is None:
@@ -112,20 +112,20 @@ class SkillBus:
         return known
 
     def watch_topics(self, callback: Callable[[Topic[Any]], None]) -> Callable[[], None]:
-        """Call back with every topic there is, and with each that is made later; returns what ends it."""
+        """Call `callback` with every present and future topic; returns a function that ends this."""
         self._topic_watchers = (*self._topic_watchers, callback)
         for topic in tuple(self._topics.values()):
             callback(topic)
         return lambda: self._unwatch_topics(callback)
 
     def find_topic(self, name: str) -> Topic[Any]:
-        """Return an existing topic of whatever type."""
+        """Return an existing topic of any type; raises BusError when it does not exist."""
         if name not in self._topics:
             raise BusError("no such topic", where=name, hint=did_you_mean(name, self._topics))
         return self._topics[name]
 
     def topics(self) -> tuple[Topic[Any], ...]:
-        """Return all topics, in the order in which they were made."""
+        """Return all topics in order of creation."""
         return tuple(self._topics.values())
 
     def skills(self) -> dict[str, type[Skill[Any]]]:
@@ -134,19 +134,19 @@ class SkillBus:
         return {address: server.skill for address, server in servers.items()}
 
     def command_topics(self) -> tuple[str, ...]:
-        """Return the topics on which a server does what is published, sorted."""
+        """Return the names of the command topics, sorted."""
         return tuple(sorted(topic.name for topic in self._topics.values() if topic.takes_commands))
 
     def advertise_service(
         self, skill: type[Q], handler: Callable[[Q], Any], *, namespace: str, commands: str = ""
     ) -> None:
-        """Answer `skill` at `<namespace>/<skill_name>`; the handler may be plain or async.
+        """Serve `skill` at `<namespace>/<skill_name>`; the handler may be synchronous or async.
 
-        A service that `commands` a resource is refused to everybody else while a run holds that resource.
+        A service that `commands` a resource refuses other callers while a run holds that resource.
 
         Raises:
             HandlerNotTyped: the handler lacks the skill's annotations.
-            BusError: somebody answers there already.
+            BusError: the address is already served.
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
@@ -160,59 +160,59 @@ class SkillBus:
         namespace: str,
         exclusive: str = "",
     ) -> None:
-        """Carry out goals of `skill` at `<namespace>/<skill_name>`.
+        """Serve the action `skill` at `<namespace>/<skill_name>`.
 
-        Actions that share `exclusive` run one goal at a time between them; a second is rejected
-        and told which goal runs.
+        Actions that share `exclusive` execute one goal at a time between them; a second goal is rejected,
+        and the message names the active one.
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
         self._actions[address] = _ActionServer(skill, handler, exclusive or address)
 
     def withdraw(self, namespace: str) -> None:
-        """Forget all services and actions under a namespace, as when a device leaves."""
+        """Remove all services and actions under a namespace, for example when a device disconnects."""
         for table in (self._services, self._actions):
             for address in [a for a in table if a == namespace or a.startswith(namespace + "/")]:
                 del table[address]
 
     async def call(self, request: Service[R], *, to: str, holder: Holder = ANONYMOUS_HOLDER) -> R:
-        """Ask a service and return its answer.
+        """Call a service and return its response.
 
         Raises:
-            NoSuchSkill: no such service.
-            LeaseRefused: it commands a resource that somebody else than `holder` holds.
+            NoSuchSkill: there is no such service.
+            LeaseRefused: the service commands a resource held by another holder.
             SkillFailed: the handler failed; its error is the cause.
         """
         address = f"{to}/{request.skill_name()}"
         server = self._services.get(address)
         if server is None:
-            raise self._nobody(address)
+            raise self._no_such_service(address)
         if server.commands:
             self.leases.refuse_foreign(server.commands, holder)
         try:
-            answer = server.handler(request)
-            return cast(R, await answer if inspect.isawaitable(answer) else answer)
+            response = server.handler(request)
+            return cast(R, await response if inspect.isawaitable(response) else response)
         except FlexcellError:
             raise
         except Exception as error:
-            # Whatever a handler raises must reach the caller as one kind of error with its cause.
+            # A handler may raise anything; the caller gets one type of error with its cause.
             raise SkillFailed(f"the service raised {type(error).__name__}: {error}", where=address) from error
 
     def send_goal(
         self, goal: Action[R, F], *, to: str, holder: Holder = ANONYMOUS_HOLDER, goal_id: str = ""
     ) -> GoalHandle[R, F]:
-        """Start an action; returns at once, `accepted` and `result` of the handle tell the rest.
+        """Send a goal; returns at once, await `accepted` and `result` of the handle.
 
         The goal leases `to` for `holder` until it ends.
 
         Raises:
             NoSuchSkill: there is no such action.
-            LeaseRefused: somebody else commands the resource.
+            LeaseRefused: another holder commands the resource.
         """
         address = f"{to}/{goal.skill_name()}"
         server = self._actions.get(address)
         if server is None:
-            raise self._nobody(address)
+            raise self._no_such_service(address)
         self.leases.acquire((to,), holder)
         self._goal_count += 1
         active: ActiveGoal[Any] = ActiveGoal(goal_id or f"g{self._goal_count}", address, holder)
@@ -228,7 +228,7 @@ class SkillBus:
         other = self._running.get(server.exclusive)
         try:
             if other is not None:
-                return await execute_goal(_refuser(other), goal, active)
+                return await execute_goal(_rejecting_handler(other), goal, active)
             self._running[server.exclusive] = active
             return await execute_goal(server.handler, goal, active)
         finally:
@@ -239,10 +239,10 @@ class SkillBus:
                 self.leases.release_run(ANONYMOUS_HOLDER.run)
 
     def request_type(self, address: str) -> type[Skill[Any]]:
-        """Return the skill answered at a full bus address."""
+        """Return the request type of the skill at a full bus address; raises NoSuchSkill."""
         server = self._services.get(address) or self._actions.get(address)
         if server is None:
-            raise self._nobody(address)
+            raise self._no_such_service(address)
         return server.skill
 
     def listing(self) -> tuple[BusEntry, ...]:
@@ -269,22 +269,22 @@ class SkillBus:
             raise BusError("this address is already served", where=address)
         return address
 
-    def _nobody(self, address: str) -> NoSuchSkill:
+    def _no_such_service(self, address: str) -> NoSuchSkill:
         known = [*self._services, *self._actions]
         return NoSuchSkill("no such service", where=address, hint=did_you_mean(address, known))
 
 
-def _refuser(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]], Awaitable[Any]]:
-    async def refuse(_goal: object, handle: ActiveGoal[Any]) -> None:
+def _rejecting_handler(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]], Awaitable[Any]]:
+    async def reject(_goal: object, handle: ActiveGoal[Any]) -> None:
         raise GoalRejected(
             f"busy with goal {other.id} of {other.holder} at {other.address}",
             where=handle.address,
             hint="wait for its end or cancel it",
         )
 
-    return refuse
+    return reject
 
 
 def _traffic(topic: Topic[Any]) -> str:
-    takes = ", takes commands" if topic.takes_commands else ""
-    return f"{topic.rate_hz:.1f} Hz, {topic.subscriber_count} subscribers{takes}"
+    commands = ", takes commands" if topic.takes_commands else ""
+    return f"{topic.rate_hz:.1f} Hz, {topic.subscriber_count} subscribers{commands}"

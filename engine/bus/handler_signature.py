@@ -1,4 +1,4 @@
-"""Reads the signature of a handler and refuses one whose annotations do not fit its skill."""
+"""Verifies that the annotations of a handler match its skill."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def verify_handler(skill: type[Skill[Any]], handler: Callable[..., Any], address
             f"the annotations of {name} cannot be resolved: {error}", where=address, hint=f"write it as {expected}"
         ) from error
     parameters = [p for p in inspect.signature(handler).parameters.values() if p.default is p.empty]
-    found = [hints.get(parameter.name) for parameter in parameters]
-    due: list[Any] = [skill]
+    actual_types = [hints.get(parameter.name) for parameter in parameters]
+    expected_types: list[Any] = [skill]
     if issubclass(skill, Action):
-        due.append(skill.feedback_type())
-        if len(found) == 2:
-            found[1] = _goal_argument(found[1])
-    if found != due or hints.get("return", inspect.Parameter.empty) != skill.result_type():
+        expected_types.append(skill.feedback_type())
+        if len(actual_types) == 2:
+            actual_types[1] = _goal_argument(actual_types[1])
+    if actual_types != expected_types or hints.get("return", inspect.Parameter.empty) != skill.result_type():
         raise HandlerNotTyped(
-            f"{name} is not annotated as its skill asks", where=address, hint=f"write it as {expected}"
+            f"the annotations of {name} do not match its skill", where=address, hint=f"write it as {expected}"
         )
 
 

@@ -1,4 +1,4 @@
-"""The bus as people and other processes reach it: by name, with JSON in and out."""
+"""The bus for users and other processes: access by name, with JSON in and out."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ CLI_HOLDER = Holder("cli")
 
 
 class JsonBus(Protocol):
-    """What `flexcell bus` needs, of a bus in this process or behind a server."""
+    """The interface that `flexcell bus` uses, for a bus in this process or behind a server."""
 
     async def listing(self) -> tuple[BusEntry, ...]:
         """Return everything on the bus."""
         ...
 
     def echo(self, topic: str) -> AsyncGenerator[str, None]:
-        """Go through the messages of a topic as JSON, the latest one first; raises BusError when there is none."""
+        """Yield the messages of a topic as JSON, first the latest one; raises BusError when there is no such topic."""
         ...
 
     async def publish(self, topic: str, message: object) -> None:
-        """Publish a message on a topic that takes commands; raises BusError when it takes none, or not this one."""
+        """Publish a message on a command topic; raises BusError for other topics and for an invalid message."""
         ...
 
     async def call(self, address: str, request: object) -> str:
-        """Ask a service; returns its answer as JSON."""
+        """Call a service and return its response as JSON."""
         ...
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
-        """Send a goal and wait for its end; cancelled, the goal is cancelled and awaited first."""
+        """Send a goal and wait for its end; on cancellation, cancel the goal and wait for its end first."""
         ...
 
 
@@ -52,11 +52,11 @@ class LocalJsonBus:
         return self._bus.listing()
 
     async def echo(self, topic: str) -> AsyncGenerator[str, None]:
-        """Go through the messages of a topic as JSON, the latest one first."""
-        found = self._bus.find_topic(topic)
-        with found.stream() as stream:
-            if found.latest is not None:
-                yield _text(found.latest)
+        """Yield the messages of a topic as JSON, first the latest one."""
+        source = self._bus.find_topic(topic)
+        with source.stream() as stream:
+            if source.latest is not None:
+                yield _text(source.latest)
             while True:
                 yield _text(await stream.next())
 
@@ -64,29 +64,29 @@ class LocalJsonBus:
         """Publish a message on a topic that takes commands.
 
         Raises:
-            BusError: there is no such topic, it takes no commands, or the message does not fit.
+            BusError: there is no such topic, it takes no commands, or the message is invalid.
         """
-        found = self._bus.find_topic(topic)
-        if not found.takes_commands:
-            open_to_all = self._bus.command_topics()
+        target = self._bus.find_topic(topic)
+        if not target.takes_commands:
+            command_topics = self._bus.command_topics()
             raise BusError(
                 "this topic takes no commands",
                 where=topic,
-                hint=f"commands are taken on {', '.join(open_to_all)}"
-                if open_to_all
-                else "nothing here takes commands",
+                hint=f"commands are taken on {', '.join(command_topics)}"
+                if command_topics
+                else "no topic of this bus takes commands",
             )
         try:
-            typed = msgspec.convert(message, found.kind)
+            typed = msgspec.convert(message, target.kind)
         except msgspec.ValidationError as error:
-            raise BusError(f"this is not a {found.kind.__name__}: {error}", where=topic) from error
-        found.publish(typed)
+            raise BusError(f"this is not a {target.kind.__name__}: {error}", where=topic) from error
+        target.publish(typed)
 
     async def call(self, address: str, request: object) -> str:
-        """Ask a service; returns its answer as JSON.
+        """Call a service and return its response as JSON.
 
         Raises:
-            BusError: there is no such service, it is an action, the request does not fit, or it failed.
+            BusError: there is no such service, it is an action, the request is invalid, or the call failed.
         """
         namespace, _, _ = address.rpartition("/")
         typed = self._typed(address, request)
@@ -98,12 +98,12 @@ class LocalJsonBus:
         """Send a goal and wait for its end.
 
         Raises:
-            BusError: there is no such action, it is a service, the goal does not fit, or a run holds the resource.
+            BusError: no such action, a service, an invalid goal, or a resource held by a run.
         """
         return await self.ended(self.send(address, goal))
 
     def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:
-        """Send a goal, to be followed by `ended`; raises what `perform` raises."""
+        """Send a goal; then await `ended`. Raises as `perform` does."""
         namespace, _, _ = address.rpartition("/")
         typed = self._typed(address, goal)
         if not issubclass(self._bus.request_type(address), Action):
@@ -111,7 +111,7 @@ class LocalJsonBus:
         return self._bus.send_goal(typed, to=namespace, holder=CLI_HOLDER)
 
     async def ended(self, handle: GoalHandle[Any, Any]) -> GoalEnd[Any]:
-        """Wait for the end of a goal that was sent; cancelled, the goal is cancelled and awaited first."""
+        """Wait for the end of a sent goal; on cancellation, cancel the goal and wait for its end first."""
         try:
             return await handle.result()
         except asyncio.CancelledError:

@@ -1,8 +1,8 @@
-"""Who may command which resource: one run at a time, and within it one branch at a time.
+"""Leases of resources: one run at a time, and within it one branch at a time, commands a resource.
 
 A resource is a bus name such as `left` or `left/gripper`. A run that commands any part of
-`left` owns all of `left` until it ends; inside the run a branch leases exactly what it names
-for as long as its state is active.
+`left` owns all of `left` until the run ends; inside the run a branch leases exactly the resources
+it names while its state is active.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from engine.errors import LeaseRefused
 
 
 class Holder(msgspec.Struct, frozen=True):
-    """A run (or `cli`, `jog`, …) and the branch of it, a node path, that commands a resource."""
+    """The holder of a resource: a run (or `cli`, `jog`, …) and its branch, a node path."""
 
     run: str
     branch: str = ""
@@ -25,7 +25,7 @@ class Holder(msgspec.Struct, frozen=True):
 
 
 class Lease(msgspec.Struct, frozen=True, kw_only=True):
-    """Who commands `resource`, since `since_s` of the bus's clock; `branch` is empty for what a run merely keeps."""
+    """The lease of `resource` since `since_s` of the bus's clock; `branch` is empty when only the run owns it."""
 
     resource: str
     run: str
@@ -37,7 +37,7 @@ class LeaseTable:
     """All leases of one bus; used on the loop thread only.
 
     Args:
-        now_s: The clock that tells since when a lease is held.
+        now_s: The clock for the start times of leases.
     """
 
     def __init__(self, *, now_s: Callable[[], float] = lambda: 0.0) -> None:
@@ -49,15 +49,15 @@ class LeaseTable:
         self._waiting: list[tuple[str, Callable[[], None]]] = []
 
     def acquire(self, resources: Iterable[str], holder: Holder) -> None:
-        """Lease all of `resources` or none of them; nested leases of the same branch are counted.
+        """Lease all of `resources` or none; nested leases of the same branch are counted.
 
         Raises:
-            LeaseRefused: somebody else holds one; the message names the holder.
+            LeaseRefused: another holder has one of them; the message names it.
         """
-        wanted = tuple(resources)
-        for resource in wanted:
+        requested = tuple(resources)
+        for resource in requested:
             self.refuse_foreign(resource, holder)
-        for resource in wanted:
+        for resource in requested:
             root = _root(resource)
             if root not in self._owners:
                 self._owned_since_s[root] = self._now_s()
@@ -67,7 +67,7 @@ class LeaseTable:
             self._branches.setdefault(resource, []).append(holder)
 
     def release(self, resources: Iterable[str], holder: Holder) -> None:
-        """Give branch leases back; the run keeps the resource until `release_run`."""
+        """Release branch leases; the run owns the resource until `release_run`."""
         for resource in resources:
             held = self._branches.get(resource, [])
             if holder in held:
@@ -77,7 +77,7 @@ class LeaseTable:
                 self._leased_since_s.pop(resource, None)
 
     def release_run(self, run: str) -> None:
-        """Give back everything a run owned."""
+        """Release all resources of a run."""
         self._owners = {name: owner for name, owner in self._owners.items() if owner != run}
         kept = {name: [h for h in held if h.run != run] for name, held in self._branches.items()}
         self._branches = {name: held for name, held in kept.items() if held}
@@ -89,7 +89,7 @@ class LeaseTable:
             callback()
 
     def when_freed(self, resource: str, callback: Callable[[], None]) -> None:
-        """Call back once, as soon as the run that owns the resource gives it back; never where none owns it."""
+        """Call `callback` once when the run that owns the resource releases it; never when no run owns it."""
         if _root(resource) in self._owners:
             self._waiting.append((_root(resource), callback))
 
@@ -98,7 +98,7 @@ class LeaseTable:
         return self._owners.get(_root(resource))
 
     def listing(self) -> tuple[tuple[str, str], ...]:
-        """Return (resource, holder) for everything leased, sorted."""
+        """Return (resource, holder) of every lease, sorted."""
         rows = {name: f"run {owner}" for name, owner in self._owners.items()}
         rows.update({name: str(held[-1]) for name, held in self._branches.items()})
         return tuple(sorted(rows.items()))
@@ -115,7 +115,7 @@ class LeaseTable:
         return tuple(rows[name] for name in sorted(rows))
 
     def refuse_foreign(self, resource: str, holder: Holder) -> None:
-        """Raise LeaseRefused where somebody else than `holder` commands the resource; leases nothing."""
+        """Raise LeaseRefused when another holder commands the resource; leases nothing."""
         owner = self._owners.get(_root(resource))
         if owner is not None and owner != holder.run:
             raise LeaseRefused(
@@ -128,7 +128,7 @@ class LeaseTable:
                 raise LeaseRefused(
                     f"{resource} is commanded by {other} in another branch",
                     where=str(holder),
-                    hint="let one branch at a time command it",
+                    hint="command it from one branch at a time",
                 )
 
     def _describe(self, resource: str, owner: str) -> str:

@@ -1,4 +1,4 @@
-"""Typed parameters of devices and services: declared once, validated at every change."""
+"""Typed parameters of devices and services, declared once and validated at every change."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ class BusParameter:
 
 
 class ParameterServer:
-    """All parameters of one bus by name, `left/impedance/stiffness`."""
+    """All parameters of one bus by name, such as `left/impedance/stiffness`."""
 
     def __init__(self) -> None:
         self._parameters: dict[str, BusParameter] = {}
         self._watchers: dict[str, list[Callable[[object], None]]] = {}
 
     def declare(self, name: str, kind: Any, default: object, *, description: str = "") -> None:
-        """Create a parameter; `kind` is any type msgspec can validate.
+        """Declare a parameter; `kind` is any type that msgspec validates.
 
         Raises:
-            BusError: it exists already, or the default is not of its type.
+            BusError: the parameter exists, or the default is not of its type.
         """
         if name in self._parameters:
-            raise BusError("this parameter is declared already", where=name)
+            raise BusError("this parameter is already declared", where=name)
         self._parameters[name] = BusParameter(name, kind, _converted(name, kind, default), description)
 
     def get(self, name: str) -> object:
@@ -43,7 +43,7 @@ class ParameterServer:
         return self._known(name).value
 
     def set(self, name: str, value: object) -> None:
-        """Validate and store a value, then tell the watchers."""
+        """Validate and store a value, then notify the watchers."""
         known = self._known(name)
         checked = _converted(name, known.kind, value)
         self._parameters[name] = BusParameter(name, known.kind, checked, known.description)
@@ -63,7 +63,7 @@ class ParameterServer:
         try:
             return self._parameters[name]
         except KeyError:
-            raise BusError("no such parameter", where=name, hint="`flexcell bus list` shows them") from None
+            raise BusError("no such parameter", where=name, hint="`flexcell bus list` lists the parameters") from None
 
 
 def _converted(name: str, kind: Any, value: object) -> object:

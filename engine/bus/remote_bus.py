@@ -1,4 +1,4 @@
-"""The bus of a running server, reached over HTTP with the operator's token."""
+"""The bus of a running server, accessed over HTTP with the operator's token."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from engine.host.state_folder_names import SERVER_FILE
 
 
 class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a server is reached; readable by its owner only, as the token commands the cell."""
+    """The addresses and tokens of a server; readable by its owner only, as the token commands the cell."""
 
     url: str
     token: str
     pid: int
     stop_url: str = ""
-    """Where STOP is taken whatever the server does; empty where it is not."""
+    """The address of the stop relay, independent of the server; empty when there is none."""
     stop_token: str = ""
 
     @classmethod
     def read(cls, folder: Path) -> ServerRecord:
-        """Return the record of the server that keeps its state in `folder`.
+        """Return the record of the server with the state folder `folder`.
 
         Raises:
             BusError: no server runs there.
@@ -44,7 +44,7 @@ class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def server_file(folder: Path) -> Path:
-    """Return where the server of a state folder says how it is reached."""
+    """Return the path of the server record in a state folder."""
     return folder / SERVER_FILE
 
 
@@ -62,7 +62,7 @@ class _End(msgspec.Struct):
 
 @asynccontextmanager
 async def server_client(folder: Path) -> AsyncGenerator[httpx.AsyncClient]:
-    """Reach the server that keeps its state in `folder`, as its operator.
+    """Connect to the server with the state folder `folder` as its operator.
 
     Raises:
         BusError: no server runs there, or it does not answer.
@@ -79,7 +79,7 @@ async def server_client(folder: Path) -> AsyncGenerator[httpx.AsyncClient]:
 
 
 class RemoteJsonBus:
-    """A bus behind a server; make it with `connect`."""
+    """A bus behind a server; create it with `connect`."""
 
     def __init__(self, client: httpx.AsyncClient) -> None:
         self._client = client
@@ -87,7 +87,7 @@ class RemoteJsonBus:
     @classmethod
     @asynccontextmanager
     async def connect(cls, folder: Path) -> AsyncGenerator[Self]:
-        """Reach the server that keeps its state in `folder`.
+        """Connect to the server with the state folder `folder`.
 
         Raises:
             BusError: no server runs there.
@@ -101,7 +101,7 @@ class RemoteJsonBus:
         return msgspec.json.decode(verify_response(response).content, type=tuple[BusEntry, ...])
 
     async def echo(self, topic: str) -> AsyncGenerator[str, None]:
-        """Go through the messages of a topic as JSON, the latest one first."""
+        """Yield the messages of a topic as JSON, first the latest one."""
         async with self._client.stream("GET", "/api/v1/bus/echo", params={"topic": topic}, timeout=None) as response:
             if not response.is_success:
                 await response.aread()
@@ -111,17 +111,17 @@ class RemoteJsonBus:
                     yield line
 
     async def publish(self, topic: str, message: object) -> None:
-        """Publish a message on a topic that takes commands."""
+        """Publish a message on a command topic."""
         body = {"topic": topic, "message": message}
         verify_response(await self._client.post("/api/v1/bus/publish", json=body))
 
     async def call(self, address: str, request: object) -> str:
-        """Ask a service; returns its answer as JSON."""
+        """Call a service and return its response as JSON."""
         body = {"address": address, "request": request}
         return verify_response(await self._client.post("/api/v1/bus/call", json=body)).text
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
-        """Send a goal and wait for its end; the server cancels it when this connection is lost."""
+        """Send a goal and wait for its end; the server cancels the goal when the connection is lost."""
         body = {"address": address, "request": goal}
         response = verify_response(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
         end = msgspec.json.decode(response.content, type=_End)
@@ -129,11 +129,11 @@ class RemoteJsonBus:
 
 
 def verify_response(response: httpx.Response) -> httpx.Response:
-    """Return an answer of the server, or raise what it refused as `BusError`."""
+    """Return a response of the server; raise its refusal as `BusError`."""
     if response.is_success:
         return response
     try:
         failure = msgspec.json.decode(response.content, type=_Failure)
     except msgspec.DecodeError:
-        failure = _Failure(message=f"the server answered {response.status_code}")
+        failure = _Failure(message=f"the server returned HTTP status {response.status_code}")
     raise BusError(failure.message, where=failure.where, hint=failure.hint)

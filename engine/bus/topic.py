@@ -1,7 +1,7 @@
 """A topic: a typed latest value and the stream of its changes.
 
-`publish` calls the subscribers directly on the loop thread; a subscriber that wants to await
-asks for a `stream`. A failing subscriber is reported and left out; it never hurts the publisher.
+`publish` calls the subscribers directly on the loop thread; a subscriber that awaits messages
+uses `stream`. A failing subscriber is logged and removed; the publisher is not affected.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ class Subscription(Generic[M]):
         self._topic = topic
         self.callback = callback
         self.asks = asks
-        """Whether messages are to be made for it."""
+        """Whether publishers build messages for this subscriber."""
 
     def close(self) -> None:
-        """Receive nothing more."""
+        """Stop receiving messages."""
         self._topic.remove(self)
 
 
 class TopicStream(Generic[M]):
-    """The messages since it was opened, for `async for`; keeps at most `size`, dropping the oldest."""
+    """The messages since the stream was opened, for `async for`; keeps at most `size`, dropping the oldest."""
 
     def __init__(self, topic: Topic[M], size: int) -> None:
         self._waiting: deque[M] = deque(maxlen=size)
@@ -66,7 +66,7 @@ class TopicStream(Generic[M]):
         self.close()
 
     def close(self) -> None:
-        """Stop receiving."""
+        """Stop receiving messages."""
         self._subscription.close()
 
 
@@ -78,7 +78,7 @@ class Topic(Generic[M]):
         self.kind = kind
         self.count = 0
         self.takes_commands = False
-        """Whether a server does what is published here; other topics only tell what its own publisher knows."""
+        """Whether this is a command topic, whose messages a server executes; other topics only publish state."""
         self._clock = clock
         self._latest: M | None = None
         self._provider: Callable[[], M] | None = None
@@ -87,22 +87,22 @@ class Topic(Generic[M]):
 
     @property
     def latest(self) -> M | None:
-        """The newest message, or what the provider makes now; None before the first."""
+        """The newest message, or the message that the provider makes now; None before the first."""
         return self._provider() if self._provider is not None else self._latest
 
     @property
     def latest_at_s(self) -> float | None:
-        """When the newest message was published, on the bus's clock; None before the first."""
+        """Time of the newest message on the bus's clock; None before the first."""
         return self._stamps_s[-1] if self._stamps_s else None
 
     @property
     def is_made_on_demand(self) -> bool:
-        """Whether a provider makes the newest message when somebody looks."""
+        """Whether a provider makes the newest message when it is read."""
         return self._provider is not None
 
     @property
     def subscriber_count(self) -> int:
-        """How many ask for messages; a publisher may skip building what nobody reads."""
+        """Number of active subscribers; at 0 a publisher may skip building messages."""
         return sum(each.asks for each in self._subscriptions)
 
     @property
@@ -113,18 +113,18 @@ class Topic(Generic[M]):
         return (len(self._stamps_s) - 1) / (self._stamps_s[-1] - self._stamps_s[0])
 
     def provide(self, provider: Callable[[], M]) -> None:
-        """Let `latest` be made on demand, for publishers that skip unread messages."""
+        """Make `latest` on demand, for publishers that skip unread messages."""
         self._provider = provider
 
     def publish(self, message: M) -> None:
-        """Keep `message` as the latest and hand it to every subscriber.
+        """Store `message` as the latest and pass it to every subscriber.
 
         Raises:
             BusError: the message is not of the topic's type.
         """
         if not isinstance(message, self.kind):
             raise BusError(
-                f"a {type(message).__name__} was published where {self.kind.__name__} is due", where=self.name
+                f"a {type(message).__name__} was published where {self.kind.__name__} is expected", where=self.name
             )
         self._latest = message
         self.count += 1
@@ -133,7 +133,7 @@ class Topic(Generic[M]):
             try:
                 subscription.callback(message)
             except Exception:
-                # Any subscriber may fail in any way; the publisher, often a robot, must go on.
+                # A subscriber may raise anything; the publisher, often a robot, must continue.
                 _log.exception("a subscriber of %s failed and was removed", self.name)
                 subscription.close()
 
@@ -144,18 +144,19 @@ class Topic(Generic[M]):
         return subscription
 
     def subscribe_passively(self, callback: Callable[[M], None]) -> Subscription[M]:
-        """Call `callback` on the loop thread with what is published anyway; nothing is made for it."""
+        """Call `callback` on the loop thread with published messages; publishers build none for it."""
         subscription = Subscription(self, callback, asks=False)
         self._subscriptions = (*self._subscriptions, subscription)
         return subscription
 
     def subscribe_commands(self, callback: Callable[[M], None]) -> Subscription[M]:
-        """Subscribe as the server that does what is published here; people may publish on such a topic."""
+        """Subscribe as the server that executes the messages; users may publish on such a topic."""
         self.takes_commands = True
         return self.subscribe(callback)
 
     def remove(self, subscription: Subscription[M]) -> None:
-        """Forget a subscriber; unknown ones are ignored."""
+        """Remove a subscriber; unknown ones are ignored."""
+
         self._subscriptions = tuple(s for s in self._subscriptions if s is not subscription)
 
     def stream(self, *, size: int = 1000) -> TopicStream[M]:

@@ -1,1 +1,1 @@
-"""A cell while it is open: its devices and their connection, its store, and the names that it offers to behaviors."""
+"""An open cell: its devices and their connection, its store, and the names that behaviors may use."""

@@ -1,4 +1,4 @@
-"""Which devices of a cell are connected: told on `cell/connection`, required by runs, restored by command."""
+"""The connection of a cell's devices: published on `cell/connection`, required by runs, restored by command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _log = logging.getLogger("flexcell.cell")
 class CellConnection(Message, frozen=True, kw_only=True):
     """Whether every device of the cell is connected; the latest value of `cell/connection`.
 
-    `reason` says which is lost and why; of a connected cell what is not as it was before it was connected again.
+    `reason` names the lost devices with the causes; for a reconnected cell, the differences from before.
     """
 
     connected: bool
@@ -24,46 +24,46 @@ class CellConnection(Message, frozen=True, kw_only=True):
 
 
 class CellConnectionMonitor:
-    """Follows the devices of one open cell that can lose their connection."""
+    """Monitors the devices of one open cell that can lose their connection."""
 
     def __init__(self, bus: SkillBus) -> None:
         self._bus = bus
         self._devices: list[Reconnectable] = []
         self._notes: tuple[str, ...] = ()
-        self._turn = asyncio.Lock()
+        self._lock = asyncio.Lock()
 
     @property
     def now(self) -> CellConnection:
-        """What is connected now."""
+        """The present connection."""
         lost = [device.lost_reason for device in self._devices if device.lost_reason]
         return CellConnection(connected=not lost, reason="; ".join(lost or self._notes))
 
     def follow(self, device: Robot | Reconnectable) -> None:
-        """Tell from now on when `device` is lost and when it is back; nothing for one that cannot be."""
+        """Publish the loss and reconnection of `device`; does nothing for a device that is not reconnectable."""
         if isinstance(device, Reconnectable):
             self._devices.append(device)
-            device.when_connection_changes(self._tell)
-            self._tell()
+            device.when_connection_changes(self._publish)
+            self._publish()
 
     def require(self) -> None:
-        """Raise RobotError while a device is lost."""
+        """Raise RobotError while a device is not connected."""
         now = self.now
         if not now.connected:
             raise RobotError(now.reason, where="cell", hint=CONNECT_AGAIN)
 
     async def reconnect(self) -> None:
-        """Connect again what is lost; does nothing where nothing is.
+        """Reconnect all lost devices; does nothing when all are connected.
 
         Raises:
-            RobotError: a device does not come back.
+            RobotError: a device cannot be reconnected.
         """
-        async with self._turn:
+        async with self._lock:
             notes = [await device.reconnect() for device in self._devices if device.lost_reason]
             if notes:
                 self._notes = tuple(note for note in notes if note)
-                self._tell()
+                self._publish()
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         now, topic = self.now, self._bus.topic("cell/connection", CellConnection)
         if now == topic.latest:
             return

@@ -1,8 +1,8 @@
-"""The names that a cell offers to behaviors, by kind, as far as its document and the models in it say.
+"""The names that a cell offers to behaviors, by kind, from its document and its models.
 
-Checks compare with them and the editor's pick lists are made of them. Nothing is connected or simulated for it. A
-parameter of a state says which kind it takes: `Meta(extra_json_schema={"cell_name": "robot"})`. With `"of": "robot"`
-beside it, it is a name below what the parameter `robot` of the same state names: `panda_hand` is `left/panda_hand`.
+Used by checks and by the editor's pick lists. Nothing is connected or simulated. A parameter of a state declares its
+kind of name: `Meta(extra_json_schema={"cell_name": "robot"})`. With `"of": "robot"` beside it, the name is relative
+to the value of the parameter `robot` of the same state: `panda_hand` is `left/panda_hand`.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ CellNameKind = Literal[
     "robot", "gripper", "magnet", "hand", "tool", "link", "output", "part", "person", "camera", "detector", "label",
     "frame", "arm_frame", "body", "obstacle", "scene_part", "planner",
 ]  # fmt: skip
-"""`gripper`, `magnet` and `hand` are robots that carry one. `tool` (`left/gripper`), `link` (`left/panda_hand`) and
-`output` (`left/3`, `left/gripper`) are of a robot, `label` (`eye/plate`) is of a camera that detects. `arm_frame` is a
-frame in which an arm takes poses, `frame` one that the cell shows. `body`, `obstacle` and `scene_part` are what the
-planning scene has, to which behaviors add."""
+"""`gripper`, `magnet` and `hand` are robots with such a tool. `tool` (`left/gripper`), `link` (`left/panda_hand`) and
+`output` (`left/3`, `left/gripper`) belong to a robot, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is
+a frame in which an arm accepts poses, `frame` a frame of the cell's view. `body`, `obstacle` and `scene_part` are
+objects of the planning scene, to which behaviors add."""
 
 _WORDS: Mapping[str, str] = {
     "gripper": "robot with a gripper",
@@ -42,10 +42,10 @@ _TOOLS: tuple[ToolKind, ...] = get_args(ToolKind)
 
 @dataclass(frozen=True, kw_only=True)
 class CellNames:
-    """What a cell offers; a kind that is absent from `by_kind` is not known, and everything passes for it.
+    """The names of a cell; a kind that is missing from `by_kind` is unknown, and any name of it is accepted.
 
-    `undescribed` are robots whose model cannot be read, and people, whose bodies only a world knows: what is below
-    them, `left/…`, passes too.
+    `undescribed` are robots whose model cannot be read, and people, whose bodies only a world knows: names below
+    them, `left/…`, are accepted too.
     """
 
     cell: str
@@ -54,27 +54,27 @@ class CellNames:
     joints: Mapping[str, tuple[tuple[float, float], ...]] = field(
         default_factory=dict[str, "tuple[tuple[float, float], ...]"]
     )
-    """The least and the greatest angle of each joint of the robots that are described, radians."""
+    """Lower and upper position limit of each joint of the described robots, radians."""
 
     def has(self, kind: CellNameKind, name: str) -> bool:
-        """Tell whether the cell offers a name of a kind, or may do so."""
+        """Return whether the cell has, or may have, a name of a kind."""
         owner, slash, _ = name.partition("/")
         return kind not in self.by_kind or name in self.by_kind[kind] or (bool(slash) and owner in self.undescribed)
 
     def missing(self, kind: CellNameKind, name: str) -> str:
-        """Say that the cell does not offer a name."""
+        """Return the message for a name that the cell does not have."""
         owner, _, below = name.partition("/")
         if kind in _OWNED:
             return f"`{owner}` of the cell {self.cell} has no {kind} `{below}`"
         return f"the cell {self.cell} has no {_word(kind)} `{name}`"
 
     def advice(self, kind: CellNameKind, name: str, *, more: Iterable[str] = ()) -> str:
-        """Return the names that a missing one may have meant, or what it is instead.
+        """Return suggestions for a missing name, or its actual kind.
 
         Args:
-            kind: What it should be.
-            name: What it is called.
-            more: Names that are there beside those of the cell.
+            kind: The expected kind.
+            name: The missing name.
+            more: Additional names besides those of the cell.
         """
         other = next((of for of in _OTHERS.get(kind, ()) if name in self.by_kind.get(of, ())), None)
         if other is not None:
@@ -87,11 +87,11 @@ class CellNames:
 
     @staticmethod
     def may_come(kind: CellNameKind, name: str) -> bool:
-        """Tell whether behaviors or people may add a name while the cell is open; links of arms never come."""
+        """Return whether a name may be added while the cell is open; links of arms are never added."""
         return kind in _GROWING and "/" not in name
 
     def listed(self) -> dict[CellNameKind, tuple[str, ...]]:
-        """Return the names of every kind that is known, sorted."""
+        """Return the sorted names of every known kind."""
         return {kind: tuple(sorted(names)) for kind, names in self.by_kind.items()}
 
 
@@ -104,7 +104,7 @@ _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
     "arm_frame": ("part", "link"),
     "part": ("obstacle",),
 }
-"""What else a name may be, that is worth telling, most telling first."""
+"""Other kinds that a misused name may have, the most likely first."""
 
 
 def _word(kind: str) -> str:
@@ -112,7 +112,7 @@ def _word(kind: str) -> str:
 
 
 def is_kind(found: object) -> CellNameKind | None:
-    """Return the kind of name that a JSON Schema marks, None for what is none."""
+    """Return the kind of name given in a JSON Schema, None when the value is not a kind."""
     return next((kind for kind in get_args(CellNameKind) if kind == found), None)
 
 
@@ -157,7 +157,7 @@ def _summary(models: RobotModels | None, cell: Cell, robot: str) -> RobotSummary
     try:
         return models.summary(cell, robot) if models is not None else None
     except FlexcellError:
-        return None  # the check of the cell says what is wrong with it
+        return None  # the check of the cell reports the error
 
 
 def _links(summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
@@ -167,7 +167,7 @@ def _links(summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
 
 
 def _tools(robot: RobotSpec, summary: RobotSummary | None) -> tuple[ToolKind, ...]:
-    """Return what the tool of a robot may be: anything where its model is not known, or a driver may bring one."""
+    """Return the possible tools of a robot: any when its model is unknown, or when its driver may add one."""
     if summary is None or (summary.tool is None and not robot.simulated):
         return _TOOLS if robot.gripper is not None or not robot.simulated else ()
     return (summary.tool,) if summary.tool is not None else ()

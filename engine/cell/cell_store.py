@@ -1,4 +1,4 @@
-"""The store of a cell: the one that its document names, or another in its place."""
+"""The store of a cell: the store of its document, or a replacement."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.store.mongo.mongo_address import is_mongo_address, public_address
 
 
 def store_address(cell: Cell, instead: str | None = None) -> str | None:
-    """Return the path or address of a cell's store without secrets; None where the cell has none."""
+    """Return the path or address of a cell's store without secrets; None when the cell has no store."""
     named = cell.document.store
     if named is None:
         return None
@@ -21,7 +21,7 @@ def store_address(cell: Cell, instead: str | None = None) -> str | None:
 
 
 def absolute_address(address: str) -> str:
-    """Return an address that means the same from any directory."""
+    """Return an address that is independent of the working directory."""
     return address if is_mongo_address(address) else str(Path(address).resolve())
 
 
@@ -29,13 +29,13 @@ async def open_cell_store(cell: Cell, instead: str | None = None, *, inline: boo
     """Open the store of a cell.
 
     Args:
-        cell: Names it.
-        instead: A file or address to use in its place. That of the cell's own store without its secrets means that.
+        cell: The cell.
+        instead: A file or address that replaces the store. The cell's own address without secrets selects its store.
         inline: Work on the calling thread, for runs in virtual time.
 
     Raises:
         CellError: the cell has no store.
-        StoreError: it cannot be opened.
+        StoreError: the store cannot be opened.
     """
     named = cell.document.store
     if named is None:

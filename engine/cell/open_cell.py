@@ -1,7 +1,7 @@
 """An open cell: its robots connected, its world running, its store and bus ready.
 
-`async with OpenCell(...)` opens store, world and robots in that order and closes them in reverse,
-bringing every robot to rest. It belongs to the event loop it is opened on.
+`async with OpenCell(...)` opens store, world and robots in that order and closes them in reverse order,
+bringing every robot to rest. It belongs to the event loop on which it is opened.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from engine.stop import StopRelay
 from engine.store import Store, publish_changes, register_store
 
 _PATIENCE_S = 10.0
-"""How long a robot may take to come to rest, and the goals' handlers to end."""
+"""Time limit for a robot to come to rest, and for the handlers of goals to end."""
 
 _log = logging.getLogger("flexcell.cell")
 
@@ -37,13 +37,13 @@ NewRobot = Callable[..., Robot]
 
 
 class OpenCell:
-    """A cell document brought to life; without one, a bus with nothing on it.
+    """The open cell of a document; without a document, an empty bus.
 
     Args:
         cell: The document, or None for behaviors that need no robot.
-        seed: Places the parts of a simulated world within their jitter; None exactly where they are drawn.
+        seed: Seed of the random part poses of a simulated world within their jitter; None for the nominal poses.
         store_path: Replaces the store of the document: a file, or the address of a MongoDB server.
-        relay: Gives every process that moves something a stop line; without one, STOP needs the event loop.
+        relay: Provides a stop line for every process that moves devices; without it, STOP needs the event loop.
     """
 
     def __init__(
@@ -77,31 +77,31 @@ class OpenCell:
 
     @property
     def has_world(self) -> bool:
-        """Whether there is a simulated world, which can be brought back to where it was."""
+        """Whether there is a simulated world, whose state can be restored."""
         return self.document is not None and self.document.document.world is not None
 
     @property
     def store_path(self) -> str | None:
-        """The file or address of its store, without secrets; None without one."""
+        """The file or address of the store, without secrets; None without a store."""
         return store_address(self.document, self._store_path) if self.document is not None else None
 
     @property
     def connection(self) -> CellConnection:
-        """Whether every device is connected, and which is not."""
+        """Whether every device is connected, and which are not."""
         return self._connections.now
 
     def require_connected(self) -> None:
-        """Raise RobotError, with what is lost and what to do, unless every device is connected."""
+        """Raise RobotError, naming the lost devices, unless every device is connected."""
         self._connections.require()
 
     async def reconnect(self) -> None:
-        """Connect again what is lost, under the same names; does nothing where nothing is.
+        """Reconnect all lost devices under the same names; does nothing when all are connected.
 
-        A simulated world goes on from its last instant, at rest.
+        A simulated world continues from its last state, at rest.
 
         Raises:
             ControlError: a robot is commanded by a run.
-            RobotError: a device does not come back.
+            RobotError: a device cannot be reconnected.
         """
         for robot in self.robots:
             owner = self.bus.leases.owner(robot)
@@ -111,11 +111,11 @@ class OpenCell:
 
     async def __aenter__(self) -> Self:
         try:
-            # Opening a world loads most of a thousand modules.
+            # Opening a world imports nearly a thousand modules.
             with gc_paused():
                 await self._open()
         except BaseException:
-            # Whatever stopped the opening, what was opened so far must come to rest and close.
+            # After any error, the devices opened so far must come to rest and close.
             await self._stack.aclose()
             raise
         return self
@@ -129,7 +129,7 @@ class OpenCell:
         """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
 
         Raises:
-            RobotError: one could not confirm it; the others were stopped all the same.
+            RobotError: a robot could not confirm rest; the others were stopped.
         """
         for goal in self.bus.goals():
             goal.cancel()
@@ -137,7 +137,7 @@ class OpenCell:
         if self._world is not None:
             devices += (self._world,)
         stops = {asyncio.create_task(device.stop(), name=f"stop {device.name}"): device for device in devices}
-        await _carried_through(tuple(stops))
+        await _wait_uncancelled(tuple(stops))
         failures = [failure for task, device in stops.items() if (failure := _failure(task, device)) is not None]
         if failures:
             raise RobotError(
@@ -145,18 +145,18 @@ class OpenCell:
             ) from failures[0]
 
     async def snapshot(self) -> bytes | None:
-        """Return what `restore` needs to bring the world back to the present; None where there is none."""
+        """Return a snapshot of the world for `restore`; None without a world."""
         return self._world.snapshot() if self._world is not None else None
 
     async def restore(self, snapshot: bytes) -> None:
-        """Bring the world to where `snapshot` was made, at rest; before the first goal.
+        """Restore the world to the state of `snapshot`, at rest; call it before the first goal.
 
         Raises:
-            CellError: this cell has no world that could be brought anywhere.
-            RobotError: something moves, or the snapshot is none of this very world.
+            CellError: this cell has no world.
+            RobotError: something moves, or the snapshot is not of this world.
         """
         if self._world is None:
-            raise CellError("the cell has no world to restore", where=self.name, hint="open the cell it was made in")
+            raise CellError("the cell has no world to restore", where=self.name, hint="open the cell of the snapshot")
         await self._world.restore(snapshot)
 
     async def _open(self) -> None:
@@ -164,16 +164,16 @@ class OpenCell:
             return
         await self._open_store(self.document)
         if self.relay is not None:
-            # Before the devices, which get their new lines from it when all are connected again.
+            # Before the devices, which get new lines from the relay when all are reconnected.
             self._connections.follow(self.relay)
         world = await self._open_world(self.document)
         await self._open_robots(self.document, world)
         self._stack.push_async_callback(self._close_bus)
 
     async def _close_bus(self) -> None:
-        """Cancel what still runs; a handler that does not end keeps no robot from coming to rest."""
+        """Cancel all active goals; a handler that does not end does not prevent the robots from coming to rest."""
         closing = asyncio.create_task(self.bus.__aexit__(None, None, None), name="closing the bus")
-        await _carried_through((closing,))
+        await _wait_uncancelled((closing,))
         if closing.done() and not closing.cancelled():
             closing.result()
         for goal in self.bus.goals():
@@ -213,10 +213,10 @@ class OpenCell:
         robots: dict[str, Robot] = {}
         for name, entry in cell.document.robots.items():
             try:
-                made = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
+                device = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
             except FlexcellError as error:
                 raise CellError(error.message, where=f"robot {name} of {cell.file}", hint=error.hint) from error
-            robot = await self._stack.enter_async_context(made)
+            robot = await self._stack.enter_async_context(device)
             robot.register(self.bus)
             robots[name] = robot
             self._connections.follow(robot)
@@ -227,38 +227,38 @@ class OpenCell:
         return maker(cell, name=name, bus=self.bus)
 
 
-async def _carried_through(tasks: tuple[asyncio.Task[None], ...]) -> None:
+async def _wait_uncancelled(tasks: tuple[asyncio.Task[None], ...]) -> None:
     """Wait until the tasks have ended; cancel those that take too long.
 
-    Cancelling the caller does not interrupt them: once begun, a stop is carried through.
+    Cancelling the caller does not interrupt them: a stop, once started, is completed.
     """
     loop = asyncio.get_running_loop()
     deadline_s = loop.time() + _PATIENCE_S
     cancelled: asyncio.CancelledError | None = None
-    left = set(tasks)
-    while left and loop.time() < deadline_s:
+    pending = set(tasks)
+    while pending and loop.time() < deadline_s:
         try:
-            _, left = await asyncio.wait(left, timeout=deadline_s - loop.time())
+            _, pending = await asyncio.wait(pending, timeout=deadline_s - loop.time())
         except asyncio.CancelledError as error:
             cancelled = error
-    # One that lets no cancel pass is left behind and named in the log.
+    # A task that suppresses its cancellation is abandoned and named in the log.
     with suppress(NotStopped):
-        late = [task for task in tasks if task in left]
-        await preempt(late, OverduePolicy(tell=_say_overdue, abandon=_say_abandoned, abandon_after_s=_PATIENCE_S))
+        late = [task for task in tasks if task in pending]
+        await preempt(late, OverduePolicy(tell=_log_overdue, abandon=_log_abandoned, abandon_after_s=_PATIENCE_S))
     if cancelled is not None:
         raise cancelled
 
 
 def _failure(stop: asyncio.Task[None], device: Robot) -> BaseException | None:
-    """Return why a device is not known to rest; None when it is."""
+    """Return the error of a device that did not confirm rest; None when it did."""
     if stop.done() and not stop.cancelled():
         return stop.exception()
-    return RobotError(f"it does not confirm that it rests within {_PATIENCE_S:g} s", where=device.name)
+    return RobotError(f"the device did not confirm rest within {_PATIENCE_S:g} s", where=device.name)
 
 
-def _say_overdue(name: str, waited_s: float) -> None:
+def _log_overdue(name: str, waited_s: float) -> None:
     _log.error("%s has not ended %g s after it was cancelled", name, waited_s)
 
 
-def _say_abandoned(task: asyncio.Task[Any], waited_s: float) -> None:
+def _log_abandoned(task: asyncio.Task[Any], waited_s: float) -> None:
     _log.error("%s was abandoned %g s after it was cancelled", task.get_name(), waited_s)

@@ -1,4 +1,4 @@
-"""The cell of a running server, reached over HTTP with the operator's token."""
+"""The cell of a running server, accessed over HTTP with the operator's token."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _CONNECT_S = 60.0
 
 
 async def connect_remote_cell(folder: Path) -> CellConnection:
-    """Let the server that keeps its state in `folder` connect again what is lost of its cell; return how it stands.
+    """Have the server with the state folder `folder` reconnect the lost devices of its cell; return the connection.
 
     Raises:
-        BusError: no server runs there, or it refuses, with its reason.
+        BusError: no server runs there, or it refuses with a reason.
     """
     async with server_client(folder) as client:
         verify_response(await client.post("/api/v1/cell/connect", json={}, timeout=_CONNECT_S))
@@ -24,7 +24,7 @@ async def connect_remote_cell(folder: Path) -> CellConnection:
 
 
 async def remote_cell_connection(folder: Path) -> CellConnection:
-    """Return whether the devices of the server's cell are connected. Raises as `connect_remote_cell` does."""
+    """Return the connection of the server's cell. Raises as `connect_remote_cell` does."""
     async with server_client(folder) as client:
         response = verify_response(await client.get("/api/v1/cell/connection"))
     return msgspec.json.decode(response.content, type=CellConnection)

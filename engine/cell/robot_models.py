@@ -1,7 +1,7 @@
-"""The contract of robot and tool models: what a cell document may name, and what a robot made of it offers.
+"""The interface of robot and tool models: the models that a cell document may name, and the properties of its robots.
 
-An installed package offers its models through the entry point `standard` of the group `flexcell.models`. Nothing is
-connected or simulated to answer.
+An installed package provides its models through the entry point `standard` of the group `flexcell.models`. Nothing is
+connected or simulated.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from engine.errors import RegistryError
 from engine.skills.arm_target import StaticCell
 
 ToolKind = Literal["gripper", "magnet", "hand"]
-"""What a tool does: opens and closes fingers, is switched, or closes a hand of one motor."""
+"""The kind of a tool: gripper with fingers, switchable magnet, or hand with one motor."""
 
 
 class RobotSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """What one robot of a cell offers, by its model, its tool and its options.
+    """The properties of one robot of a cell, from its model, its tool and its options.
 
-    `links` are those of arm and tool, `base_link` is the root of them. `joints` are the least and the greatest angle of
-    each joint of the arm in radians, in the order of its goals. `tool` is None for a bare flange.
+    `links` are those of arm and tool, `base_link` is their root. `joints` are the lower and upper position limits of
+    the arm's joints in radians, in the order of its goals. `tool` is None for a bare flange.
     """
 
     base_link: str
@@ -34,7 +34,7 @@ class RobotSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RobotModels(Protocol):
-    """The models of an installed package, and the planners that plan for them."""
+    """The models and motion planners of an installed package."""
 
     def robots(self) -> tuple[str, ...]:
         """Return the names of the built-in robot models."""
@@ -49,26 +49,26 @@ class RobotModels(Protocol):
         ...
 
     def summary(self, cell: Cell, robot: str) -> RobotSummary:
-        """Return what a robot of the cell offers.
+        """Return the properties of a robot of the cell.
 
         Raises:
             CellError: there is no such model, or it has no such option.
-            DocumentError: a document of a model folder, or a calibration file, is wrong.
+            DocumentError: a document of a model folder, or a calibration file, is invalid.
         """
         ...
 
     def drawn(self, cell: Cell) -> StaticCell:
-        """Return the cell as it is drawn, in which arms can be put to targets; nothing is built before one is."""
+        """Return the static cell, in which targets of arms can be checked; it is built at the first check."""
         ...
 
 
 @cache
 def robot_models() -> RobotModels | None:
-    """Return the models that are installed; None where no package offers any, or what it needs is missing.
+    """Return the installed models; None when no package provides any, or a package that it needs is missing.
 
-    They are looked for once: that takes 20 ms, and an editor checks after every change.
+    Cached: loading takes 20 ms, and an editor checks after every change.
     """
-    # Imported where it is wanted: what tells which packages are installed parses mail headers and unpacks archives.
+    # Imported on demand: importlib.metadata imports parsers of mail headers and archives.
     from engine.registry import MODELS, load_factory
 
     try:

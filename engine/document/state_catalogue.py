@@ -1,7 +1,7 @@
-"""The classes that documents may name; looking one up imports nothing.
+"""The classes that documents may name; a lookup imports nothing.
 
-A catalogue is made once, at the start of a command or server, by `engine.registry.load_states`. Any
-mapping of names to states serves as one where no modules are allowed.
+A catalogue is created once, at the start of a command or server, by `engine.registry.load_states`. Any
+mapping of names to states can be used as one when no modules are allowed.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class StateCatalogue(Mapping[str, type[State]]):
 
     Args:
         states: By registered name, and as `module:Class`.
-        modules: The modules that the project allows, loaded.
-        broken: Why a name, a module or an entry point is not there.
-        project_file: Where modules are allowed; None where there is no project file yet.
+        modules: The loaded modules that the project allows.
+        broken: The error of each name, module or entry point that could not be loaded.
+        project_file: The file that allows modules; None when there is no project file yet.
     """
 
     def __init__(
@@ -53,14 +53,14 @@ class StateCatalogue(Mapping[str, type[State]]):
         return len(self._states)
 
     def including(self, classes: Mapping[str, type]) -> StateCatalogue:
-        """Return a catalogue with these states besides, such as those that a Python file gave its behavior."""
+        """Return a catalogue with additional states, such as those that a Python file passes to its behavior."""
         states = {name: kind for name, kind in classes.items() if issubclass(kind, State)}
         return StateCatalogue(
             {**self._states, **states}, modules=self.modules, broken=self.broken, project_file=self._project_file
         )
 
     def missing(self, name: str) -> RegistryError:
-        """Return why there is no state of this name, and what can be done about it."""
+        """Return the error for a missing state, with a hint."""
         module = name.rpartition(":")[0]
         known = self.broken.get(name) or self.broken.get(module)
         if known is not None:
@@ -72,7 +72,7 @@ class StateCatalogue(Mapping[str, type[State]]):
         return RegistryError(f"there is no state `{name}`", hint=f"{hint}; {missing}" if missing else hint)
 
     def module(self, name: str) -> ModuleType:
-        """Return a module that documents may name; raises RegistryError where it is not allowed, or broken."""
+        """Return a module that documents may name; raises RegistryError when it is not allowed or failed to load."""
         found = self.modules.get(name)
         if found is None:
             raise self.broken.get(name) or not_allowed(name, self._project_file)
@@ -92,9 +92,9 @@ def module_of(catalogue: Catalogue, name: str) -> ModuleType:
 
 
 def not_allowed(module: str, project_file: str | None = None) -> ModuleNotAllowed:
-    """Return the refusal of a module that a document names and no project file allows."""
+    """Return the error for a module that a document names and no project file allows."""
     if not module:
-        return ModuleNotAllowed("this names no module", hint="write it as package.module:Class")
+        return ModuleNotAllowed("the name has no module", hint="write it as package.module:Class")
     if project_file is None:
         advice = f"write `flexcell: 1` and `states: [{module}]` into {PROJECT_FILE} in your project folder"
     else:
@@ -103,7 +103,7 @@ def not_allowed(module: str, project_file: str | None = None) -> ModuleNotAllowe
 
 
 def loaded_class(name: str) -> type | None:
-    """Return the class `module:Class` of a module that this process has loaded; imports nothing."""
+    """Return the class `module:Class` of a loaded module; imports nothing."""
     module_name, _, class_name = name.partition(":")
     module = sys.modules.get(module_name)
     found = vars(module).get(class_name) if module is not None else None
@@ -115,12 +115,12 @@ def find_state(catalogue: Catalogue, name: str, given: Mapping[str, type] = NO_C
 
     Args:
         catalogue: The states by name.
-        name: As written.
-        given: The classes that the behavior was made with in Python.
+        name: The name in the document.
+        given: The classes that the behavior uses in Python.
 
     Raises:
-        ModuleNotAllowed: it is in a module that the project does not allow.
-        RegistryError: there is none of this name, or what would bring it could not be loaded.
+        ModuleNotAllowed: the state is in a module that the project does not allow.
+        RegistryError: there is no state of this name, or its package or module failed to load.
     """
     found = given.get(name) or catalogue.get(name)
     if found is None:

@@ -1,4 +1,1 @@
-"""What the computer gives: child processes, loopback sockets, private files, SQLite files.
-
-Turns of the event loop.
-"""
+"""Services of the operating system: child processes, loopback sockets, private files, SQLite files."""

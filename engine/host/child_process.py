@@ -1,4 +1,4 @@
-"""Processes of our own beside this one: how they are started, and how they ended, in words."""
+"""Starts child processes and describes how they ended."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ _ROOT = str(Path(__file__).resolve().parents[2])
 def start_child(
     code: str, descriptors: Sequence[int], *, what: str, settings: Mapping[str, str] | None = None
 ) -> subprocess.Popen[bytes]:
-    """Start Python on `code` with these open descriptors, whose numbers are its arguments.
+    """Start Python on `code` with open file descriptors, whose numbers are its arguments.
 
-    `what` is the process in words; `settings` are more environment variables.
+    `what` names the process in messages; `settings` are additional environment variables.
 
     Raises:
-        RobotError: it does not start.
+        RobotError: the process does not start.
     """
     environment = {
         **os.environ,
-        # The process must import this very package, wherever this one found it.
+        # The process must import the same package as this process.
         "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
-        # A thread pool for 7 x 7 matrices only takes time from the others.
+        # A thread pool for 7 x 7 matrices only takes CPU time from other processes.
         "OPENBLAS_NUM_THREADS": "1",
         "OMP_NUM_THREADS": "1",
         **(settings or {}),
@@ -46,13 +46,13 @@ def start_child(
 
 
 def set_parent_death_signal(connection: socket.socket) -> None:
-    """Let the system kill this process when its parent ends; in the child, for one that holds nothing to be lost.
+    """Have the system kill this process when its parent ends; called in a child that holds no data to be saved.
 
-    Without it a child in the midst of a long computation lives on until it looks at its socket. The system means the
-    thread that has started the child, which must therefore live as long as the child is needed.
+    Without it a child in a long computation runs until it next reads its socket. The parent is the thread that
+    started the child, which must therefore live as long as the child is needed.
     """
     _libc.prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
-    # The parent may have ended before that: then its socket has.
+    # The parent may have ended before this call: then its socket is closed.
     readable, _, _ = select.select([connection], [], [], 0.0)
     try:
         if readable and not connection.recv(1, socket.MSG_PEEK):
@@ -62,7 +62,7 @@ def set_parent_death_signal(connection: socket.socket) -> None:
 
 
 def describe_exit(process: subprocess.Popen[bytes] | None, *, what: str) -> str:
-    """Say why a process is gone, once its socket has closed; None stands for one that was ended from here."""
+    """Return why a process has ended, once its socket is closed; None means that this process ended it."""
     if process is None:
         return f"{what} was ended"
     try:
@@ -73,5 +73,5 @@ def describe_exit(process: subprocess.Popen[bytes] | None, *, what: str) -> str:
 
 
 def exit_code_text(code: int) -> str:
-    """Return how a process ended, as `by SIGKILL` or `with exit code 1`, from its return code."""
+    """Return `by SIGKILL` or `with exit code 1` for the return code of a process."""
     return f"by {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"

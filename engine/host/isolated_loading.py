@@ -1,4 +1,4 @@
-"""Loads third-party code in isolation: an exception is kept and reported with its file and line."""
+"""Loads third-party code in isolation: an exception is caught and reported with its file and line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, kw_only=True)
 class LoadFailure:
-    """What a module or entry point raised instead of being loaded; `where` is `file:line`, empty where unknown."""
+    """The exception of a module or entry point that failed to load; `where` is `file:line`, empty when unknown."""
 
     name: str
     raised: str
@@ -28,20 +28,20 @@ class LoadFailure:
 
 
 def load_isolated(name: str, load: Callable[[], T]) -> T | LoadFailure:
-    """Return what `load` returns, or what it raised, be it `SystemExit`; Ctrl-C of the operator passes."""
-    with _interrupt_noted() as interrupted:
+    """Return the result of `load`, or its exception, including `SystemExit`; Ctrl-C of the operator is not caught."""
+    with _detect_interrupt() as interrupted:
         try:
             return load()
         except BaseException as error:
-            # A module may raise anything, `SystemExit` and `KeyboardInterrupt` too; it must end nothing but itself.
+            # A module may raise anything, even `SystemExit` and `KeyboardInterrupt`; only its own loading must fail.
             if interrupted.is_set():
                 raise
             return LoadFailure(name=name, raised=_in_one_line(error), where=_raised_at(error))
 
 
 @contextmanager
-def _interrupt_noted() -> Generator[Event]:
-    """Tell the operator's Ctrl-C from a `KeyboardInterrupt` that the loaded code raises."""
+def _detect_interrupt() -> Generator[Event]:
+    """Distinguish the operator's Ctrl-C from a `KeyboardInterrupt` that the loaded code raises."""
     pressed = Event()
     own = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if not own or current_thread() is not main_thread():
@@ -64,7 +64,7 @@ def _in_one_line(error: BaseException) -> str:
     try:
         text = " ".join(str(error).split())
     except Exception:
-        # The exception is of the loaded code too, and so is its text.
+        # The exception class belongs to the loaded code, so its text may raise too.
         text = ""
     return f"{kind}: {text}" if text else kind
 
@@ -74,6 +74,6 @@ def _raised_at(error: BaseException) -> str:
         return f"{error.filename}:{error.lineno or 1}"
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if not frame.filename.startswith("<frozen") and frame.filename != __file__]
-    # Importing goes through importlib itself, which is not where anything went wrong.
+    # Importing passes through importlib itself, which is not the source of the error.
     own = [frame for frame in own if "/importlib/" not in frame.filename]
     return f"{own[-1].filename}:{own[-1].lineno}" if own else ""

@@ -9,7 +9,7 @@ from engine.errors import FlexcellError
 
 
 def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
-    """Return a TCP socket bound to a loopback address, not yet listening; port 0 takes a free one.
+    """Return a TCP socket bound to a loopback address, not yet listening; port 0 selects a free one.
 
     Args:
         host: A loopback address, or `localhost`.
@@ -23,7 +23,7 @@ def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
         raise FlexcellError(
             "the dashboard listens on this machine only",
             where=host,
-            hint="use 127.0.0.1, and from elsewhere an SSH tunnel for each port (--port, --view-port, --stop-port): "
+            hint="use 127.0.0.1; from another machine, an SSH tunnel for each port (--port, --view-port, --stop-port): "
             "ssh -L 8642:127.0.0.1:8642 <machine>",
         )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
@@ -36,13 +36,13 @@ def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
         raise FlexcellError(
             f"cannot listen on {host}:{port}: {error.strerror or error}",
             where=option,
-            hint=f"another server may be running; choose another {option}",
+            hint=f"another server may be running: choose another {option}",
         ) from error
     return bound
 
 
 def host_in_url(host: str) -> str:
-    """Return a host as it stands in a URL, in lower case."""
+    """Return a host as written in a URL, in lower case."""
     return f"[{host}]" if ":" in host else host.lower()
 
 

@@ -1,8 +1,8 @@
-"""Files and folders that only their owner may read: journals, stores, recordings, tokens, what was taught.
+"""Files and folders that only their owner may read: journals, stores, recordings, tokens, taught entries.
 
-What a file says of a cell and of the people in it is nobody else's. A file is made with mode 0600 and a folder with
-0700; a wider one of the same owner is made narrower. A folder that exists is left as it is unless it is a state
-folder of ours: somebody may have given one that is shared on purpose.
+Data of a cell and of the people in it is private. Files are created with mode 0600 and folders with 0700; a wider
+mode of the same owner is narrowed. An existing folder is not changed unless it is a state folder of flexcell: the
+user may share a folder on purpose.
 """
 
 from __future__ import annotations
@@ -22,37 +22,37 @@ _log = logging.getLogger("flexcell.files")
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder and those above it that are missing, for the owner alone.
+    """Create a folder and its missing parents, for the owner only.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: a folder cannot be created.
     """
     missing = [folder, *folder.parents]
     for each in reversed(missing[: next((n for n, each in enumerate(missing) if each.exists()), len(missing))]):
         each.mkdir(mode=_FOLDER, exist_ok=True)
     if not folder.is_dir():
-        folder.mkdir(exist_ok=True)  # says what is there instead
+        folder.mkdir(exist_ok=True)  # raises the error for an existing file
     if folder.name == STATE_FOLDER or folder.parent.name == STATE_FOLDER:
         restrict_to_owner(folder if folder.name == STATE_FOLDER else folder.parent)
 
 
 def new_private_file(path: Path) -> None:
-    """Make an empty file for the owner alone, or make one that is there private.
+    """Create an empty file for the owner only, or make an existing one private.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: the file cannot be created.
     """
-    # What is there is not opened: closing it would take SQLite's locks from all connections of this process.
+    # An existing file is not opened: closing it would release SQLite's locks of all connections of this process.
     with suppress(FileExistsError):
         os.close(os.open(path, os.O_RDONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, _FILE))
     restrict_to_owner(path)
 
 
 def open_private(path: Path) -> BinaryIO:
-    """Open a file for writing from its start, for the owner alone.
+    """Create or truncate a file and open it for writing, for the owner only.
 
     Raises:
-        OSError: it cannot be opened.
+        OSError: the file cannot be opened.
     """
     stream = os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, _FILE), "wb")
     restrict_to_owner(path)
@@ -60,12 +60,12 @@ def open_private(path: Path) -> BinaryIO:
 
 
 def restrict_to_owner(path: Path) -> None:
-    """Take a file or folder from everybody but its owner; of another owner or kind it is left as it is."""
+    """Remove the access of group and others to a file or folder; one of another owner or kind is not changed."""
     try:
         status = path.stat()
         plain = stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)
         if plain and status.st_uid == os.geteuid() and status.st_mode & 0o077:
             path.chmod(status.st_mode & 0o700)
     except OSError as error:
-        # A file system without modes: whoever mounts it decides who may read it.
+        # A file system without modes: its mount options decide who may read it.
         _log.info("%s keeps its mode: %s", path, error)

@@ -1,7 +1,7 @@
-"""Opens an SQLite file the durable way and trusts nothing in it; says in words why one cannot be used.
+"""Opens an SQLite file durably and as untrusted data; describes why a file cannot be used.
 
-A file may come from anybody. Its schema is checked before anything of it is executed, what it may make a query do
-is bounded by its own size, and only its owner may read it.
+A file may come from any source. Its schema is verified before anything in it is executed, the work of a query
+is bounded by the size of the file, and only the owner may read the file.
 """
 
 from __future__ import annotations
@@ -27,36 +27,36 @@ _ADVICE = {
     "SQLITE_READONLY": "make the file and its directory writable",
     "SQLITE_BUSY": "another program holds it locked: end that program",
     "SQLITE_LOCKED": "another program holds it locked: end that program",
-    "SQLITE_NOTADB": "this is no SQLite file: move it away",
+    "SQLITE_NOTADB": "this is not an SQLite file: move it away",
     "SQLITE_CORRUPT": "the file is damaged: restore a copy or move it away",
     "SQLITE_CANTOPEN": "check that the directory exists and is writable",
     "SQLITE_IOERR": "reading or writing the disk failed: check free space, file size limits and the disk",
-    "SQLITE_INTERRUPT": "no query of ours takes as much work on a file of this size: restore a copy or move it away",
-    "SQLITE_TOOBIG": f"one value may have {MAX_VALUE_BYTES // 2**20} MB",
+    "SQLITE_INTERRUPT": "the file makes queries work too long for its size: restore a copy or move it away",
+    "SQLITE_TOOBIG": f"a value has at most {MAX_VALUE_BYTES // 2**20} MB",
 }
-_UNUSABLE = "this file is damaged or none of flexcell's: restore a copy or move it away"
+_UNUSABLE = "this file is damaged or not a file of flexcell: restore a copy or move it away"
 
 
 class BoundedConnection(sqlite3.Connection):
-    """A connection whose queries may work only as much as the size of the file can make necessary.
+    """A connection that limits the work of a query by the size of the file.
 
-    Made by `open_sqlite` and `read_sqlite`; `bound` is called once.
+    Created by `open_sqlite` and `read_sqlite`; `bound` is called once.
     """
 
     def bound(self, path: Path) -> None:
-        """Let every query end that works longer on the file at `path` than one of its size needs."""
+        """Interrupt every query that works longer than the size of the file at `path` can require."""
         self._path = path
         self._steps = self._allowed = 0
         self.set_progress_handler(self._is_too_long, _STEPS_A_CALL)
 
     def execute(self, *given: Any) -> sqlite3.Cursor:
-        """Execute one statement, with an allowance of its own."""
+        """Execute one statement with its own work limit."""
         self._steps = 0
         try:
             return super().execute(*given)
         except UnicodeDecodeError as error:
-            # SQLite's own message quotes what is no text.
-            raise DamagedFile(f"it holds what is no text: {error}") from error
+            # SQLite's own message quotes invalid text.
+            raise DamagedFile(f"the file holds invalid text: {error}") from error
 
     def _is_too_long(self) -> int:
         self._steps += _STEPS_A_CALL
@@ -66,14 +66,14 @@ class BoundedConnection(sqlite3.Connection):
 
 
 def open_sqlite(path: Path, *, schema: SqliteMigrations, busy_timeout_s: float) -> BoundedConnection:
-    """Open or create `path` in WAL mode with a sync at every commit; transactions are begun by hand.
+    """Open or create `path` in WAL mode with a sync at every commit; transactions are opened explicitly.
 
-    An older version of its format is brought to the newest. The file, and a folder made for it, are its owner's alone.
-    The connection may be handed to another thread, but used by one at a time.
+    An older format is migrated to the newest. The file, and a folder created for it, are private to the owner.
+    The connection may move between threads; one thread uses it at a time.
 
     Raises:
         sqlite3.Error: the file cannot be opened, is not SQLite, is damaged, foreign, or has a newer format.
-        OSError: the directory or file cannot be made.
+        OSError: the directory or file cannot be created.
     """
     if str(path) != ":memory:":
         make_private_folder(path.parent)
@@ -99,7 +99,7 @@ def read_sqlite(path: Path, *, schema: SqliteMigrations, busy_timeout_s: float =
     """Open an existing file for reading only.
 
     Raises:
-        sqlite3.Error: it is missing, cannot be opened, is not SQLite, holds foreign tables, or has a newer format.
+        sqlite3.Error: the file is missing, cannot be opened, is not SQLite, has foreign tables or a newer format.
     """
     connection = sqlite3.connect(
         f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=busy_timeout_s, isolation_level=None,
@@ -115,7 +115,7 @@ def read_sqlite(path: Path, *, schema: SqliteMigrations, busy_timeout_s: float =
 
 
 def stored_bytes(path: Path) -> int:
-    """Return the size of a database with what is not yet written back into it; no honest query reads more."""
+    """Return the size of a database including its write-ahead log; a valid query reads no more."""
     sizes = 0
     for file in (path, path.with_name(f"{path.name}-wal")):
         with suppress(OSError):
@@ -124,7 +124,7 @@ def stored_bytes(path: Path) -> int:
 
 
 def advice(error: sqlite3.Error | OSError) -> str:
-    """Say what the reader can do about an error of SQLite or of the file system."""
+    """Return advice for an error of SQLite or of the file system."""
     if isinstance(error, OSError):
         return "check that the directory exists and is writable"
     if isinstance(error, FormatTooNew):
@@ -136,7 +136,7 @@ def advice(error: sqlite3.Error | OSError) -> str:
 
 
 def _distrust(connection: BoundedConnection, path: Path) -> None:
-    """Let nothing that is defined in the file do anything but hold rows."""
+    """Disable everything in the file except stored rows."""
     connection.bound(path)
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE_BYTES)
     connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, _MAX_SQL_BYTES)
@@ -145,14 +145,14 @@ def _distrust(connection: BoundedConnection, path: Path) -> None:
     connection.execute("PRAGMA trusted_schema=OFF")
     connection.execute("PRAGMA cell_size_check=ON")
     connection.execute("PRAGMA mmap_size=0")
-    # Python offers it from 3.12 on.
+    # Available from Python 3.12 on.
     defensive = getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE", None)
     if defensive is not None:
         connection.setconfig(defensive, True)  # pyright: ignore[reportAttributeAccessIssue, reportUnknownMemberType]
 
 
 def _require_sound(connection: sqlite3.Connection) -> None:
-    """Refuse to write into a file whose pages do not fit together: that would damage more of it."""
+    """Refuse to write into a file with inconsistent pages: that would increase the damage."""
     fault = str(connection.execute("PRAGMA quick_check(1)").fetchone()[0])
     if fault != "ok":
         raise DamagedFile(" ".join(fault.split()))

@@ -1,4 +1,4 @@
-"""The tables of an SQLite file of ours at each version of its format, and a check that it has no others."""
+"""The schema of an SQLite file at each version of its format, and a check that the file has no other objects."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _MOST_OBJECTS = 64
 
 
 class ForeignSchema(sqlite3.DatabaseError):
-    """A file holds something else than the tables of its version."""
+    """A file holds objects other than the tables of its version."""
 
 
 class DamagedFile(sqlite3.DatabaseError):
-    """The pages of a file do not fit together."""
+    """The pages of a file are inconsistent."""
 
 
 class FormatTooNew(sqlite3.Error):
@@ -25,9 +25,9 @@ class FormatTooNew(sqlite3.Error):
 
 @dataclass(frozen=True)
 class SqliteMigrations:
-    """The statements that lead from an empty file to each version of the format, one text a version.
+    """The statements that create each version of the format from the one before, one script per version.
 
-    A new file gets all of them and an older one those that it lacks, so that both hold the very same definitions.
+    A new file gets all of them and an older one those it lacks, so that both have the same definitions.
     """
 
     steps: Sequence[str]
@@ -38,15 +38,15 @@ class SqliteMigrations:
         return len(self.steps)
 
     def verify(self, connection: sqlite3.Connection) -> int:
-        """Check that a file holds what one of its version holds and no more; return that version, 0 of an empty file.
+        """Check that a file has exactly the schema of its version; return that version, 0 for an empty file.
 
-        Nothing of the file is executed: views, triggers, virtual tables, generated columns and constraints are refused
-        by their text alone.
+        Nothing in the file is executed: views, triggers, virtual tables, generated columns and constraints are refused
+        by their text.
 
         Raises:
-            FormatTooNew: a newer version of this program wrote it.
-            ForeignSchema: it has other tables, columns or indexes, or views or triggers.
-            sqlite3.Error: it cannot be read.
+            FormatTooNew: a newer version of this program wrote the file.
+            ForeignSchema: the file has other tables, columns or indexes, or views or triggers.
+            sqlite3.Error: the file cannot be read.
         """
         found = int(connection.execute("PRAGMA user_version").fetchone()[0])
         if found > self.version:
@@ -56,22 +56,22 @@ class SqliteMigrations:
         for name in sorted({*present, *expected}):
             if present.get(name) != expected.get(name):
                 kind = (present.get(name) or expected[name])[0]
-                what = "is not that" if name in present and name in expected else "is none"
-                what = "is missing" if name not in present else what
-                raise ForeignSchema(f"its {kind} {name:.80} {what} of format {found}")
+                problem = "differs from" if name in present and name in expected else "is not part of"
+                problem = "is missing from" if name not in present else problem
+                raise ForeignSchema(f"its {kind} {name:.80} {problem} format {found}")
         return found
 
     def upgrade(self, connection: sqlite3.Connection) -> None:
-        """Bring a file to the newest version, in one transaction.
+        """Migrate a file to the newest version in one transaction.
 
         Raises:
-            FormatTooNew: a newer version of this program wrote it.
-            ForeignSchema: it is no file of this kind.
-            sqlite3.Error: it cannot be written.
+            FormatTooNew: a newer version of this program wrote the file.
+            ForeignSchema: the file is not of this kind.
+            sqlite3.Error: the file cannot be written.
         """
         if self.verify(connection) == self.version:
             return
-        # Two processes may come here at once: which steps are due is asked again under the lock.
+        # Two processes may run this at once: the version is read again under the lock.
         connection.execute("BEGIN IMMEDIATE")
         try:
             for step in self.steps[self.verify(connection) :]:
@@ -106,7 +106,7 @@ def _expected(steps: tuple[str, ...]) -> dict[str, Object]:
 
 
 def _plain(sql: object) -> str:
-    """Return a definition without the spaces and line ends that mean nothing; versions wrote them differently."""
+    """Return a definition without insignificant whitespace, which differs between versions."""
     text = " ".join(str(sql or "").split())
     for sign in "(),":
         text = text.replace(f" {sign}", sign).replace(f"{sign} ", sign)
@@ -114,12 +114,12 @@ def _plain(sql: object) -> str:
 
 
 def _statements(script: str) -> list[str]:
-    """Split a script where a statement is complete."""
+    """Split a script into complete statements."""
     statements: list[str] = []
-    begun = ""
+    statement = ""
     for line in script.splitlines(keepends=True):
-        begun += line
-        if sqlite3.complete_statement(begun):
-            statements.append(begun)
-            begun = ""
+        statement += line
+        if sqlite3.complete_statement(statement):
+            statements.append(statement)
+            statement = ""
     return statements

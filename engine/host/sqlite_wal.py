@@ -1,7 +1,7 @@
-"""Finds damage in the write-ahead log of an SQLite file, which SQLite itself takes for the end of the log.
+"""Detects damage in the write-ahead log of an SQLite file, which SQLite itself takes for the end of the log.
 
-Only the log itself is opened. SQLite locks the file and its index by POSIX locks, which a process loses as soon as it
-closes either of them, whoever has opened it.
+Only the log is opened. SQLite locks the file and its index by POSIX locks, which a process loses as soon as any part
+of it closes either of them.
 
 Sources: section "WAL-Mode File Format" of the documentation of SQLite 3, and "How To Corrupt An SQLite Database File".
 """
@@ -17,45 +17,45 @@ from engine.host.sqlite_migrations import DamagedFile
 
 _LOG_HEADER_BYTES = 32
 _SUMMED = 24
-"""Bytes of the header of the log that its checksum is of."""
+"""Number of bytes of the log header that its checksum covers."""
 _FRAME_SUMMED = 8
-"""Bytes of the header of a frame that its checksum is of, with those of its page."""
+"""Number of bytes of a frame header that its checksum covers, followed by the page."""
 _BIG_ENDIAN = 0x377F0683
-"""Magic number of a log whose checksums are of big-endian numbers; the other one is smaller by 1."""
+"""Magic number of a log with big-endian checksums; that of little-endian ones is smaller by 1."""
 _FRAME_HEADER = struct.Struct(">4xI8s8s")
-"""Of a frame: pages of the file after its commit, 0 within a transaction; salt; checksum."""
+"""Frame header: pages of the file after the commit, 0 within a transaction; salt; checksum."""
 _PAGE_BYTES = 4096
-"""Size of a page of our files, where the header of the log does not say it."""
+"""Page size of flexcell's files, used when the header of the log does not give it."""
 _DURABLE_COMMITS = 2
-"""Commits behind damage from which on one of them was durable: each is synced before the next one begins."""
+"""Number of commits after the damage that proves a durable one: each is synced before the next begins."""
 
 Sums = tuple[int, int]
 
 
 class _Loss(NamedTuple):
-    """At which byte the log can no longer be read, and how many commits stand behind that."""
+    """The byte at which the readable log ends, and the number of commits after it."""
 
     end: int
     commits: int
 
 
 def require_whole_log(path: Path) -> None:
-    """Refuse a database whose log goes on behind what SQLite reads of it: durable commits would be lost unnoticed.
+    """Refuse a database whose log continues after the part that SQLite reads: durable commits would be lost silently.
 
-    Due before it is opened: the first connection that writes drops what it does not read when it is closed.
-    Damage in the newest commit looks like a write that a power failure has cut, and is left out as SQLite does it.
-    Takes some 80 µs of CPU a page of the log.
+    Call it before opening the database: the first writing connection drops the unread part when it is closed.
+    Damage in the newest commit looks like a write cut by a power failure, and is ignored as SQLite does.
+    Takes about 80 µs of CPU time per page of the log.
 
     Raises:
-        DamagedFile: it says where.
+        DamagedFile: the log is damaged; the message gives the byte.
     """
     log_path = path.with_name(f"{path.name}-wal")
     with suppress(FileNotFoundError), log_path.open("rb") as log:
         loss = _loss(log)
-        # What another process writes at this moment may look so for an instant.
+        # A concurrent write of another process may look like damage for an instant.
         if loss.commits >= _DURABLE_COMMITS and _loss(log) == loss:
             raise DamagedFile(
-                f"{log_path.name} is damaged near byte {loss.end}: {loss.commits} commits behind it cannot be read"
+                f"{log_path.name} is damaged near byte {loss.end}: {loss.commits} commits after it cannot be read"
             )
 
 
@@ -70,7 +70,7 @@ def _loss(log: BinaryIO) -> _Loss:
     end, commits = _LOG_HEADER_BYTES, 0
     while len(frame := log.read(_FRAME_HEADER.size + page_bytes)) == _FRAME_HEADER.size + page_bytes:
         pages_after_commit, its_salt, its_sums = _FRAME_HEADER.unpack_from(frame)
-        # The frames of a log whose header is damaged say by themselves what belongs together.
+        # Where the header of the log is damaged, the salt of the first frame identifies its frames.
         salt = salt or its_salt
         if is_sound:
             sums = _added(_added(sums, frame[:_FRAME_SUMMED], order), frame[_FRAME_HEADER.size :], order)
@@ -83,7 +83,7 @@ def _loss(log: BinaryIO) -> _Loss:
 
 
 def _added(sums: Sums, data: bytes, order: str) -> Sums:
-    """Return the checksum of what `sums` is of and of `data` behind it."""
+    """Return the checksum `sums` extended by `data`."""
     first, second = sums
     numbers = iter(struct.unpack(f"{order}{len(data) // 4}I", data[: len(data) // 4 * 4]))
     for one, other in zip(numbers, numbers, strict=False):

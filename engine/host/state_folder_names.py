@@ -1,6 +1,6 @@
-"""Names of the state folder, where a server keeps what outlives it. Imports nothing: `flexcell stop` waits for it."""
+"""Names of the state folder, the persistent data of a server. Imports nothing: `flexcell stop` must start fast."""
 
 STATE_FOLDER = ".flexcell"
-"""The name of the folder that is ours alone, wherever it lies."""
+"""Name of the state folder, private to flexcell."""
 SERVER_FILE = "server.json"
-"""In it: the address and the tokens of the server that runs there."""
+"""File in it with the address and the tokens of the running server."""

@@ -1,7 +1,7 @@
 """The journal of runs: every event, durable before an effect leaves the engine.
 
-`Journal.open(directory)` gives the SQLite journal, `begin` the part of one run; `append` is a
-plain cheap call and `await commit()` returns when all of it is on the disk.
+`Journal.open(directory)` opens the SQLite journal and `begin` returns the journal of one run; `append` is a
+cheap synchronous call, and `await commit()` returns when every appended event is on disk.
 """
 
 from engine.journal.batch import WorldState

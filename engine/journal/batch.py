@@ -1,4 +1,4 @@
-"""What one run wants written in one transaction: its events, and the simulated world at their end."""
+"""The write batch of one run: its events and the state of the simulated world after them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.event import Event
 
 @dataclass(frozen=True)
 class WorldState:
-    """The simulated world as it was when event `seq` was the last."""
+    """The state of the simulated world after event `seq`."""
 
     seq: int
     data: bytes = field(repr=False)
@@ -18,7 +18,7 @@ class WorldState:
 
 @dataclass(frozen=True)
 class WriteBatch:
-    """What one run wants written."""
+    """The data of one run for one transaction."""
 
     run: str
     epoch: int

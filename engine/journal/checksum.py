@@ -1,8 +1,8 @@
-"""Checksums over what a journal holds of a run, so that a changed byte is found and told with its place.
+"""Checksums over the data of a run, which detect a changed byte and locate it.
 
-Each row of events has one over itself and over the checksum of the row before it. The last of this chain is kept beside
-the run: what is changed, put elsewhere, or missing breaks it at the first row that it concerns. They find damage; who
-changes a journal on purpose can make them anew.
+The checksum of each row of events covers the row and the checksum of the row before it. The last checksum of this chain
+is stored with the run: a changed, moved or missing row breaks the chain at the first row affected. The checksums detect
+damage, not manipulation: anybody who can write the journal can recompute them.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ _BLOCK = struct.Struct("<qqqq")
 
 
 def chain_start(run: str) -> bytes:
-    """Return what the first row of a run is chained to."""
+    """Return the start value of the chain of a run."""
     return blake2b(run.encode(), digest_size=SIZE).digest()
 
 
 def event_checksum(before: bytes, seq: int, time_s: float, epoch: int, data: bytes) -> bytes:
-    """Return the checksum of a row of one event, as format 4 had them, whose predecessor has `before`."""
+    """Return the checksum of a row of one event (format 4) whose predecessor has the checksum `before`."""
     return blake2b(before + _EVENT.pack(seq, time_s, epoch) + data, digest_size=SIZE).digest()
 
 
 def block_checksum(before: bytes, seq: int, last: int, epoch: int, sums: bytes, data: bytes) -> bytes:
-    """Return the checksum of a row of several events whose predecessor has `before`."""
-    # One call over one piece of bytes: every event comes through here.
+    """Return the checksum of a row of several events whose predecessor has the checksum `before`."""
+    # One call over one buffer: every event passes through here.
     head = _BLOCK.pack(seq, last, epoch, len(sums))
     return blake2b(b"".join((before, head, sums, data)), digest_size=SIZE).digest()
 

@@ -1,4 +1,4 @@
-"""Turns events into JSON and back; the same events always give the same bytes."""
+"""Encodes events as JSON and decodes them; equal events give equal bytes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _DECODER: msgspec.json.Decoder[AnyEvent] = msgspec.json.Decoder(AnyEvent)
 
 
 def encode_event(event: Event) -> bytes:
-    """Return one line of JSON without its newline, keys of dictionaries sorted.
+    """Return one line of JSON without its newline, with sorted dictionary keys.
 
     A non-finite float inside userdata becomes null: JSON has no such number.
 
@@ -28,12 +28,12 @@ def encode_event(event: Event) -> bytes:
         raise JournalError(
             f"event {event.seq} ({type(event).__name__}) cannot be written as JSON: {error}",
             where=getattr(event, "path", None),
-            hint="userdata and requests may hold numbers, text, lists, dictionaries and messages only",
+            hint="use only numbers, text, lists, dictionaries and messages in userdata and requests",
         ) from error
 
 
 def decode_event(data: bytes | str) -> AnyEvent:
-    """Read one event back; messages inside userdata come back as plain dictionaries.
+    """Decode one event; messages inside userdata become plain dictionaries.
 
     Raises:
         JournalError: the text is not an event.
@@ -41,25 +41,25 @@ def decode_event(data: bytes | str) -> AnyEvent:
     try:
         return _DECODER.decode(data)
     except (msgspec.DecodeError, RecursionError) as error:
-        raise _no_event(error) from error
+        raise _not_an_event(error) from error
 
 
 def encode_event_log(events: Iterable[Event]) -> bytes:
-    """Return JSON lines, one event each, every line ended; two equal runs give equal bytes.
+    """Return JSON lines, one event per line, each with a newline; equal runs give equal bytes.
 
     Raises:
         JournalError: a value inside an event cannot be written as JSON.
     """
-    known = list(events)
+    all_events = list(events)
     try:
-        return _ENCODER.encode_lines(known)
+        return _ENCODER.encode_lines(all_events)
     except _UNWRITABLE:
-        # Once more, one by one: which event it is must be told.
-        return b"".join(encode_event(event) + b"\n" for event in known)
+        # Encode again one by one: the error must name the event.
+        return b"".join(encode_event(event) + b"\n" for event in all_events)
 
 
 def decode_event_log(data: bytes) -> tuple[AnyEvent, ...]:
-    """Read back what `encode_event_log` gave.
+    """Decode the output of `encode_event_log`.
 
     Raises:
         JournalError: a line is not an event.
@@ -67,8 +67,8 @@ def decode_event_log(data: bytes) -> tuple[AnyEvent, ...]:
     try:
         return tuple(_DECODER.decode_lines(data))
     except (msgspec.DecodeError, RecursionError) as error:
-        raise _no_event(error) from error
+        raise _not_an_event(error) from error
 
 
-def _no_event(error: Exception) -> JournalError:
+def _not_an_event(error: Exception) -> JournalError:
     return JournalError(f"this is not an event: {error}", hint="the journal is damaged or of another version")

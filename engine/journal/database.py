@@ -38,7 +38,7 @@ CREATE TABLE IF NOT EXISTS world(run TEXT PRIMARY KEY, seq INTEGER NOT NULL, dat
         """
 CREATE TABLE IF NOT EXISTS driver(run TEXT PRIMARY KEY, engine TEXT NOT NULL) STRICT;
 """,
-        # A run of an older version has a row without checksums; events are chained from `since` on.
+        # A run of an older version has a row without checksums; the chain starts at event `since`.
         """
 ALTER TABLE event ADD COLUMN checksum BLOB;
 CREATE TABLE checksum(
@@ -46,7 +46,7 @@ CREATE TABLE checksum(
     world BLOB) STRICT, WITHOUT ROWID;
 INSERT INTO checksum(run, since, seq) SELECT id, 0, 0 FROM run;
 """,
-        # Events are written in blocks from here on; the rows of older ones stay as they are.
+        # From this version on events are written in blocks; rows of older events stay unchanged.
         """
 CREATE TABLE block(
     run TEXT NOT NULL, seq INTEGER NOT NULL, last INTEGER NOT NULL, epoch INTEGER NOT NULL, sums BLOB NOT NULL,
@@ -74,14 +74,14 @@ DAMAGE_HINT = "restore a copy of the journal, or move it away"
 
 
 class _End(NamedTuple):
-    """Where the events of a run end: the number of the last, and what the next is chained to."""
+    """The end of a run's events: the number of the last event, and the checksum that the next row is chained to."""
 
     seq: int
     chain: bytes
 
 
 class RunRefused(JournalError):
-    """The events of one run cannot be stored; those of the other runs can."""
+    """The events of one run cannot be stored; other runs are not affected."""
 
 
 class JournalDatabase:
@@ -91,11 +91,11 @@ class JournalDatabase:
         self.path = path
         self._connection = connection
         self._ends: dict[str, _End] = {}
-        """Where each run that this engine drives ends."""
+        """The end of each run that this engine drives."""
 
     @classmethod
     def open(cls, path: Path, *, busy_timeout_s: float) -> JournalDatabase:
-        """Open or create the file; raises JournalError with the path and what to do."""
+        """Open or create the file; raises JournalError with the path and a hint."""
         try:
             connection = open_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         except (sqlite3.Error, OSError) as error:
@@ -112,9 +112,9 @@ class JournalDatabase:
         origin: RunOrigin | None,
         engine: str,
     ) -> int:
-        """Store a new run as running, driven by `engine`; return its epoch."""
+        """Insert a run with status running, driven by `engine`; return its epoch."""
         text = msgspec.json.encode(origin).decode() if origin is not None else None
-        begun = checksum_of((run_id, text)) if text is not None else None
+        origin_checksum = checksum_of((run_id, text)) if text is not None else None
         with self._writing() as connection:
             try:
                 connection.execute(
@@ -122,20 +122,20 @@ class JournalDatabase:
                     (run_id, behavior, document, started_unix_s),
                 )
             except sqlite3.IntegrityError as error:
-                raise JournalError(f"run {run_id} is there already", where=self.path, hint="resume it") from error
+                raise JournalError(f"run {run_id} already exists", where=self.path, hint="resume it") from error
             if text is not None:
                 connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
             connection.execute(_SET_DRIVER, (run_id, engine))
             connection.execute(
                 "INSERT INTO checksum(run, since, seq, chain, origin) VALUES (?, 1, 0, ?, ?)",
-                (run_id, chain_start(run_id), begun),
+                (run_id, chain_start(run_id), origin_checksum),
             )
             self._seal(run_id)
         self._ends[run_id] = _End(0, chain_start(run_id))
         return 1
 
     def take_over_run(self, run_id: str, *, engine: str) -> int:
-        """Make this engine the only one that may write to the run; return the new epoch."""
+        """Make this engine the only writer of the run; return the new epoch."""
         with self._writing() as connection:
             try:
                 self._require_undamaged(run_id)
@@ -153,20 +153,20 @@ class JournalDatabase:
         return int(row[0])
 
     def store(self, batches: Sequence[WriteBatch]) -> None:
-        """Write what several runs have, in one durable transaction.
+        """Write the batches of several runs in one durable transaction.
 
         Raises:
-            RunRefused: one run may not write or gave an event twice; nothing was written.
-            JournalError: the file cannot be written; nothing was.
+            RunRefused: one run must not write, or its events are out of order; nothing is written.
+            JournalError: the file cannot be written; nothing is written.
         """
-        made = [(each, _blocks(each, self._ends[each.run])) for each in batches]
+        encoded = [(each, _blocks(each, self._ends[each.run])) for each in batches]
         with self._writing():
-            for each, blocks in made:
+            for each, blocks in encoded:
                 self._check_fence(each.run, each.epoch)
                 self._insert_blocks(each.run, blocks)
                 self._store_status(each.run, each.events)
                 self._store_world(each)
-        for each, blocks in made:
+        for each, blocks in encoded:
             if blocks:
                 self._ends[each.run] = _End(blocks[-1].last, blocks[-1].checksum)
 
@@ -177,9 +177,9 @@ class JournalDatabase:
     def _check_fence(self, run: str, epoch: int) -> None:
         row = self._connection.execute("SELECT epoch FROM run WHERE id = ?", (run,)).fetchone()
         if row is None or int(row[0]) != epoch:
-            now = "has been removed" if row is None else f"is driven by another engine now (epoch {row[0]})"
+            state = "has been removed" if row is None else f"is driven by another engine now (epoch {row[0]})"
             raise RunRefused(
-                f"run {run} {now}; this one (epoch {epoch}) may not write any more",
+                f"run {run} {state}; this engine (epoch {epoch}) must not write to it",
                 where=run,
                 hint="stop this engine: the other one has resumed the run",
             )
@@ -190,7 +190,7 @@ class JournalDatabase:
         try:
             self._connection.executemany(_INSERT_BLOCK, map(msgspec.structs.astuple, blocks))
         except sqlite3.IntegrityError as error:
-            raise RunRefused(f"an event from seq {blocks[0].seq} on is stored already: {error}", where=run) from error
+            raise RunRefused(f"an event from seq {blocks[0].seq} on is already stored: {error}", where=run) from error
         end = blocks[-1]
         self._connection.execute("UPDATE checksum SET seq = ?, chain = ? WHERE run = ?", (end.last, end.checksum, run))
 
@@ -201,7 +201,7 @@ class JournalDatabase:
             self._connection.execute("UPDATE checksum SET world = ? WHERE run = ?", (checksum_of(row), batch.run))
 
     def _store_status(self, run: str, events: Sequence[Event]) -> None:
-        # Nearly never is there one, and this is the cheapest way to see it.
+        # Such an event is rare, and this is the cheapest test for one.
         if RunEnded not in map(type, events):
             return
         for event in events:
@@ -211,18 +211,18 @@ class JournalDatabase:
                 self._seal(run)
 
     def _seal(self, run: str) -> None:
-        """Store the checksum of what is known of a run as a whole, as it is now."""
+        """Store the checksum of the present record of a run."""
         row = self._connection.execute(_RECORD, (run,)).fetchone()
         self._connection.execute("UPDATE checksum SET record = ? WHERE run = ?", (checksum_of(row[:-1]), run))
 
     def _require_undamaged(self, run: str) -> None:
-        """Refuse to make a checksum over what is damaged already."""
+        """Refuse to compute a checksum over a damaged record."""
         row = self._connection.execute(_RECORD, (run,)).fetchone()
         if row is not None and row[-1] is not None and row[-1] != checksum_of(row[:-1]):
-            raise RunRefused(f"what the journal says of run {run} as a whole is damaged", where=run, hint=DAMAGE_HINT)
+            raise RunRefused(f"the record of run {run} is damaged", where=run, hint=DAMAGE_HINT)
 
     def _end(self, run: str) -> _End:
-        """Return where a run ends; one of an older version begins its chain here."""
+        """Return the end of a run; the chain of a run of an older version starts here."""
         row = self._connection.execute("SELECT seq, chain FROM checksum WHERE run = ?", (run,)).fetchone()
         last = int(self._connection.execute(_LAST_SEQ, (run,)).fetchone()[0])
         if row is not None and row[1] is not None:
@@ -240,7 +240,7 @@ class JournalDatabase:
 
     @contextmanager
     def _writing(self) -> Generator[sqlite3.Connection]:
-        """Open a transaction: all that the block writes is durable at its end, or nothing of it is there.
+        """Open a transaction: at its end either everything that the block wrote is durable, or nothing.
 
         Raises:
             JournalError: the file cannot be written.
@@ -252,18 +252,18 @@ class JournalDatabase:
         except sqlite3.Error as error:
             raise journal_fault("cannot be written", self.path, error) from error
         finally:
-            # Whatever went wrong, the next transaction must find none open.
+            # After any error no transaction may stay open.
             if self._connection.in_transaction:
                 self._connection.rollback()
 
 
 def journal_fault(what: str, path: Path, error: sqlite3.Error | OSError) -> JournalError:
-    """Word an error of SQLite: what, which file, what to do."""
+    """Return the JournalError of an SQLite error, with the file and advice."""
     return JournalError(f"the journal {what}: {error}", where=path, hint=advice(error))
 
 
 def _blocks(batch: WriteBatch, end: _End) -> list[EventBlock]:
-    """Return the rows of the events of a batch, which must be those that come next."""
+    """Return the rows of the events of a batch, which must follow the last stored event."""
     events = batch.events
     if not events:
         return []
@@ -275,6 +275,8 @@ def _blocks(batch: WriteBatch, end: _End) -> list[EventBlock]:
         raise RunRefused(error.message, where=batch.run, hint=error.hint) from error
 
 
-def _out_of_order(events: Sequence[Event], due: int) -> str:
-    number, event = next((n, event) for n, event in enumerate(events, due) if event.seq != n)
-    return f"event {event.seq} {'is stored already' if event.seq < number else f'came where event {number} was due'}"
+def _out_of_order(events: Sequence[Event], expected: int) -> str:
+    number, event = next((n, event) for n, event in enumerate(events, expected) if event.seq != n)
+    if event.seq < number:
+        return f"event {event.seq} is already stored"
+    return f"event {event.seq} arrived where event {number} was expected"

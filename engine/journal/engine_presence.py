@@ -1,4 +1,4 @@
-"""Tells which engines are alive: an open journal holds a lock that ends with its process, however that ends."""
+"""Detects which engines are alive: an open journal holds a lock that the system releases when its process ends."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from pathlib import Path
 
 
 class EnginePresence:
-    """One engine that has a journal open; make it with `Presence.open`, end it with `close`."""
+    """One engine that has a journal open; create it with `EnginePresence.open`, end it with `close`."""
 
     def __init__(self, file: Path, descriptor: int) -> None:
         self.engine = file.name
-        """The name under which the journal knows it."""
+        """The name of this engine in the journal."""
         self._file = file
         self._descriptor = descriptor
 
     @classmethod
     def open(cls, journal: Path) -> EnginePresence:
-        """Announce an engine beside the journal file and forget those that died.
+        """Create the lock file of an engine beside the journal file and remove those of dead engines.
 
         Raises:
             OSError: the folder cannot be written.
         """
         folder = presence_folder(journal)
         folder.mkdir(exist_ok=True)
-        _forget_dead(folder)
+        _remove_dead(folder)
         file = folder / secrets.token_hex(8)
-        # Locked under another name first, or somebody would take it for one whose process has died.
+        # Locked under another name first: another engine would take an unlocked file for that of a dead process.
         new = file.with_name(f".{file.name}")
         descriptor = os.open(new, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
         try:
@@ -44,10 +44,10 @@ class EnginePresence:
         return cls(file, descriptor)
 
     def close(self) -> None:
-        """Take it back; may be called again."""
+        """Remove the lock file; may be called again."""
         if self._descriptor < 0:
             return
-        # A folder that has become read-only must not keep the journal from closing: the lock says it all.
+        # A folder that has become read-only must not keep the journal from closing: the lock decides, not the file.
         with suppress(OSError):
             self._file.unlink(missing_ok=True)
         os.close(self._descriptor)
@@ -55,16 +55,16 @@ class EnginePresence:
 
 
 def living_engines(journal: Path) -> Mapping[str, int]:
-    """Return the engines that have this journal open now, with the ids of their processes."""
+    """Return the engines that have this journal open, with their process ids."""
     return {file.name: _pid(file) for file, alive in _engines(presence_folder(journal)) if alive}
 
 
 def presence_folder(journal: Path) -> Path:
-    """Return where the engines of a journal file announce themselves."""
+    """Return the folder of the lock files of a journal's engines."""
     return journal.with_name(f"{journal.stem}.engines")
 
 
-def _forget_dead(folder: Path) -> None:
+def _remove_dead(folder: Path) -> None:
     for file, alive in _engines(folder):
         if not alive:
             file.unlink(missing_ok=True)
@@ -82,13 +82,13 @@ def _locked(file: Path) -> bool:
     try:
         descriptor = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
     except OSError:
-        return False  # it ended between the listing and now
+        return False  # the engine has ended since the listing
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
     except OSError:
-        return False  # this file system knows no locks; the fence between engines still holds
+        return False  # this file system does not support locks; the fence between engines still holds
     finally:
         os.close(descriptor)
     return False

@@ -1,7 +1,7 @@
-"""Blocks: consecutive events of one run in one row of the journal, a line of JSON each, under one checksum.
+"""Blocks: consecutive events of one run in one row of the journal, one line of JSON each, under one checksum.
 
-A row, a checksum and a call of the encoder for each event cost several times what the event itself does. Beside its
-checksum a block has one of four bytes for each line: they tell which of its events is damaged.
+One row, one checksum and one encoder call per event would cost several times as much as the event itself. A block also
+has a checksum of four bytes for each line, which locates a damaged event.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from engine.journal.codec import decode_event, decode_event_log, encode_event_lo
 
 _SUM = struct.Struct("<I")
 MAX_EVENTS = 256
-"""So many events has a block at most: reading the last event of a run reads so many."""
+"""Maximum number of events in a block: reading the last event of a run reads one block."""
 MAX_BYTES = 2**20
-"""So long are the lines of a block at most, unless it has one event only."""
+"""Maximum size of the lines of a block, unless it has a single event."""
 
 
 class EventBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """The row of the events from `seq` to `last`; `epoch` tells which of the engines of the run wrote it."""
+    """The row of the events from `seq` to `last`; `epoch` identifies the engine that wrote it."""
 
     run: str
     seq: int
@@ -36,26 +36,26 @@ class EventBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
     checksum: bytes
 
     def chained(self, before: bytes) -> bytes:
-        """Return the checksum that it has where what precedes it has `before`."""
+        """Return the checksum of this row when its predecessor has the checksum `before`."""
         return block_checksum(before, self.seq, self.last, self.epoch, self.sums, self.data)
 
     def events(self) -> tuple[AnyEvent, ...]:
-        """Return its events.
+        """Return the events of this row.
 
         Raises:
-            JournalError: these are not the events from `seq` to `last`; the message says which of them is wrong.
+            JournalError: the data are not the events from `seq` to `last`; the message names the wrong one.
         """
         try:
             events = decode_event_log(self.data)
         except JournalError:
-            # Once more, one by one: which event it is must be told.
+            # Decode again one by one: the error must name the event.
             events = tuple(self._each())
         if len(events) != self.last - self.seq + 1 or any(e.seq != n for n, e in enumerate(events, self.seq)):
-            raise JournalError(f"there are other events in it than those up to {self.last}")
+            raise JournalError(f"the block does not hold the events {self.seq} to {self.last}")
         return events
 
     def suspects(self) -> tuple[int, int]:
-        """Return the first and the last event that may be the damaged one: one, where the sums tell which."""
+        """Return the first and last event that may be damaged; both are the same event where the sums locate it."""
         for index, line in enumerate(self.data.split(b"\n")[: len(self.sums) // _SUM.size]):
             if _SUM.pack(adler32(line)) != self.sums[index * _SUM.size : (index + 1) * _SUM.size]:
                 return self.seq + index, self.seq + index
@@ -66,18 +66,18 @@ class EventBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
             try:
                 yield decode_event(line)
             except JournalError as error:
-                raise JournalError(f"event {number} in it: {error.message}", hint=error.hint) from error
+                raise JournalError(f"event {number} of the block: {error.message}", hint=error.hint) from error
 
 
 def new_blocks(run: str, epoch: int, events: Sequence[Event], before: bytes) -> Iterator[EventBlock]:
-    """Make the rows of events that follow one another without gaps, chained to `before`.
+    """Yield the rows of events without gaps in their numbers, chained to `before`.
 
     Raises:
         JournalError: an event cannot be written as JSON.
     """
     for start in range(0, len(events), MAX_EVENTS):
-        some = events[start : start + MAX_EVENTS]
-        data, seq = encode_event_log(some), some[0].seq
+        chunk = events[start : start + MAX_EVENTS]
+        data, seq = encode_event_log(chunk), chunk[0].seq
         lines = data.split(b"\n")[:-1]
         for part in (lines,) if len(data) <= MAX_BYTES else _parts(lines):
             sums = struct.pack(f"<{len(part)}I", *map(adler32, part))
@@ -89,7 +89,7 @@ def new_blocks(run: str, epoch: int, events: Sequence[Event], before: bytes) -> 
 
 
 def _parts(lines: Sequence[bytes]) -> Iterator[Sequence[bytes]]:
-    """Cut lines into pieces of at most `MAX_BYTES`, or of one line."""
+    """Split lines into parts of at most `MAX_BYTES`, or of one line."""
     begin, size = 0, 0
     for index, line in enumerate(lines):
         size += len(line) + 1

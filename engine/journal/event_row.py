@@ -1,4 +1,4 @@
-"""The row of one event, as journals up to format 4 have them; blocks came after."""
+"""The row of one event, as written by journals up to format 4; later formats write blocks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.journal.codec import decode_event
 
 
 class EventRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """The row of one event; it has no checksum where a format before 4 wrote it."""
+    """The row of one event; it has no checksum when a format before 4 wrote it."""
 
     run: str
     seq: int
@@ -21,21 +21,21 @@ class EventRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     @property
     def last(self) -> int:
-        """The number of its last event: the only one."""
+        """The number of the only event."""
         return self.seq
 
     def chained(self, before: bytes) -> bytes:
-        """Return the checksum that it has where its predecessor has `before`."""
+        """Return the checksum of this row when its predecessor has the checksum `before`."""
         return event_checksum(before, self.seq, self.time_s, self.epoch, self.data)
 
     def events(self) -> tuple[AnyEvent, ...]:
-        """Return its event.
+        """Return the event.
 
         Raises:
-            JournalError: it is none.
+            JournalError: the data is not an event.
         """
         return (decode_event(self.data),)
 
     def suspects(self) -> tuple[int, int]:
-        """Return the first and the last event that may be the damaged one."""
+        """Return the first and last event that may be damaged."""
         return self.seq, self.seq

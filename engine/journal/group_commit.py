@@ -1,4 +1,4 @@
-"""Group commit: everything that waits is written in one transaction, then all who wait are told, in order."""
+"""Group commit: all pending events are written in one transaction, then the waiters are notified in order."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from engine.journal.database import JournalDatabase, RunRefused
 WAKE_AT_EVENTS = 4096
 """Number of uncommitted events that wakes the writer without a commit."""
 MAX_PENDING_EVENTS = 4 * WAKE_AT_EVENTS
-"""A run whose own events come faster than the writer writes waits for it above so many."""
+"""Number of pending events of one run above which the run waits for the writer."""
 WAKE_AFTER_S = 0.25
-"""So long after the first of them it is woken too: a run that only waits has no effect that is due a commit."""
+"""Time after the first pending event at which the writer is woken too: an idle run may never commit."""
 
 
 @dataclass(eq=False)
 class RunWriteQueue:
-    """What is to be written of one run, and how far it has been.
+    """The pending events of one run and its write progress.
 
-    The run's loop appends to `events` and `worlds`, the writer takes from their other end: neither waits for the other.
-    `failure` is the reason why it never will be again: an event of it is lost. `listener` hears of it where no commit
-    waits to be told.
+    The run's loop appends to `events` and `worlds`, the writer takes from the other end: neither waits for the other.
+    `failure` is set when an event is lost; nothing is written after that. `listener` is notified of it when no commit
+    is waiting.
     """
 
     run_id: str
@@ -43,25 +43,25 @@ class RunWriteQueue:
     loop: asyncio.AbstractEventLoop | None = None
 
     def take(self) -> _Group:
-        """Take everything that is there; called by the writer."""
+        """Take all pending data; called by the writer."""
         world = None
-        # Before the events: a world must not come to the disk without those that led to it.
+        # Before the events: a world state must not be written without the events before it.
         while self.worlds:
             world = self.worlds.popleft()
-        # In two steps, each of which is whole to another thread; what is appended in between stays for the next time.
+        # Two steps, each atomic for other threads; events appended in between stay for the next group.
         events = self.events[:]
         del self.events[: len(events)]
         return _Group(events, world)
 
     def fail(self, error: JournalError) -> None:
-        """Write nothing more of this run."""
+        """Stop writing this run; the first error is kept."""
         self.failure = self.failure or error
 
-    def tell(self, error: JournalError) -> None:
+    def notify(self, error: JournalError) -> None:
         """Call the listener on its loop; may be called from any thread."""
         if self.listener is None or self.loop is None:
             return
-        # That loop may be closed: nobody listens there any more.
+        # The loop may be closed; then there is no listener.
         with suppress(RuntimeError):
             self.loop.call_soon_threadsafe(self.listener, error)
 
@@ -74,17 +74,17 @@ class _Group:
 
 @dataclass(frozen=True, eq=False)
 class CommitWaiter:
-    """Somebody on an event loop who wants to know that what `ledger` was given so far is durable."""
+    """A commit on an event loop that waits until the present events of `ledger` are durable."""
 
     ledger: RunWriteQueue
     future: asyncio.Future[None] = field(repr=False)
 
-    def tell(self, error: JournalError | None) -> None:
-        """Wake the waiting loop; called from the writer thread."""
+    def notify(self, error: JournalError | None) -> None:
+        """Resolve the future on its loop; called from the writer thread."""
         try:
             self.future.get_loop().call_soon_threadsafe(self._resolve, error)
         except RuntimeError:
-            # That loop was closed in the meantime: nobody waits there any more.
+            # The loop has been closed; nothing waits for this future.
             return
 
     def _resolve(self, error: JournalError | None) -> None:
@@ -97,18 +97,18 @@ class CommitWaiter:
 
 
 class GroupCommitWriter:
-    """Writes what is in the ledgers it was told of; `flush` on the calling thread, or `start` a thread that does.
+    """Writes the queued ledgers: `flush` on the calling thread, or `start` a writer thread.
 
-    Appending to its ledger is all that a run pays; encoding happens when the group is written.
+    A run only appends to its ledger; encoding happens when the group is written.
     """
 
     def __init__(self, database: JournalDatabase) -> None:
         self.queue: deque[RunWriteQueue | CommitWaiter] = deque()
-        """Ledgers that have something to write, and who waits for that."""
+        """Ledgers with pending data, and waiting commits."""
         self.failure: JournalError | None = None
-        """Why nothing at all can be written any more: it is closed."""
+        """Set when the journal is closed and nothing can be written."""
         self.last_failure: JournalError | None = None
-        """The newest reason why something was not written; what comes later may be."""
+        """The newest write failure; later writes may succeed."""
         self._database = database
         self._lock = threading.Lock()
         self._wake = threading.Event()
@@ -117,40 +117,40 @@ class GroupCommitWriter:
 
     @property
     def lock(self) -> threading.Lock:
-        """Guards the database; hold it to use the connection beside the writer."""
+        """Guards the database; hold it to use the connection outside the writer."""
         return self._lock
 
     @property
     def threaded(self) -> bool:
-        """True when a thread of its own writes."""
+        """True when a writer thread runs."""
         return self._thread is not None
 
     def start(self) -> None:
-        """Let a thread write from now on."""
-        # A daemon, so that a journal nobody closed cannot keep the process from ending.
+        """Start the writer thread."""
+        # A daemon thread, so that a journal that was not closed cannot keep the process from ending.
         self._thread = threading.Thread(target=self._serve, name="journal writer", daemon=True)
         self._thread.start()
 
     def wake(self) -> None:
-        """Have what is queued written: by the thread, or at once where there is none."""
+        """Write the queued data: by the writer thread, or at once when there is none."""
         if self._thread is None:
             self.flush()
-        # What is set already is not yet cleared, and what is queued is looked at after that.
+        # A set event has not been cleared yet, and the queue is read after it is cleared.
         elif not self._wake.is_set():
             self._wake.set()
 
     def wake_soon(self) -> None:
-        """Tell the thread, after a while, that something is there; called on an event loop."""
+        """Wake the writer thread after `WAKE_AFTER_S`; called on an event loop."""
         if self._thread is None:
             return
         try:
             loop = asyncio.get_running_loop()
         except RuntimeError:
-            return  # nobody runs: what is there is written at the end
+            return  # no loop runs: the data is written at the end
         loop.call_later(WAKE_AFTER_S, self._wake.set)
 
     def stop(self) -> None:
-        """Write what is left and end the thread."""
+        """Write all pending data and end the thread."""
         self._closing = True
         self._wake.set()
         if self._thread is not None:
@@ -159,37 +159,38 @@ class GroupCommitWriter:
         self.flush()
 
     def flush(self, *, asking: RunWriteQueue | None = None) -> None:
-        """Write everything queued now in one group and tell the waiters.
+        """Write all queued data in one group and notify the waiters.
 
-        A failure ends the runs whose events were in the group, for good, and no others: it is kept in their ledgers.
+        A failure ends writing of the runs whose events were in the group, and of no others; their ledgers keep it.
 
         Args:
-            asking: The run that will look for its failure itself.
+            asking: The run that checks its own failure afterwards.
         """
         with self._lock:
             items = [self.queue.popleft() for _ in range(len(self.queue))]
             waiters = [item for item in items if isinstance(item, CommitWaiter)]
             taken = {ledger: ledger.take() for ledger in dict.fromkeys(map(_ledger_of, items))}
-            self._look_again(taken)
+            self._requeue(taken)
             groups = {ledger: group for ledger, group in taken.items() if group.events or group.world is not None}
             healthy = [ledger for ledger in groups if ledger.failure is None]
             try:
                 self._write(groups)
             except Exception as error:
-                # Nobody may be left waiting, whatever broke: every commit, waiting or later, raises it.
+                # No commit may be left waiting after any error: every commit, waiting or later, raises it.
                 self._fail(healthy, _unexpected(error))
             finally:
                 for waiter in waiters:
-                    waiter.tell(self.failure or waiter.ledger.failure)
-                told = {asking, *(waiter.ledger for waiter in waiters)}
+                    waiter.notify(self.failure or waiter.ledger.failure)
+                notified = {asking, *(waiter.ledger for waiter in waiters)}
                 for ledger in healthy:
-                    if ledger.failure is not None and ledger not in told:
-                        ledger.tell(ledger.failure)
+                    if ledger.failure is not None and ledger not in notified:
+                        ledger.notify(ledger.failure)
 
-    def _look_again(self, ledgers: Iterable[RunWriteQueue]) -> None:
-        """Come back to those to which something was appended while they were emptied: nobody told of it."""
-        if left := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
-            self.queue.extend(left)
+    def _requeue(self, ledgers: Iterable[RunWriteQueue]) -> None:
+        """Queue ledgers again that received data while they were emptied: such data queues no ledger itself."""
+        if nonempty := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
+            self.queue.extend(nonempty)
+
             self._wake.set()
 
     def _serve(self) -> None:
@@ -232,6 +233,6 @@ def _ledger_of(item: RunWriteQueue | CommitWaiter) -> RunWriteQueue:
 
 
 def _unexpected(error: BaseException) -> JournalError:
-    failure = JournalError(f"the journal writer broke: {type(error).__name__}: {error}", hint="report this defect")
+    failure = JournalError(f"the journal writer failed: {type(error).__name__}: {error}", hint="report this defect")
     failure.__cause__ = error
     return failure

@@ -27,13 +27,13 @@ JOURNAL_FILE = "journal.db"
 
 
 def journal_path(place: Path | str) -> Path:
-    """Return the journal file for a directory (`journal.db` in it) or for a path of a file (`*.db`)."""
+    """Return the journal file of a directory (`journal.db` in it) or of a file path (`*.db`)."""
     path = Path(place)
     return path if path.suffix == ".db" and not path.is_dir() else path / JOURNAL_FILE
 
 
 class SqliteRunJournal:
-    """The part of a `Journal` that belongs to one run."""
+    """The journal of one run, a part of a `Journal`."""
 
     def __init__(self, ledger: RunWriteQueue, writer: GroupCommitWriter, *, place: Path) -> None:
         self._place = place
@@ -43,16 +43,16 @@ class SqliteRunJournal:
 
     @property
     def run_id(self) -> str:
-        """The run it belongs to."""
+        """The id of the run."""
         return self._ledger.run_id
 
     @property
     def epoch(self) -> int:
-        """1 for the engine that began the run, one more for each that resumed it."""
+        """1 for the engine that started the run, plus 1 for each that resumed it."""
         return self._ledger.epoch
 
     def append(self, event: Event) -> None:
-        """Take an event; it is encoded and written by the next commit of any run, or after a moment."""
+        """Append an event; the next commit of any run, or a timer, encodes and writes it."""
         ledger, events = self._ledger, self._events
         events.append(event)
         ledger.appended += 1
@@ -65,7 +65,7 @@ class SqliteRunJournal:
             self._writer.wake()
 
     async def events(self) -> Sequence[Event]:
-        """Return the events of the run so far; they are read beside the loop where the journal is written so."""
+        """Return the events of the run so far; reads on another thread when a writer thread runs."""
         await self.commit()
         return await asyncio.to_thread(self._read) if self._writer.threaded else self._read()
 
@@ -74,24 +74,24 @@ class SqliteRunJournal:
             return tuple(journal.events(self.run_id))
 
     async def apply_backpressure(self) -> None:
-        """Return at once, unless so much waits that it would fill the memory."""
+        """Return at once, or commit when more than `MAX_PENDING_EVENTS` are pending."""
         if len(self._events) > MAX_PENDING_EVENTS:
             await self.commit()
 
     def append_world_state(self, state: bytes) -> None:
-        """Take the state of the simulated world; the next commit stores it together with the events so far."""
+        """Append the state of the simulated world; the next commit stores it with the events so far."""
         self._ledger.worlds.append(WorldState(self._ledger.last_seq, state))
         self._writer.queue.append(self._ledger)
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
-        """Call `listener` on this event loop when events cannot be written and no commit waits to be told."""
+        """Call `listener` on this event loop when events cannot be written and no commit is waiting."""
         self._ledger.listener, self._ledger.loop = listener, asyncio.get_running_loop()
 
     async def commit(self) -> None:
-        """Return once everything appended before is on the disk.
+        """Return when all appended events are on disk.
 
         Raises:
-            JournalError: it could not be written, now or at an earlier commit; the run must stop.
+            JournalError: an event could not be written, now or at an earlier commit; the run must stop.
         """
         ledger, writer = self._ledger, self._writer
         if (failure := writer.failure or ledger.failure) is not None:
@@ -107,7 +107,7 @@ class SqliteRunJournal:
         writer.queue.append(waiter)
         writer.wake()
         if (failure := writer.failure) is not None:
-            # Closed or broken since the first look: the writer may have told its last waiter already.
+            # Closed or failed since the first check: the writer may not notify any further waiter.
             waiter.future.cancel()
             raise _again(failure)
         await waiter.future
@@ -129,9 +129,9 @@ class Journal:
 
         Args:
             place: The directory or file.
-            inline: Write on the calling thread inside `commit`, and whenever much has gathered, so that a run in
+            inline: Write on the calling thread, inside `commit` and when many events are pending, so that a run in
                 virtual time stays deterministic; otherwise one writer thread commits for all runs together.
-            busy_timeout_s: How long to wait for another process that holds the file locked.
+            busy_timeout_s: Time to wait for another process that holds the file locked.
 
         Raises:
             JournalError: the file cannot be opened.
@@ -150,10 +150,10 @@ class Journal:
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
     ) -> SqliteRunJournal:
-        """Enter a new run durably (one disk sync, on the calling thread) and return its journal.
+        """Store a new run durably (one disk sync, on the calling thread) and return its journal.
 
         Raises:
-            JournalError: this run exists already, or the journal cannot be written.
+            JournalError: the run already exists, or the journal cannot be written.
         """
         self._refuse_unusable()
         with self._writer.lock:
@@ -168,7 +168,7 @@ class Journal:
         return SqliteRunJournal(RunWriteQueue(run_id, epoch), self._writer, place=self.path)
 
     def resume(self, run_id: str) -> SqliteRunJournal:
-        """Take over an existing run: from now on the engine that drove it before cannot commit.
+        """Take over an existing run: the engine that drove it before can no longer commit.
 
         Raises:
             JournalError: there is no such run, or the journal cannot be written.
@@ -179,15 +179,15 @@ class Journal:
         return SqliteRunJournal(RunWriteQueue(run_id, epoch), self._writer, place=self.path)
 
     def close(self) -> None:
-        """Write what is left and release the file; may be called again.
+        """Write all pending events and close the file; may be called again.
 
         Raises:
-            JournalError: what was left could not be written and no commit had said so before.
+            JournalError: pending events could not be written and no commit has reported it.
         """
         if self._closed:
             return
         self._closed = True
-        known = self._writer.last_failure
+        reported = self._writer.last_failure
         try:
             self._writer.stop()
         finally:
@@ -195,7 +195,7 @@ class Journal:
             self._presence.close()
         failure = self._writer.last_failure
         self._writer.failure = JournalError("the journal is closed", where=self.path, hint="open it again")
-        if failure is not None and failure is not known:
+        if failure is not None and failure is not reported:
             raise _again(failure)
 
     def __enter__(self) -> Self:
@@ -212,7 +212,7 @@ class Journal:
 
 
 def _again(failure: JournalError) -> JournalError:
-    # A fresh object for each raise: one shared exception would collect the tracebacks of all.
+    # A new object for each raise: a shared exception would collect all tracebacks.
     copy = JournalError(failure.message, where=failure.where, hint=failure.hint)
     copy.__cause__ = failure.__cause__
     return copy

@@ -1,4 +1,4 @@
-"""What a run asks of a journal, whichever kind it is."""
+"""The journal interface that runs use, independent of the implementation."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from engine.event import Event
 
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """One run as the journal knows it.
+    """The record of one run in the journal.
 
-    `status` is running, or as `RunEnded` gave it: finished, stopped, errored. A run still
-    `running` that no process drives was interrupted and can be resumed. `epoch` counts the engines
+    `status` is running, or the status of `RunEnded`: finished, stopped, errored. A run that is still
+    `running` but driven by no process was interrupted and can be resumed. `epoch` counts the engines
     that have driven it.
     """
 
@@ -27,24 +27,24 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     started_unix_s: float
     last_seq: int
     driver: int | None = None
-    """The process that drives it now, None when none does."""
+    """The process id of the engine that drives the run; None when there is none."""
     verified: bool = True
-    """False where some of it was written by a version that made no checksums: damage to that cannot be told."""
+    """False where a version without checksums wrote a part of the run: damage to that part cannot be detected."""
     damage: str = ""
-    """What of it is damaged, as far as that shows without reading its events; empty where nothing is."""
+    """The damage found without reading the events; empty when there is none."""
 
     @property
     def interrupted(self) -> bool:
-        """Whether the engine that drove it has died before its end."""
+        """Whether the engine that drove the run died before the run's end."""
         return self.status == "running" and self.driver is None and not self.damage
 
 
 class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """How a run was started, for whoever resumes it; paths are absolute.
+    """The start parameters of a run, needed to resume it; paths are absolute.
 
-    `documents` holds the texts of the behavior and of all it refers to by relative path, and
-    `document` says which of them is the behavior: files change while runs are interrupted.
-    `seed` is that of the cell, `run_seed` that of the run.
+    `documents` holds the texts of the behavior and of all documents that it refers to, by relative path;
+    `document` names the behavior among them: files may change while a run is interrupted.
+    `seed` is the seed of the cell, `run_seed` the seed of the run.
     """
 
     behavior: str
@@ -62,77 +62,77 @@ class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class RunJournal(Protocol):
-    """The part of a journal that belongs to one run; used on the run's event loop."""
+    """The journal of one run; used on the run's event loop."""
 
     @property
     def run_id(self) -> str:
-        """The run it belongs to."""
+        """The id of the run."""
         ...
 
     @property
     def epoch(self) -> int:
-        """1 for the engine that began the run, one more for each that resumed it."""
+        """1 for the engine that started the run, plus 1 for each that resumed it."""
         ...
 
     def append(self, event: Event) -> None:
-        """Take an event; it is on the disk after the next commit, or sooner. Never fails, waits for no other thread.
+        """Append an event; it is on disk after the next commit or earlier. Never fails and never blocks.
 
-        The event and what it holds must not be changed afterwards. A `RunEnded` also sets the
+        The event and its contents must not be changed afterwards. A `RunEnded` also sets the
         status of the run.
         """
         ...
 
     async def events(self) -> Sequence[Event]:
-        """Return the events of the run so far, those of engines before this one among them.
+        """Return the events of the run so far, including those of earlier engines.
 
         Raises:
-            JournalError: they cannot be read, or are not kept.
+            JournalError: the events cannot be read, or are not stored.
         """
         ...
 
     async def apply_backpressure(self) -> None:
-        """Return at once, unless events come faster than they are written: then as `commit`.
+        """Return at once, or wait as `commit` does when too many events are pending.
 
         Raises:
-            JournalError: as `commit`.
+            JournalError: as in `commit`.
         """
         ...
 
     def append_world_state(self, state: bytes) -> None:
-        """Take the state of the simulated world as of now; the next commit stores it with the events."""
+        """Append the present state of the simulated world; the next commit stores it with the events."""
         ...
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
-        """Call `listener` on this event loop when events cannot be written and no commit waits to be told.
+        """Call `listener` on this event loop when events cannot be written and no commit is waiting.
 
-        The run must stop: what it records from then on is lost.
+        The run must stop: later events are lost.
         """
         ...
 
     async def commit(self) -> None:
-        """Return once everything appended before is on the disk.
+        """Return when all appended events are on disk.
 
         Raises:
-            JournalError: it could not be written, now or at an earlier commit; the run must stop.
+            JournalError: an event could not be written, now or at an earlier commit; the run must stop.
         """
         ...
 
 
 class JournalPort(Protocol):
-    """Where runs are journaled."""
+    """A journal of runs."""
 
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
     ) -> RunJournal:
-        """Enter a new run durably and return its journal; `document` is the behavior's content hash.
+        """Store a new run durably and return its journal; `document` is the behavior's content hash.
 
         Raises:
-            JournalError: this run exists already, or the journal cannot be written.
+            JournalError: the run already exists, or the journal cannot be written.
         """
         ...
 
     def resume(self, run_id: str) -> RunJournal:
-        """Take over an existing run: from now on the engine that drove it before cannot commit.
+        """Take over an existing run: the engine that drove it before can no longer commit.
 
         Raises:
             JournalError: there is no such run, or the journal cannot be written.
@@ -140,9 +140,9 @@ class JournalPort(Protocol):
         ...
 
     def close(self) -> None:
-        """Write what is left and release the file; may be called again.
+        """Write all pending events and close the file; may be called again.
 
         Raises:
-            JournalError: what was left could not be written and nobody has been told yet.
+            JournalError: pending events could not be written and no commit has reported it.
         """
         ...

@@ -1,4 +1,4 @@
-"""A journal of one run in memory: for replays, which a step back asks for what happened before."""
+"""A journal of one run in memory: for replays, in which a step back reads earlier events."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.event import Event
 
 @dataclass(kw_only=True)
 class MemoryRunJournal:
-    """Keeps every event as long as it lives."""
+    """Keeps every event in memory."""
 
     run_id: str
     epoch: int = 1
@@ -22,17 +22,17 @@ class MemoryRunJournal:
         self.kept.append(event)
 
     async def events(self) -> Sequence[Event]:
-        """Return what was kept."""
+        """Return the events."""
         return tuple(self.kept)
 
     async def apply_backpressure(self) -> None:
         """Return at once."""
 
     def append_world_state(self, state: bytes) -> None:
-        """Forget it: nobody resumes from memory."""
+        """Discard it: a run in memory is never resumed."""
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
-        """Forget it: nothing fails."""
+        """Ignore the listener: nothing fails."""
 
     async def commit(self) -> None:
         """Return at once; nothing is durable."""

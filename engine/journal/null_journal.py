@@ -1,4 +1,4 @@
-"""A journal that keeps nothing: for benchmarks and for `--journal none`."""
+"""A journal that stores nothing: for benchmarks and for `--journal none`."""
 
 from __future__ import annotations
 
@@ -12,43 +12,43 @@ from engine.journal.journal_port import RunOrigin
 
 @dataclass(frozen=True, kw_only=True)
 class NullRunJournal:
-    """Forgets every event at once."""
+    """Discards every event."""
 
     run_id: str
     epoch: int = 1
 
     def append(self, event: Event) -> None:
-        """Forget the event."""
+        """Discard the event."""
 
     async def events(self) -> Sequence[Event]:
-        """Raise JournalError: nothing is kept."""
+        """Raise JournalError: no events are stored."""
         hint = "run it with --journal DIR"
-        raise JournalError("this run keeps no journal that tells what it has done", where=self.run_id, hint=hint)
+        raise JournalError("this run has no journal of its events", where=self.run_id, hint=hint)
 
     async def apply_backpressure(self) -> None:
         """Return at once."""
 
     def append_world_state(self, state: bytes) -> None:
-        """Forget it."""
+        """Discard it."""
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
-        """Forget it: nothing fails."""
+        """Ignore the listener: nothing fails."""
 
     async def commit(self) -> None:
         """Return at once; nothing is durable."""
 
 
 class NullJournal:
-    """Begins and resumes any run and writes nothing."""
+    """Starts and resumes any run and writes nothing."""
 
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
     ) -> NullRunJournal:
-        """Return a journal that forgets."""
+        """Return a journal that discards events."""
         return NullRunJournal(run_id=run_id)
 
     def resume(self, run_id: str) -> NullRunJournal:
-        """Return a journal that forgets."""
+        """Return a journal that discards events."""
         return NullRunJournal(run_id=run_id)
 
     def close(self) -> None:

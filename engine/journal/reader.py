@@ -12,7 +12,7 @@ from engine.journal.snapshot import open_snapshot
 
 
 def list_runs(place: Path | str) -> tuple[RunRecord, ...]:
-    """Return the runs of a journal directory or file, oldest first; a damaged one says so in `damage`.
+    """Return the runs of a journal directory or file, oldest first; `damage` describes a damaged one.
 
     Raises:
         JournalError: there is no journal, or it cannot be read.
@@ -32,7 +32,7 @@ def find_run(place: Path | str, run_id: str) -> RunRecord:
 
 
 def read_events(place: Path | str, run_id: str) -> tuple[AnyEvent, ...]:
-    """Return the durable events of a run by `seq`; empty when it stored none yet.
+    """Return the durable events of a run by `seq`; empty when none is stored yet.
 
     Raises:
         JournalError: there is no such journal or run, or a stored event is damaged or missing.
@@ -42,7 +42,7 @@ def read_events(place: Path | str, run_id: str) -> tuple[AnyEvent, ...]:
 
 
 def read_origin(place: Path | str, run_id: str) -> RunOrigin | None:
-    """Return how a run was started; None where the journal does not know.
+    """Return the start parameters of a run; None when the journal has none.
 
     Raises:
         JournalError: there is no such journal or run, it cannot be read, or the entry is damaged.
@@ -52,7 +52,7 @@ def read_origin(place: Path | str, run_id: str) -> RunOrigin | None:
 
 
 def read_world(place: Path | str, run_id: str) -> WorldState | None:
-    """Return the simulated world as the last commit of a run left it; None where there was none.
+    """Return the state of the simulated world at the last commit of a run; None when there is none.
 
     Raises:
         JournalError: there is no such journal or run, it cannot be read, or the state is damaged.

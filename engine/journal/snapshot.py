@@ -1,4 +1,4 @@
-"""A journal as it is at one moment, every row verified before it is handed out."""
+"""A snapshot of a journal; every row is verified before it is returned."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _DRIVER = "(SELECT engine FROM driver WHERE driver.run = run.id)"
 _CHECKSUMS = "c.since, c.origin, c.record, c.seq, c.chain, c.world"
 _LAST = "(SELECT last FROM block WHERE block.run = run.id ORDER BY seq DESC LIMIT 1), "
 _JOIN = "LEFT JOIN checksum c ON c.run = run.id"
-# The bytes of the text as they are stored: what is no text must not stop the reading of the others.
+# The stored bytes of the text: an invalid text must not prevent reading the other rows.
 _EVENTS = "SELECT run, seq, time_s, epoch, CAST(data AS BLOB), {checksum} FROM event WHERE run = ?"
 _BLOCKS = "SELECT run, seq, last, epoch, sums, data, checksum FROM block WHERE run = ?"
 _MAX_UNIX_S = 2**37
@@ -53,7 +53,7 @@ Stored = EventRow | EventBlock
 
 
 class RunRow(msgspec.Struct, frozen=True, array_like=True):
-    """The row of one run with its checksums; `since` is None in a file without, 0 for a run of an older version."""
+    """The row of one run with its checksums; `since` is None in a file without any, 0 for a run of an older version."""
 
     id: str
     behavior: str
@@ -72,32 +72,32 @@ class RunRow(msgspec.Struct, frozen=True, array_like=True):
 
     @property
     def fault(self) -> str:
-        """What of it contradicts itself; empty where nothing does."""
+        """The inconsistency found in this row; empty when there is none."""
         if self.since is None or (self.since == 0 and (self.seq, self.chain, self.record) == (0, None, None)):
             return ""
         columns = (self.id, self.behavior, self.document, self.status, self.epoch, self.started_unix_s, self.engine)
         if self.record != checksum_of((*columns, self.since, self.origin)):
-            return f"what the journal says of run {self.id} as a whole is damaged"
+            return f"the record of run {self.id} is damaged"
         if self.last_seq != self.seq:
             return f"run {self.id} has {self.last_seq} events in the journal, and {self.seq} were written"
         return ""
 
 
 class JournalSnapshot:
-    """One journal file, opened for reading; used by one thread. Make it with `open_snapshot`."""
+    """One journal file, opened for reading; used by one thread. Create it with `open_snapshot`."""
 
     def __init__(self, path: Path, connection: BoundedConnection) -> None:
         self.path = path
         self._connection = connection
-        # All that is read is from one moment, whatever is written meanwhile.
+        # All reads see the same instant, independent of concurrent writes.
         connection.execute("BEGIN")
         self._version = int(connection.execute("PRAGMA user_version").fetchone()[0])
 
     def runs(self) -> tuple[RunRecord, ...]:
-        """Return all runs, oldest first; of a damaged one `damage` says what is wrong.
+        """Return all runs, oldest first; `damage` describes a damaged one.
 
         Raises:
-            JournalError: it cannot be told which runs there are.
+            JournalError: the list of runs cannot be determined.
         """
         living = living_engines(self.path)
         return tuple(_record(row, living) for row in self._rows.values())
@@ -106,15 +106,15 @@ class JournalSnapshot:
         """Return one run.
 
         Raises:
-            JournalError: there is no such run, or what is known of it is damaged.
+            JournalError: there is no such run, or its record is damaged.
         """
         return _record(self._row(run_id), living_engines(self.path))
 
     def events(self, run_id: str) -> Iterator[AnyEvent]:
-        """Go through the events of a run.
+        """Yield the events of a run.
 
         Raises:
-            JournalError: there is no such run, or an event is damaged or missing; the message says which.
+            JournalError: there is no such run, or an event is damaged or missing; the message names it.
         """
         row = self._row(run_id)
         chain, last, allowed = chain_start(run_id), 0, stored_bytes(self.path)
@@ -144,7 +144,7 @@ class JournalSnapshot:
         return self._decoded(stored)[-1]
 
     def origin(self, run_id: str) -> RunOrigin | None:
-        """Return how a run was started; None where the journal does not know.
+        """Return the start parameters of a run; None when the journal has none.
 
         Raises:
             JournalError: there is no such run, or the entry is damaged.
@@ -163,7 +163,7 @@ class JournalSnapshot:
             raise self._damaged(f"the origin of run {run_id} is damaged: {error}") from error
 
     def world(self, run_id: str) -> WorldState | None:
-        """Return the simulated world as the last commit of a run left it; None where there was none.
+        """Return the state of the simulated world at the last commit of a run; None when there is none.
 
         Raises:
             JournalError: there is no such run, or the state is damaged.
@@ -177,10 +177,10 @@ class JournalSnapshot:
         return WorldState(*found) if found is not None else None
 
     def _stored(self, row: RunRow) -> Iterator[Stored]:
-        """Go through the rows of the events of a run: single ones of an older version first, then blocks."""
+        """Yield the event rows of a run: single events of an older version first, then blocks."""
         last = 0
         for found in self._connection.execute(f"{self._events} ORDER BY seq", (row.id,)):
-            # What has the right checksum has the right types; only the others must be looked at.
+            # A row with the right checksum has the right types; only the others must be checked.
             event = EventRow(*found) if row.since == 1 else self._typed(found, EventRow, what=_after(last, row.id))
             yield event
             last = event.seq
@@ -199,13 +199,13 @@ class JournalSnapshot:
         return self._typed(found, EventRow, what=what) if found is not None else None
 
     def _checksum_before(self, stored: Stored) -> bytes | None:
-        """Return the checksum of the row before this one; None where there is none, or it has none."""
+        """Return the checksum of the row before this one; None when there is no such row or checksum."""
         for table in ("block", "event") if isinstance(stored, EventBlock) else ("event",):
             query = f"SELECT {self._checksum if table == 'event' else 'checksum'} FROM {table}"
             where = "WHERE run = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
             found = self._connection.execute(f"{query} {where}", (stored.run, stored.seq)).fetchone()
             if found is not None:
-                what = f"what precedes event {stored.seq} of run {stored.run}"
+                what = f"the event before {stored.seq} of run {stored.run}"
                 return self._typed(found, tuple[bytes | None], what=what)[0]
         return None
 
@@ -247,15 +247,15 @@ class JournalSnapshot:
         return row
 
     def _verified(self, row: RunRow, stored: Stored, before: bytes) -> bytes:
-        """Return what the row after this one is chained to."""
+        """Verify a row and return the checksum that the next row is chained to."""
         try:
-            checked = row.since is not None and 0 < row.since <= stored.seq
-            wanted = stored.chained(before) if checked else None
+            has_checksum = row.since is not None and 0 < row.since <= stored.seq
+            expected = stored.chained(before) if has_checksum else None
         except (TypeError, OverflowError, struct.error) as error:
             raise self._damaged(f"an event of run {row.id} is damaged: {error}") from error
-        if stored.checksum != wanted or stored.run != row.id:
+        if stored.checksum != expected or stored.run != row.id:
             raise self._damaged(f"{_suspects(stored, row.id)} damaged or out of place: the checksum is wrong")
-        return wanted or before
+        return expected or before
 
     def _decoded(self, stored: Stored) -> tuple[AnyEvent, ...]:
         try:
@@ -265,7 +265,7 @@ class JournalSnapshot:
 
     def _one(self, query: str, run_id: str, kind: type[T]) -> T | None:
         found = self._connection.execute(query, (run_id,)).fetchone()
-        return self._typed(found, kind, what=f"what is stored of run {run_id}") if found is not None else None
+        return self._typed(found, kind, what=f"the stored data of run {run_id}") if found is not None else None
 
     def _typed(self, row: object, kind: type[T], *, what: str) -> T:
         try:
@@ -288,10 +288,10 @@ def _suspects(stored: Stored, run: str) -> str:
 
 @contextmanager
 def open_snapshot(path: Path) -> Generator[JournalSnapshot]:
-    """Open a journal file for reading, as it is now.
+    """Open a snapshot of a journal file for reading.
 
     Raises:
-        JournalError: there is none, it cannot be read, or it is damaged.
+        JournalError: the file does not exist, cannot be read, or is damaged.
     """
     if not path.is_file():
         raise JournalError("there is no journal here", where=path, hint="give the directory given to --journal")

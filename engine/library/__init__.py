@@ -1,1 +1,1 @@
-"""The behaviors of a project folder, loaded and checked, and each drawn as a graph."""
+"""The behaviors of a project folder, loaded and checked, each with its graph."""

@@ -1,4 +1,4 @@
-"""A behavior drawn as nested nodes with outcomes and arrows: what the editor and dashboard show."""
+"""The graph of a behavior for the editor and the dashboard: nested nodes with outcomes and transitions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.runtime.plan import Catalogue
 
 
 class GraphTransition(msgspec.Struct, frozen=True, kw_only=True):
-    """An arrow inside a machine; a timeout shows as `after 30 s`, on_error as `error`."""
+    """A transition of a state machine; the outcome of a timeout is `after 30 s`, that of on_error is `error`."""
 
     source: str
     outcome: str
@@ -21,7 +21,7 @@ class GraphTransition(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """One node with everything inside it; `path` is the one that events carry."""
+    """One node with its descendants; `path` is the node path of events."""
 
     path: str
     name: str
@@ -36,11 +36,11 @@ class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 def new_graph(behavior: Behavior, catalogue: Catalogue, *, path: str = "root", name: str = "root") -> GraphNode:
-    """Draw a behavior from its root; unknown states are drawn without outcomes."""
-    return _Drawing(behavior, catalogue, path).node(name, behavior.root, "root")
+    """Return the graph of a behavior from its root; unknown states have no outcomes."""
+    return _GraphBuilder(behavior, catalogue, path).node(name, behavior.root, "root")
 
 
-class _Drawing:
+class _GraphBuilder:
     def __init__(self, behavior: Behavior, catalogue: Catalogue, base: str) -> None:
         self._behavior = behavior
         self._catalogue = catalogue
@@ -56,7 +56,7 @@ class _Drawing:
             description=node.description,
             outcomes=self._outcomes(node),
             children=self._children(node, inside, path),
-            transitions=_arrows(node) if node.sequential is not None else (),
+            transitions=_transitions(node) if node.sequential is not None else (),
             initial=node.sequential.initial if node.sequential is not None else None,
             conditions=_rules(node),
         )
@@ -81,26 +81,26 @@ class _Drawing:
             return FOREACH_OUTCOMES
         if node.sequential is None:
             return TREE_OUTCOMES
-        return tuple(dict.fromkeys(arrow.target for arrow in _arrows(node) if arrow.target not in node.children))
+        return tuple(dict.fromkeys(arrow.target for arrow in _transitions(node) if arrow.target not in node.children))
 
 
-def _arrows(node: NodeSpec) -> tuple[GraphTransition, ...]:
+def _transitions(node: NodeSpec) -> tuple[GraphTransition, ...]:
     arrows: list[GraphTransition] = []
     for name, child in node.children.items():
-        for outcome, target in _ways_out(child).items():
+        for outcome, target in _exits(child).items():
             arrows.append(GraphTransition(source=name, outcome=outcome, target=target))
     return tuple(arrows)
 
 
-def _ways_out(child: NodeSpec) -> Mapping[str, str]:
-    ways = dict(child.transitions)
+def _exits(child: NodeSpec) -> Mapping[str, str]:
+    exits = dict(child.transitions)
     if child.guard is not None and child.guard.to is not None:
-        ways[f"unless {child.guard.when}"] = child.guard.to
+        exits[f"unless {child.guard.when}"] = child.guard.to
     if child.timeout is not None and child.timeout.to is not None:
-        ways[f"after {child.timeout.after_s:g} s"] = child.timeout.to
+        exits[f"after {child.timeout.after_s:g} s"] = child.timeout.to
     if child.on_error is not None:
-        ways["error"] = child.on_error
-    return ways
+        exits["error"] = child.on_error
+    return exits
 
 
 def _rules(node: NodeSpec) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The behaviors of a project folder: found, loaded, checked, and read anew when a file changes."""
+"""The behaviors of a project folder: found, loaded and checked, and reloaded when a file changes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SUFFIXES = (".yaml", ".yml", ".json")
 
 
 class ParameterView(msgspec.Struct, frozen=True, kw_only=True):
-    """One parameter as a form shows it."""
+    """One parameter for a form."""
 
     name: str
     schema: dict[str, object]
@@ -28,7 +28,7 @@ class ParameterView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FindingView(msgspec.Struct, frozen=True, kw_only=True):
-    """One finding with its place in the document."""
+    """One finding with its position in the document."""
 
     severity: str
     code: str
@@ -40,7 +40,7 @@ class FindingView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class BehaviorView(msgspec.Struct, frozen=True, kw_only=True):
-    """A behavior as the dashboard lists and draws it; `graph` is None when it cannot be read."""
+    """A behavior for the dashboard's list and graph; `graph` is None when the behavior cannot be read."""
 
     id: str
     name: str
@@ -58,7 +58,7 @@ class BehaviorView(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def warnings(self) -> int:
-        """Number of findings that do not."""
+        """Number of findings that do not prevent a run."""
         return len(self.findings) - self.errors
 
 
@@ -90,10 +90,10 @@ class Library:
         return self._fresh(self._known(behavior_id)).view
 
     def behavior(self, behavior_id: str) -> Behavior:
-        """Return one behavior ready to be planned.
+        """Return one behavior, ready to run.
 
         Raises:
-            DocumentError: there is none, or it has errors; the first one is given.
+            DocumentError: there is none, or it has errors; the message is the first error.
         """
         read = self._fresh(self._known(behavior_id))
         for finding in read.view.findings:
@@ -105,17 +105,18 @@ class Library:
         return read.behavior
 
     def file_of(self, behavior_id: str) -> Path:
-        """Return the file of a behavior; raises DocumentError when the id names none."""
+        """Return the file of a behavior; raises DocumentError when there is no behavior with this id."""
         return self._project / self._known(behavior_id)
 
     def id_of(self, file: Path) -> str:
         """Return the id of a behavior by its file.
 
         Raises:
-            DocumentError: the file is not one of this project.
+            DocumentError: the file is not in this project.
         """
         if not file.is_relative_to(self._project):
-            raise DocumentError("this behavior is of another project", where=file, hint=f"this one is {self._project}")
+            hint = f"the project folder is {self._project}"
+            raise DocumentError("this behavior belongs to another project", where=file, hint=hint)
         return self._known(file.relative_to(self._project).as_posix())
 
     def _known(self, behavior_id: str) -> str:
@@ -132,7 +133,7 @@ class Library:
                     yield behavior_id
 
     def _is_other(self, behavior_id: str) -> bool:
-        """Tell cells and entries from behaviors; what cannot be read counts as a behavior with an error."""
+        """Return whether a document is a cell or entries document; an unreadable one counts as a behavior."""
         return not self._fresh(behavior_id).view.id
 
     def _fresh(self, behavior_id: str) -> _Read:
@@ -176,14 +177,14 @@ class Library:
 
 
 def _all_references(behavior: Behavior) -> Iterator[Behavior]:
-    """Return what a behavior refers to, each once, however many lead there."""
-    known: set[int] = set()
-    due = list(behavior.references.values())
-    while due:
-        target = due.pop()
-        if id(target) not in known:
-            known.add(id(target))
-            due += target.references.values()
+    """Yield the behaviors that a behavior refers to, directly or indirectly, each once."""
+    visited: set[int] = set()
+    pending = list(behavior.references.values())
+    while pending:
+        target = pending.pop()
+        if id(target) not in visited:
+            visited.add(id(target))
+            pending += target.references.values()
             yield target
 
 
@@ -191,7 +192,7 @@ def _stamp(file: Path) -> int:
     try:
         return file.stat().st_mtime_ns
     except OSError:
-        return 0  # a file that has gone is a change like any other
+        return 0  # a deleted file is a change too
 
 
 def _parameter(name: str, parameter: ParameterSpec) -> ParameterView:

@@ -1,6 +1,6 @@
-"""What travels over the bus: typed messages of geometry, robots, sensing and learned motion.
+"""Typed messages of the bus: geometry, robots, sensing and learned motion.
 
-SI units, quaternions are x y z w, angles in radians. Imports nothing else of the engine.
+SI units, quaternions x y z w, angles in radians. Imports nothing else of the engine.
 """
 
 from engine.messages.geometry import FramePoses, FrameTransform, Message, PartPoses, Pose, Quaternion, Vector3, Wrench

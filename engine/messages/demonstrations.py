@@ -1,4 +1,4 @@
-"""A recorded motion as data: joints, tool poses and wrenches over time, as taught by hand or logged from a run."""
+"""A recorded motion: joints, tool poses and wrenches over time, taught by hand or logged from a run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _UNIT_TOLERANCE = 1e-3
 
 
 class Trajectory(Message, frozen=True, kw_only=True):
-    """A motion recorded at `times_s`, which rise; each of the other lists has one row a time, or is empty.
+    """A motion recorded at strictly increasing `times_s`; each other list has one row per time, or is empty.
 
     `joints` are radians in the order of `names` or of the robot; `poses` are x y z (m) and a unit
     quaternion x y z w of the tool centre point in `frame`; `wrenches` are force (N) and torque (Nm) of
@@ -35,12 +35,12 @@ class Trajectory(Message, frozen=True, kw_only=True):
         if not self.joints and not self.poses:
             raise ValueError("give `joints`, `poses` or both")
         width = len(self.names) or (len(self.joints[0]) if self.joints else 0)
-        for name, rows, due in (
+        for name, rows, length in (
             ("joints", self.joints, width),
             ("poses", self.poses, 7),
             ("wrenches", self.wrenches, 6),
         ):
-            self._check_rows(name, rows, due)
+            self._check_rows(name, rows, length)
         for index, pose in enumerate(self.poses):
             if abs(math.hypot(*pose[3:]) - 1.0) > _UNIT_TOLERANCE:
                 raise ValueError(
@@ -50,15 +50,17 @@ class Trajectory(Message, frozen=True, kw_only=True):
     def _check_times(self) -> None:
         for index in range(1, len(self.times_s)):
             if not self.times_s[index] > self.times_s[index - 1]:
-                raise ValueError(f"times_s[{index}] = {self.times_s[index]} does not follow {self.times_s[index - 1]}")
+                raise ValueError(
+                    f"times_s[{index}] = {self.times_s[index]} is not greater than {self.times_s[index - 1]}"
+                )
         if not (math.isfinite(self.times_s[0]) and math.isfinite(self.times_s[-1])):
             raise ValueError("times_s is not finite")
 
-    def _check_rows(self, name: str, rows: tuple[Sample, ...], due: int) -> None:
+    def _check_rows(self, name: str, rows: tuple[Sample, ...], length: int) -> None:
         if rows and len(rows) != len(self.times_s):
             raise ValueError(f"{name} has {len(rows)} rows where times_s has {len(self.times_s)}")
         for index, row in enumerate(rows):
-            if len(row) != due or due == 0:
-                raise ValueError(f"{name}[{index}] has {len(row)} values where {due} are due")
+            if len(row) != length or length == 0:
+                raise ValueError(f"{name}[{index}] has {len(row)} values, not {length}")
             if not all(map(math.isfinite, row)):
-                raise ValueError(f"{name}[{index}] has a number that is not finite")
+                raise ValueError(f"{name}[{index}] has a non-finite number")

@@ -1,4 +1,4 @@
-"""What a detector looks for, as a typed record: an image crop, where its camera was, and who detects it."""
+"""The template of a detector as a typed record: an image crop, its camera pose, and the detector."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from engine.messages.geometry import Message, Pose
 from engine.messages.sensing import CameraIntrinsics
 
 MAX_IMAGE_BYTES = 4 * 1024 * 1024
-"""Of one crop as it is encoded; with base64 it stays below what one entry may take."""
+"""Size limit of one encoded crop; with base64 it stays below the size limit of an entry."""
 _STARTS = {"png": b"\x89PNG\r\n\x1a\n", "jpeg": b"\xff\xd8\xff"}
 
 
 class TemplateImage(Message, frozen=True, kw_only=True):
-    """An encoded crop; `corner_px` is where its left upper corner lies in the whole image, as (column, row)."""
+    """An encoded crop; `corner_px` is its upper left corner in the whole image, as (column, row)."""
 
     format: Literal["png", "jpeg"]
     data: Annotated[bytes, msgspec.Meta(min_length=8, max_length=MAX_IMAGE_BYTES)]
@@ -25,7 +25,7 @@ class TemplateImage(Message, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if not self.data.startswith(_STARTS[self.format]):
-            raise ValueError(f"data does not begin as {self.format} does")
+            raise ValueError(f"data is not in {self.format} format")
         if self.format == "png":
             size = tuple(int.from_bytes(self.data[at : at + 4]) for at in (16, 20))
             if size != (self.width_px, self.height_px):
@@ -33,10 +33,10 @@ class TemplateImage(Message, frozen=True, kw_only=True):
 
 
 class DetectionTemplate(Message, frozen=True, kw_only=True):
-    """What `detector` is to find: `image` or `pose`, or both.
+    """The template that `detector` searches for: `image` or `pose`, or both.
 
-    `image` was taken by `camera` with `intrinsics` and its optical frame at `camera_pose`; `pose` is that of what it
-    shows. `settings` are the detector's own, such as a threshold.
+    `image` was taken by `camera` with `intrinsics` and its optical frame at `camera_pose`; `pose` is the pose of the
+    object in the image. `settings` are specific to the detector, such as a threshold.
     """
 
     detector: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
@@ -52,4 +52,4 @@ class DetectionTemplate(Message, frozen=True, kw_only=True):
         if self.image is None and self.pose is None:
             raise ValueError("give `image`, `pose` or both")
         if self.intrinsics is not None and min(self.intrinsics.width_px, self.intrinsics.height_px) < 1:
-            raise ValueError("intrinsics of an image without pixels")
+            raise ValueError("intrinsics: the image has no pixels")

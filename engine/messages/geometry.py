@@ -1,6 +1,6 @@
 """Geometry: poses, transforms and wrenches, and the base of all messages.
 
-SI units, quaternions are x y z w, angles in radians. Poses are expressed in the
+SI units, quaternions x y z w, angles in radians. Poses are expressed in the
 frame that the message names; `world` is the cell's root frame.
 """
 
@@ -13,7 +13,7 @@ Quaternion = tuple[float, float, float, float]
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Root of everything published on a topic or carried by a skill."""
+    """Base of all messages of topics and skills."""
 
 
 class Pose(Message, frozen=True, kw_only=True):
@@ -51,7 +51,7 @@ class FramePoses(Message, frozen=True, kw_only=True):
 
 
 class PartPoses(Message, frozen=True, kw_only=True):
-    """Where the known parts of the cell lie, in the world frame."""
+    """The poses of the known parts of the cell in the world frame."""
 
     time_s: float
     poses: dict[str, Pose]

@@ -1,4 +1,4 @@
-"""Poses put together, turned around and moved, in plain numbers: quaternions x y z w of length 1."""
+"""Composition, inversion and translation of poses with plain floats; unit quaternions x y z w."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import math
 
 from engine.messages.geometry import Pose, Quaternion, Vector3
 
-_NO_TURN = 1e-9
+_ZERO_ROTATION = 1e-9
 
 
 def compose_poses(outer: Pose, inner: Pose) -> Pose:
-    """Return where a pose in the frame that `outer` describes is, in the frame of `outer`."""
+    """Return the pose `inner`, given in the frame that `outer` describes, in the frame of `outer`."""
     x, y, z = (a + b for a, b in zip(outer.xyz, rotate_vector(outer.xyzw, inner.xyz), strict=True))
     return Pose(xyz=(x, y, z), xyzw=_product(outer.xyzw, inner.xyzw), frame=outer.frame)
 
 
 def rotate_vector(by: Quaternion, vector: Vector3) -> Vector3:
-    """Turn a vector by a unit quaternion."""
+    """Rotate a vector by a unit quaternion."""
     x, y, z, w = by
     a, b, c = vector
     # v + 2 w (q x v) + 2 q x (q x v)
@@ -29,38 +29,38 @@ def rotate_vector(by: Quaternion, vector: Vector3) -> Vector3:
 
 
 def angle_between_rad(one: Quaternion, other: Quaternion) -> float:
-    """Return the angle between two orientations."""
+    """Return the angle between two orientations in radians."""
     return 2 * math.acos(min(1.0, abs(sum(a * b for a, b in zip(one, other, strict=True)))))
 
 
 def rotation_vector_between(one: Quaternion, other: Quaternion) -> Vector3:
-    """Return the rotation vector, radians, that turns one orientation into the other, the shorter way round."""
+    """Return the rotation vector (radians) from one orientation to the other with the smaller angle."""
     x, y, z, w = one
     a, b, c, real = _product(other, (-x, -y, -z, w))
     length = math.hypot(a, b, c)
-    if length < _NO_TURN:
+    if length < _ZERO_ROTATION:
         return (0.0, 0.0, 0.0)
     share = math.copysign(2.0 * math.atan2(length, abs(real)), real) / length
     return (a * share, b * share, c * share)
 
 
 def invert_pose(pose: Pose) -> Pose:
-    """Return where the origin of the outer frame is, seen in the frame of `pose`."""
+    """Return the pose of the outer frame in the frame of `pose`."""
     x, y, z, w = pose.xyzw
-    back = (-x, -y, -z, w)
-    a, b, c = rotate_vector(back, pose.xyz)
-    return Pose(xyz=(-a, -b, -c), xyzw=back, frame=pose.frame)
+    inverse = (-x, -y, -z, w)
+    a, b, c = rotate_vector(inverse, pose.xyz)
+    return Pose(xyz=(-a, -b, -c), xyzw=inverse, frame=pose.frame)
 
 
 def offset_along(direction: Vector3, distance_m: float) -> Vector3:
-    """Return the way of `distance_m` in a direction of any length but 0."""
+    """Return the offset of length `distance_m` along a direction of any non-zero length."""
     length = math.hypot(*direction)
     x, y, z = (value * distance_m / length for value in direction)
     return (x, y, z)
 
 
 def translate_pose(pose: Pose, offset_m: Vector3) -> Pose:
-    """Return a pose that stands elsewhere, turned alike; `offset_m` is in the frame that the pose is given in."""
+    """Return a translated pose with the same orientation; `offset_m` is in the frame of the pose."""
     x, y, z = (value + shift for value, shift in zip(pose.xyz, offset_m, strict=True))
     return Pose(xyz=(x, y, z), xyzw=pose.xyzw, frame=pose.frame)
 

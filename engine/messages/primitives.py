@@ -1,8 +1,8 @@
-"""Movement primitives as data: joint and Cartesian DMPs, their learned offsets, a force reference (RCL tables 6 to 8).
+"""Movement primitives: joint and Cartesian DMPs, their learned offsets, a force reference (RCL tables 6 to 8).
 
-All of them are sums of Gaussian kernels over the phase x, which falls from 1 at the start as
+All of them are sums of Gaussian kernels over the phase x, which decays from 1 at the start as
 exp(-a_x t / tau): psi_i(x) = exp(-(x - c_i)² / (2 sigma_i)). So `sigma` holds variances, as in the
-library of the Jožef Stefan Institute that the tables belong to, and its data is read as it is.
+library of the Jožef Stefan Institute that defines the tables; its data needs no conversion.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class JointDmp(Message, frozen=True, kw_only=True):
     `goal`, `y0` (rad) and `dy0` (rad/s) have n values; `c` and `sigma`, the centres and variances of
     the kernels over the phase, have `N`; `w` has one row of `N` weights for each joint, the table's w1
     to wn. `tau` is the duration in seconds, `a_z` and `a_x` the dimensionless gains of transformation
-    and phase. `tasktrans` is a linear map of the joints, n x n row by row, applied to all that the
-    primitive says; empty for none. `id` is free for the user.
+    and phase. `tasktrans` is a linear map of the joints, n x n row by row, applied to the output of the
+    primitive; empty for none. `id` is free for the user.
     """
 
     N: Annotated[int, msgspec.Meta(ge=1)]
@@ -84,10 +84,10 @@ class CartDmp(Message, frozen=True, kw_only=True):
 
     `goal` and `y0` are x y z in metres and a unit quaternion x y z w, `dy0` the velocity (m/s) and the
     angular velocity (rad/s) at the start. `w1` to `w3` are the weights of the motion along x, y and z,
-    `w4` to `w6` those of the rotation about x, y and z; the rest is as in `JointDmp`. Everything is
-    along the axes of `frame`: `world`, or a frame that the arm knows. `tasktrans` is a rigid transform
+    `w4` to `w6` those of the rotation about x, y and z; the other fields are as in `JointDmp`. All values
+    are along the axes of `frame`: `world`, or a frame of the arm. `tasktrans` is a rigid transform
     of the whole motion in that frame, 4 x 4 row by row; empty for none. The signs of the quaternions
-    count: the rotation goes the way on which the quaternion turns into `goal` without a change of sign.
+    matter: the rotation takes the direction in which the quaternion reaches `goal` without a change of sign.
     """
 
     N: Annotated[int, msgspec.Meta(ge=1)]
@@ -139,10 +139,10 @@ class CartDmp(Message, frozen=True, kw_only=True):
 
 
 class CartOffsets(Message, frozen=True, kw_only=True):
-    """What a force-controlled motion adds to a Cartesian DMP, over its phase (RCL table 8: the offset parameters).
+    """The offsets that a force-controlled motion adds to a Cartesian DMP over its phase (RCL table 8).
 
     Metres along (`w1o` to `w3o`) and a rotation vector in radians about (`w4o` to `w6o`) the axes of
-    the task frame; the value at phase x is the mean of the weights, weighed by the kernels.
+    the task frame; the value at phase x is the kernel-weighted mean of the weights.
     """
 
     c_o: Annotated[Row, msgspec.Meta(min_length=1)]
@@ -167,10 +167,10 @@ class CartOffsets(Message, frozen=True, kw_only=True):
 
 
 class ForceReference(Message, frozen=True, kw_only=True):
-    """The force (N, `w1f` to `w3f`) and torque (Nm, `w4f` to `w6f`) wanted over the phase (RCL table 8).
+    """The desired force (N, `w1f` to `w3f`) and torque (Nm, `w4f` to `w6f`) over the phase (RCL table 8).
 
-    They are what the environment shall do to the tool, along and about the axes of the task frame:
-    a tool that presses down on a table with 10 N has +10 along the z axis that points up.
+    They are those of the environment on the tool, along and about the axes of the task frame:
+    a tool that presses down on a table with 10 N has +10 along the upward z axis.
     """
 
     N_f: Annotated[int, msgspec.Meta(ge=1)]
@@ -185,7 +185,7 @@ class ForceReference(Message, frozen=True, kw_only=True):
 
     @classmethod
     def constant(cls, *, force_n: Sequence[float], torque_nm: Sequence[float] = (0.0, 0.0, 0.0)) -> ForceReference:
-        """Return the reference that asks for the same force and torque all the way."""
+        """Return the reference of a constant force and torque."""
         one = [(value,) for value in (*force_n, *torque_nm)]
         return cls(
             N_f=1, c_f=(0.5,), sigma_f=(1.0,),
@@ -214,9 +214,9 @@ def _numbered(pattern: str, rows: Sequence[Row]) -> tuple[tuple[str, Row], ...]:
 
 
 def _check_lengths(rows: Iterable[tuple[str, Sequence[object], int]], where: str) -> None:
-    for name, row, due in rows:
-        if len(row) != due:
-            raise ValueError(f"{name} has {len(row)} values where {due} are due {where}")
+    for name, row, length in rows:
+        if len(row) != length:
+            raise ValueError(f"{name} has {len(row)} values, not {length} {where}")
 
 
 def _check_finite(rows: Iterable[tuple[str, Row]]) -> None:
@@ -227,16 +227,16 @@ def _check_finite(rows: Iterable[tuple[str, Row]]) -> None:
 
 
 def _turned(matrix: Row, xyzw: Quaternion) -> Quaternion:
-    """Return the orientation `xyzw` turned by the rotation of a 4 x 4 transform."""
+    """Return the orientation `xyzw` rotated by the rotation of a 4 x 4 transform."""
     a, b, c, _, d, e, f, _, g, h, i = matrix[:11]
-    # Of the four ways to the quaternion of a rotation the one with the greatest divisor is taken.
-    ways = (
+    # Of the four formulas for the quaternion of a rotation, use the one with the greatest divisor.
+    candidates = (
         (1.0 + a - e - i, b + d, g + c, h - f),
         (b + d, 1.0 - a + e - i, f + h, c - g),
         (g + c, f + h, 1.0 - a - e + i, d - b),
         (h - f, c - g, d - b, 1.0 + a + e + i),
     )
-    lx, ly, lz, lw = max(ways, key=lambda way: math.hypot(*way))
+    lx, ly, lz, lw = max(candidates, key=lambda candidate: math.hypot(*candidate))
     x, y, z, w = xyzw
     turned = (
         lw * x + lx * w + ly * z - lz * y,
@@ -250,15 +250,15 @@ def _turned(matrix: Row, xyzw: Quaternion) -> Quaternion:
 
 def _check_rigid(matrix: Row) -> None:
     if len(matrix) != _IDENTITY_4:
-        raise ValueError(f"tasktrans has {len(matrix)} values where 16 are due (4 x 4, row by row)")
-    turn = (matrix[0:3], matrix[4:7], matrix[8:11])
+        raise ValueError(f"tasktrans has {len(matrix)} values, not 16 (4 x 4, row by row)")
+    rotation = (matrix[0:3], matrix[4:7], matrix[8:11])
     for first in range(3):
         for second in range(3):
-            product = sum(a * b for a, b in zip(turn[first], turn[second], strict=True))
+            product = sum(a * b for a, b in zip(rotation[first], rotation[second], strict=True))
             if abs(product - (first == second)) > _UNIT_TOLERANCE:
-                raise ValueError("tasktrans has no rotation in its first three rows and columns")
-    (a, b, c), (d, e, f), (g, h, i) = turn
+                raise ValueError("the first three rows and columns of tasktrans are not a rotation matrix")
+    (a, b, c), (d, e, f), (g, h, i) = rotation
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0:
-        raise ValueError("tasktrans mirrors: its rotation has determinant -1")
-    if any(abs(value - due) > _UNIT_TOLERANCE for value, due in zip(matrix[12:], (0, 0, 0, 1), strict=True)):
+        raise ValueError("tasktrans is a reflection: the determinant of its rotation is -1")
+    if any(abs(value - unit) > _UNIT_TOLERANCE for value, unit in zip(matrix[12:], (0, 0, 0, 1), strict=True)):
         raise ValueError("the last row of tasktrans is not 0 0 0 1")

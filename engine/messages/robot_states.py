@@ -1,4 +1,4 @@
-"""What robots and their tools say of themselves: joints, grippers, hands, magnets, descriptions."""
+"""States and descriptions of robots and tools: joints, grippers, hands, magnets."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from engine.messages.geometry import Message, Pose
 
 
 class JointState(Message, frozen=True, kw_only=True):
-    """Measured joints of one robot at `time_s` of its own clock."""
+    """Measured joint state of one robot at `time_s` of its own clock."""
 
     time_s: float
     names: tuple[str, ...]
@@ -16,7 +16,7 @@ class JointState(Message, frozen=True, kw_only=True):
 
 
 class GripperState(Message, frozen=True, kw_only=True):
-    """Measured state of a two-finger gripper: opening between the pads and force on them."""
+    """Measured state of a two-finger gripper: opening between the pads and force on the pads."""
 
     time_s: float
     width_m: float
@@ -25,29 +25,29 @@ class GripperState(Message, frozen=True, kw_only=True):
 
 
 class HandState(Message, frozen=True, kw_only=True):
-    """Measured state of a hand with one motor: how far it is closed (0 open, 100 closed), how hard it presses."""
+    """Measured state of a hand with one motor: closing position (0 open, 100 closed) and grip force."""
 
     time_s: float
     closed_percent: float
     force_n: float
     held: bool
     part: str = ""
-    """What is held, `?` where the hand cannot tell, empty for nothing."""
+    """Name of the held part, `?` when unknown, empty for none."""
 
 
 class MagnetState(Message, frozen=True, kw_only=True):
-    """Measured state of a switchable magnet: how hard it pulls at what touches its face."""
+    """Measured state of a switchable magnet with the pull on the part at its face."""
 
     time_s: float
     on: bool
     pull_n: float
     held: bool
     part: str = ""
-    """What is held, `?` where the magnet cannot tell, empty for nothing."""
+    """Name of the held part, `?` when unknown, empty for none."""
 
 
 class ExternalTorque(Message, frozen=True, kw_only=True):
-    """The joint torque that the environment exerts on a robot, estimated, without the load that it knows of."""
+    """Estimated joint torque that the environment exerts on a robot, without the known load."""
 
     time_s: float
     names: tuple[str, ...]
@@ -55,10 +55,10 @@ class ExternalTorque(Message, frozen=True, kw_only=True):
 
 
 class RobotDescription(Message, frozen=True, kw_only=True):
-    """What a robot says of itself once connected, published as the latest value of `<robot>/description`.
+    """The description of a connected robot, the latest value of `<robot>/description`.
 
-    `urdf` is of arm and tool together. `tool` is the name of the tool's model, empty for a bare flange;
-    `calibration` the hash of the factory calibration that is applied, empty for the nominal arm.
+    `urdf` describes arm and tool together. `tool` is the name of the tool's model, empty for a bare flange;
+    `calibration` is the hash of the applied factory calibration, empty for the nominal arm.
     """
 
     name: str

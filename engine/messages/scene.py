@@ -1,4 +1,4 @@
-"""What can be drawn of a cell."""
+"""The visual scene of a cell."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ class VisualGeometry(Message, frozen=True, kw_only=True):
 
 
 class SceneDescription(Message, frozen=True, kw_only=True):
-    """Everything that can be drawn, published once as the latest value of `cell/scene`."""
+    """All visual geometries of the cell, published once as the latest value of `cell/scene`."""
 
     geometries: tuple[VisualGeometry, ...]

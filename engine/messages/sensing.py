@@ -1,4 +1,4 @@
-"""What cameras see and what is made of it: depth images and the occupancy of the cell's space, as messages."""
+"""Messages of cameras: depth images and the occupancy grid computed from them."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class DepthImage(Message, frozen=True, kw_only=True):
     """One image of a depth camera, published on `<camera>/depth`.
 
     `pose` is that of the optical frame in the world when the image was taken: x to the right, y down, z into
-    the scene. `depth_m` are float32 distances along z by rows, top row first; 0 where nothing was measured,
-    infinity where it was measured that nothing is there as far as the camera can see (as in ROS, REP 117).
+    the scene. `depth_m` are float32 distances along z by rows, top row first; 0 for an invalid measurement,
+    infinity where nothing is within the camera's range (as in ROS, REP 117).
     """
 
     time_s: float
@@ -32,12 +32,12 @@ class DepthImage(Message, frozen=True, kw_only=True):
 
 
 class OccupancyGrid(Message, frozen=True, kw_only=True):
-    """Which voxels of a box along the world's axes are taken by something unknown, published on `cell/occupancy`.
+    """The voxels of an axis-aligned box occupied by unknown objects, published on `cell/occupancy`.
 
     `corner_m` is the box's lowest corner, `shape` the number of voxels along x, y and z. `occupied` are bits,
-    x slowest and z fastest, packed eight to a byte with the first one highest (`numpy.packbits`). The arms
-    themselves, what they hold and the known obstacles are taken out. `revision` rises with every change,
-    `time_s` is the time of the newest image in it.
+    x slowest and z fastest, packed eight to a byte with the first one highest (`numpy.packbits`). The arms,
+    their held parts and the known obstacles are excluded. `revision` increases with every change,
+    `time_s` is the time of the newest image in the grid.
     """
 
     time_s: float
@@ -49,9 +49,9 @@ class OccupancyGrid(Message, frozen=True, kw_only=True):
 
 
 class CameraInfo(Message, frozen=True, kw_only=True):
-    """What a depth camera is, the latest value of `<camera>/camera_info`; `pose` is that of its optical frame.
+    """The properties of a depth camera, the latest value of `<camera>/camera_info`; `pose` is its optical frame's.
 
-    The images themselves may be smaller, and carry their own intrinsics.
+    The images may be smaller, and have their own intrinsics.
     """
 
     camera: str
@@ -62,11 +62,11 @@ class CameraInfo(Message, frozen=True, kw_only=True):
 
 
 class OccupancyState(Message, frozen=True, kw_only=True):
-    """Whether `cell/occupancy` can be relied on, the latest value of `cell/occupancy_state`.
+    """Whether `cell/occupancy` is reliable, the latest value of `cell/occupancy_state`.
 
-    `stale_reason` says why not, and is empty while it can. `made` says how the depth images are made. `looks`
-    counts the images' moments since the cell was opened, `dropped` those left out because the one before was
-    still being mapped. `image_s` and `mapping_s` are how long the newest images took to make and to map.
+    `stale_reason` is empty while the grid is reliable. `made` describes how the depth images are made. `looks`
+    counts the image times since the cell was opened, `dropped` those skipped because the previous one was
+    still being mapped. `image_s` and `mapping_s` are the durations of making and mapping the newest images.
     """
 
     stale_reason: str

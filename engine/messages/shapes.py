@@ -1,6 +1,6 @@
-"""Convex shapes, and what stands in a cell made of them: the words for obstacles on the bus and in planners.
+"""Convex shapes and obstacles made of them, used on the bus and by planners.
 
-Metres; a shape's own frame is at its centre.
+Metres; the frame of a shape is at its centre.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Capsule(Message, frozen=True, kw_only=True, tag_field="kind", tag="capsule
 
 
 class Hull(Message, frozen=True, kw_only=True, tag_field="kind", tag="hull"):
-    """The convex hull of at least four points that do not lie in one plane, a mesh's for one."""
+    """The convex hull of at least four points that are not coplanar, such as the vertices of a mesh."""
 
     points_m: tuple[Vector3, ...]
 
@@ -46,14 +46,14 @@ Shape = Box | Cylinder | Sphere | Capsule | Hull
 
 
 class Solid(Message, frozen=True, kw_only=True):
-    """A shape where it is in the frame of what it belongs to."""
+    """A shape with its pose in the frame of its owner."""
 
     shape: Shape
     pose: Pose = AT_ORIGIN
 
 
 class Obstacle(Message, frozen=True, kw_only=True):
-    """Something in the way: one or more solids, at `pose` in the world."""
+    """An obstacle of one or more solids at `pose` in the world."""
 
     name: str
     solids: tuple[Solid, ...]

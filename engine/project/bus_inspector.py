@@ -20,7 +20,7 @@ Schema = dict[str, Any]
 
 
 class TopicInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A topic: its type, what that is for, and whether people may publish on it."""
+    """A topic: its message type with its documentation, and whether users may publish on it."""
 
     name: str
     type: str
@@ -29,7 +29,7 @@ class TopicInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SkillInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A service or action: its address, the type of its request, what it is for, what it answers."""
+    """A service or action: its address, request type, documentation and response type."""
 
     kind: str
     name: str
@@ -39,7 +39,7 @@ class SkillInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ParameterInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A parameter with its present value, and the JSON Schema of its values."""
+    """A parameter with its present value and the JSON Schema of its values."""
 
     name: str
     doc: str
@@ -48,7 +48,7 @@ class ParameterInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TopicStatistics(msgspec.Struct, frozen=True, kw_only=True):
-    """What has passed on a topic: how many messages, when the latest, and whether it is made when somebody looks."""
+    """Statistics of a topic: message count, time of the latest, and whether a provider makes it on demand."""
 
     count: int
     latest_at_s: float | None
@@ -57,7 +57,7 @@ class TopicStatistics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GoalInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A goal under way: who sent it, from which node, and its newest feedback."""
+    """An active goal: its run and node, and its newest feedback."""
 
     id: str
     address: str
@@ -68,7 +68,7 @@ class GoalInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class BusInspector:
-    """A bus as a person at a screen sees it; used on the bus's loop."""
+    """A view of a bus for a user interface; used on the bus's loop."""
 
     def __init__(self, bus: SkillBus) -> None:
         self._bus = bus
@@ -76,7 +76,7 @@ class BusInspector:
 
     @property
     def now_s(self) -> float:
-        """The bus's clock."""
+        """The time of the bus's clock."""
         return self._bus.clock.now_s()
 
     def topics(self) -> tuple[TopicInfo, ...]:
@@ -108,12 +108,12 @@ class BusInspector:
         )
 
     def shape(self) -> tuple[str, ...]:
-        """Return what there is, in short: the names of topics and skills, and parameters with their values."""
+        """Return a summary of the bus: the names of topics and skills, and parameters with their values."""
         parameters = (f"{each.name}={each.value!r}" for each in self._bus.parameters.listing())
         return (*(topic.name for topic in self._bus.topics()), *self._bus.skills(), *parameters)
 
     def traffic(self) -> dict[str, TopicStatistics]:
-        """Return what has passed on each topic; nothing is measured for it."""
+        """Return the statistics of each topic; triggers no measurement."""
         return {
             topic.name: TopicStatistics(
                 count=topic.count,
@@ -125,22 +125,22 @@ class BusInspector:
         }
 
     def topic(self, name: str) -> Topic[Any]:
-        """Return a topic; raises BusError when there is none of that name."""
+        """Return a topic; raises BusError when it does not exist."""
         return self._bus.find_topic(name)
 
     def latest(self, name: str) -> object | None:
-        """Return the newest message of a topic; None where there is none, or its device cannot say now."""
+        """Return the newest message of a topic; None when there is none or its device cannot provide it now."""
         try:
             return self._bus.find_topic(name).latest
         except FlexcellError:
-            return None  # a screen shows a gap; who needs the message asks the topic itself
+            return None  # a user interface shows a gap; code that needs the message reads the topic itself
 
     def leases(self) -> tuple[Lease, ...]:
-        """Return who commands what."""
+        """Return all leases with their holders."""
         return self._bus.leases.held()
 
     def goals(self, run: str | None = None) -> tuple[GoalInfo, ...]:
-        """Return the goals under way, of one run or of everybody, in the order in which they were sent."""
+        """Return the active goals of one run, or of all holders when None, in the order sent."""
         return tuple(
             GoalInfo(
                 id=goal.id,
@@ -154,48 +154,48 @@ class BusInspector:
         )
 
     def request_schema(self, address: str) -> Schema:
-        """Return the JSON Schema of what a service or action is asked; raises NoSuchSkill."""
+        """Return the JSON Schema of the request of a service or action; raises NoSuchSkill."""
         return _schema(self._bus.request_type(address))
 
     def message_schema(self, topic: str) -> Schema:
-        """Return the JSON Schema of what is published on a topic; raises BusError."""
+        """Return the JSON Schema of the messages of a topic; raises BusError."""
         return _schema(self._bus.find_topic(topic).kind)
 
     def set_parameter(self, name: str, value: object) -> object:
-        """Set a parameter and return its value then; raises BusError when there is none, or the value does not fit."""
+        """Set a parameter and return its new value; raises BusError when it does not exist or the value is invalid."""
         self._bus.parameters.set(name, value)
         return self._bus.parameters.get(name)
 
     def cancel(self, goal: str) -> None:
-        """Ask for the stop of a goal that a person sent; its end tells when the device rests.
+        """Cancel a goal that a user sent; the goal ends when the device is at rest.
 
         Raises:
-            BusError: a run sent it, or there is no such goal under way.
+            BusError: a run sent the goal, or there is no such active goal.
         """
         for handle in self._bus.goals():
             if handle.id != goal:
                 continue
             if handle.holder.run != CLI_HOLDER.run:
-                raise BusError("this goal is of a run", where=goal, hint=f"stop run {handle.holder.run}")
+                raise BusError("this goal belongs to a run", where=goal, hint=f"stop run {handle.holder.run}")
             handle.cancel()
             return
-        raise BusError("no such goal is under way", where=goal, hint="it may have ended by now")
+        raise BusError("no such active goal", where=goal, hint="the goal may have ended")
 
     def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:
-        """Send a goal, to be followed by `ended`.
+        """Send a goal; then await `ended`.
 
         Raises:
-            BusError: there is no such action, it is a service, the goal does not fit, or a run holds the resource.
+            BusError: no such action, a service, an invalid goal, or a resource held by a run.
         """
         return self._access.send(address, goal)
 
     async def ended(self, handle: GoalHandle[Any, Any]) -> GoalEnd[Any]:
-        """Wait for the end of a goal that was sent; cancelled, the goal is cancelled and awaited first."""
+        """Wait for the end of a sent goal; on cancellation, cancel the goal and wait for its end first."""
         return await self._access.ended(handle)
 
 
 def _doc(kind: Any) -> str:
-    """The docstring that a type has of its own."""
+    """Return the docstring of a type, without inherited ones."""
     own = cast("dict[str, object]", vars(kind)).get("__doc__")
     return inspect.cleandoc(own) if isinstance(own, str) else ""
 
@@ -208,5 +208,5 @@ def _schema(kind: Any) -> Schema:
     try:
         return msgspec.json.schema(kind, schema_hook=any_value)
     except (TypeError, NotImplementedError) as error:
-        what = f"{_type_name(kind)} cannot be described as a form: {error}"
-        raise BusError(what, hint="use `flexcell bus`") from error
+        message = f"no JSON Schema can be made of {_type_name(kind)}: {error}"
+        raise BusError(message, hint="use `flexcell bus`") from error

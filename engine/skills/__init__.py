@@ -1,1 +1,1 @@
-"""The standard skills, by which states and robots meet without importing one another."""
+"""The standard skills: the interface between states and robots, which do not import each other."""

@@ -1,7 +1,7 @@
-"""How an arm behaves between and during its motions: controller, stiffness, tool, load, thresholds (RCY 4.1).
+"""Control settings of an arm: controller, stiffness, tool, load, thresholds (RCY 4.1).
 
-The services are answered under the arm's name and return what is in force afterwards. While a run
-holds the arm, others may still read it, change its speed override and recover it; the rest is refused.
+The services are served under the arm's name and return the settings in force afterwards. While a run
+holds the arm, others may read it, change its speed override and recover it; other requests are refused.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ Six = tuple[float, float, float, float, float, float]
 ControllerName = Literal["joint_impedance", "cartesian_impedance"]
 ArmMode = Literal["disconnected", "fault", "reflex", "idle", "moving", "jogging", "guiding", "direct"]
 
-Share = Annotated[float, msgspec.Meta(ge=0.001, le=1.0, description="Share of their own speed that motions run at")]
+Share = Annotated[float, msgspec.Meta(ge=0.001, le=1.0, description="Fraction of the programmed speed of motions")]
 Damping = Annotated[float, msgspec.Meta(gt=0.0, le=2.0, description="Damping ratio, 1 is critical")]
 Mass = Annotated[
-    float, msgspec.Meta(ge=0.0, description="Mass of what the tool carries", extra_json_schema={"unit": "kg"})
+    float, msgspec.Meta(ge=0.0, description="Mass of the load of the tool", extra_json_schema={"unit": "kg"})
 ]
 JointRow = tuple[Annotated[float, msgspec.Meta(gt=0.0)], ...]
 
 
 class ControlSettings(Message, frozen=True, kw_only=True):
-    """What stays in force until it is changed.
+    """Control settings, in force until they are changed.
 
     Stiffness is N m/rad for joints, N/m along and N m/rad about the axes of the arm's base for the tool.
-    An empty `joint_stiffness_nm_rad` means the nominal one; an empty `collision_torque_nm` and no
-    `collision_force_n` mean that no reflex trips. The tool centre point is given in the model's tool
-    link, like the centre of mass of the load.
+    An empty `joint_stiffness_nm_rad` means the nominal stiffness; an empty `collision_torque_nm` and no
+    `collision_force_n` disable the reflex. The tool centre point and the centre of mass of the load are
+    given in the model's tool link.
     """
 
     controller: ControllerName
@@ -50,11 +50,11 @@ class ControlSettings(Message, frozen=True, kw_only=True):
 
 
 class ArmStatus(Message, frozen=True, kw_only=True):
-    """What an arm does and how it behaves; the latest value of `<arm>/status`, told at every change of mode.
+    """Mode, activity and settings of an arm; the latest value of `<arm>/status`, published at every change of mode.
 
-    `activity` names the skill that is carried out, or says what a goal waits for. `error` says why the
-    last one failed or why the arm stopped by itself; it is empty after one that did not. `external_nm`
-    and `wrench` are what the environment does to the joints and to the tool, as measured when this was made.
+    `activity` names the active skill, or what a goal waits for. `error` is the reason why the last skill
+    failed or the arm stopped by itself; it is empty after a success. `external_nm` and `wrench` are the
+    measured external joint torques and the external wrench on the tool at the time of the message.
     """
 
     mode: ArmMode
@@ -66,36 +66,36 @@ class ArmStatus(Message, frozen=True, kw_only=True):
 
 
 class SpeedOverride(Message, frozen=True, kw_only=True):
-    """The share of their own speed that all motions run at; the latest value of `<arm>/speed_override`."""
+    """The fraction of their programmed speed that all motions run at; the latest value of `<arm>/speed_override`."""
 
     share: float
 
 
 class ReadArm(Service[ArmStatus], frozen=True, kw_only=True):
-    """Return what the arm does and how it behaves."""
+    """Return the status of the arm."""
 
 
 class SetSpeedOverride(Service[ControlSettings], frozen=True, kw_only=True):
-    """Let all motions run at `share` of their own speed, the one under way included; anybody may."""
+    """Run all motions, including the active one, at `share` of their programmed speed; needs no lease."""
 
     share: Share
 
 
 class SetController(Service[ControlSettings], frozen=True, kw_only=True):
-    """Choose the law that holds the set point; the arm does not jump."""
+    """Switch the control law that tracks the set point; the arm does not jump."""
 
     controller: ControllerName
 
 
 class SetJointImpedance(Service[ControlSettings], frozen=True, kw_only=True):
-    """Set the stiffness of the joints in N m/rad, one value a joint (empty: the nominal ones), and their damping."""
+    """Set the joint stiffness in N m/rad, one value per joint (empty: nominal), and the damping."""
 
     stiffness_nm_rad: JointRow = ()
     damping_ratio: Damping = 1.0
 
 
 class SetCartesianImpedance(Service[ControlSettings], frozen=True, kw_only=True):
-    """Set the stiffness of the tool: N/m along, N m/rad about the axes of the arm's base, and its damping."""
+    """Set the stiffness of the tool, N/m along and N m/rad about the axes of the arm's base, and the damping."""
 
     stiffness: Six
     damping_ratio: Damping = 1.0
@@ -103,7 +103,7 @@ class SetCartesianImpedance(Service[ControlSettings], frozen=True, kw_only=True)
 
 
 class SetEndEffectorFrame(Service[ControlSettings], frozen=True, kw_only=True):
-    """Put the tool centre point elsewhere, in the model's tool link; Cartesian goals then mean that point.
+    """Set the tool centre point in the model's tool link; Cartesian goals then refer to that point.
 
     Refused while the arm moves.
     """
@@ -113,16 +113,16 @@ class SetEndEffectorFrame(Service[ControlSettings], frozen=True, kw_only=True):
 
 
 class SetLoad(Service[ControlSettings], frozen=True, kw_only=True):
-    """Tell what the tool carries, so that its weight is compensated; the centre of mass is in the tool link."""
+    """Set the load of the tool, so that its weight is compensated; the centre of mass is in the tool link."""
 
     mass_kg: Mass
     com_m: Vector3 = (0.0, 0.0, 0.0)
 
 
 class SetCollisionBehavior(Service[ControlSettings], frozen=True, kw_only=True):
-    """Set what trips the reflex: external torque of a joint (one value each), external force at the tool.
+    """Set the thresholds of the reflex: external torque of each joint, external force at the tool.
 
-    An empty `torque_nm` and no `force_n` switch the reflex off.
+    An empty `torque_nm` and no `force_n` disable the reflex.
     """
 
     torque_nm: JointRow = ()
@@ -130,4 +130,4 @@ class SetCollisionBehavior(Service[ControlSettings], frozen=True, kw_only=True):
 
 
 class RecoverFromError(Service[ArmStatus], frozen=True, kw_only=True):
-    """End a reflex: the arm holds itself where it stands and takes goals again. Anybody may; without one nothing."""
+    """Recover from a reflex: the arm holds its position and accepts goals again. Needs no lease; else does nothing."""

@@ -1,4 +1,4 @@
-"""Where states take arms, as far as that is known before a run: what a check asks of them and of the cell as drawn."""
+"""Targets of arms that are known before a run, for checks of states against the static cell."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from engine.skills.motion import PoseMatch
 
 
 class ArmTarget(msgspec.Struct, frozen=True, kw_only=True):
-    """A place that a state takes an arm to: `joints`, radians in the arm's order, or else the tool at `pose`.
+    """A target that a state moves an arm to: `joints`, radians in the arm's order, or the tool at `pose`.
 
-    `parameter` is the parameter of the state that says so; `match` is what counts of the pose. The pose may be in the
-    frame `world` or in that of the arm's base.
+    `parameter` is the state's parameter that defines the target; `match` selects the components of the pose to reach.
+    The pose may be in the frame `world` or in that of the arm's base.
     """
 
     robot: str
@@ -25,25 +25,25 @@ class ArmTarget(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ToolChange(msgspec.Struct, frozen=True, kw_only=True):
-    """Puts the tool centre point of an arm elsewhere, so that poses mean another place."""
+    """Changes the tool centre point of an arm, so that poses refer to another point."""
 
     robot: str
 
 
 class StoredTargets(Protocol):
-    """What the store of a cell begins with."""
+    """The initial entries of a cell's store."""
 
     def joints(self, name: str) -> tuple[float, ...] | None:
-        """Return the entry of kind `joints`, radians; None where there is none."""
+        """Return the entry of kind `joints`, radians; None when there is none."""
         ...
 
     def pose(self, name: str) -> Pose | None:
-        """Return the entry of kind `pose`; None where there is none."""
+        """Return the entry of kind `pose`; None when there is none."""
         ...
 
 
 class TargetViolation(msgspec.Struct, frozen=True, kw_only=True):
-    """Why an arm cannot be where it is to be taken."""
+    """The reason why an arm cannot reach a target."""
 
     kind: Literal["unreachable", "collision"]
     message: str
@@ -51,12 +51,12 @@ class TargetViolation(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StaticCell(Protocol):
-    """A cell as its document draws it: arms and fixtures, and no parts, which are meant to be touched and moved."""
+    """The static cell of a document: arms and fixtures without parts, which are meant to be touched and moved."""
 
     def fault(self, target: ArmTarget) -> TargetViolation | None:
-        """Return why an arm cannot be at a target, None where it can be or nothing is known of it.
+        """Return why an arm cannot be at a target; None when it can, or when the arm is unknown.
 
-        All ways of standing there are looked at. Only the arm itself and fixtures count.
+        Checks all configurations for the target, for collisions with the arm itself and with fixtures.
 
         Raises:
             CellError: the cell cannot be built.

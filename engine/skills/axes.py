@@ -1,4 +1,4 @@
-"""Along which axes a way, a velocity or a step of the tool is given."""
+"""The axes along which a path, a velocity or a step of the tool is given."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ import msgspec
 
 Axes = Annotated[
     Literal["world", "base", "tool"],
-    msgspec.Meta(description="Axes it is given along: the world's, the arm's base's or the tool's"),
+    msgspec.Meta(description="Reference axes: those of the world, of the arm's base or of the tool"),
 ]

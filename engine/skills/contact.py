@@ -11,9 +11,9 @@ from engine.skill import Action
 from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback
 
-MaxDistance = Annotated[float, msgspec.Meta(gt=0.0, description="Longest way", extra_json_schema={"unit": "m"})]
+MaxDistance = Annotated[float, msgspec.Meta(gt=0.0, description="Maximum distance", extra_json_schema={"unit": "m"})]
 ApproachSpeed = Annotated[
-    float, msgspec.Meta(gt=0.0, le=0.25, description="Greatest speed on the way", extra_json_schema={"unit": "m/s"})
+    float, msgspec.Meta(gt=0.0, le=0.25, description="Maximum speed on the path", extra_json_schema={"unit": "m/s"})
 ]
 ContactForce = Annotated[
     float, msgspec.Meta(gt=0.0, description="Force that counts as a contact", extra_json_schema={"unit": "N"})
@@ -21,10 +21,10 @@ ContactForce = Annotated[
 
 
 class ContactResult(Message, frozen=True, kw_only=True):
-    """Whether something was touched, and where the tool came to rest.
+    """Whether a contact occurred, and the pose of the tool at rest.
 
-    `wrench` is what the environment does to the tool there, `force_n` its share against the way;
-    `travelled_m` is the way made along the direction.
+    `wrench` is the external wrench on the tool there, `force_n` its force component against the direction;
+    `travelled_m` is the distance travelled along the direction.
     """
 
     contact: bool
@@ -36,11 +36,11 @@ class ContactResult(Message, frozen=True, kw_only=True):
 
 
 class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, kw_only=True):
-    """Move the tool straight along `direction` until the environment pushes back with `force_n`.
+    """Move the tool straight along `direction` until the external force against it reaches `force_n`.
 
-    The arm then brakes as hard as it may and rests; the whole way without a contact is a success
-    too, with `contact` false. `direction` needs no length of 1; it is along the axes of `frame`.
-    Rejected beforehand like CartLinTask.
+    The arm then decelerates at its limits to rest; the full distance without a contact is a success
+    too, with `contact` false. `direction` need not have length 1; it is along the axes of `frame`.
+    Rejected before the motion as in CartLinTask.
     """
 
     direction: Vector3

@@ -1,4 +1,4 @@
-"""Digital outputs of a robot's controller and what hangs on them (RCL 4.3.9, tables 10 and 11)."""
+"""Digital outputs of a robot's controller and the equipment on them (RCL 4.3.9, tables 10 and 11)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Skills on dynamic movement primitives of one arm, answered under the arm's name (RCL 4.3.5 to 4.3.7, RCY 7.1).
+"""Skills on dynamic movement primitives of one arm, served under the arm's name (RCL 4.3.5 to 4.3.7, RCY 7.1).
 
-The parameters are those of RCL tables 6 to 8, see `engine.messages.primitives`. A preempted or failed goal
-leaves the arm at rest and ready for the next.
+The parameters are those of RCL tables 6 to 8, see `engine.messages.primitives`. After a preempted or failed goal
+the arm is at rest and ready for the next goal.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 
 Six = tuple[float, float, float, float, float, float]
-Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 lets the fit decide")]
+Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 selects it by the fit")]
 GainZ = Annotated[float, msgspec.Meta(gt=0, description="Gain of the transformation system")]
 GainX = Annotated[float, msgspec.Meta(gt=0, description="Gain of the phase")]
 
@@ -26,9 +26,9 @@ GainX = Annotated[float, msgspec.Meta(gt=0, description="Gain of the phase")]
 class JointDMP(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
     """Move along a joint-space DMP (RCL table 6).
 
-    Rejected beforehand, with the reason, where the arm stands more than `start_reach_rad` from the
-    primitive's start `y0`, or a joint would leave its range, speed or acceleration. A smaller distance
-    fades out on the way. `goal` replaces the primitive's goal smoothly; empty for none.
+    Rejected before the motion, with the reason, when the arm is more than `start_reach_rad` from the
+    primitive's start `y0`, or a joint would exceed its position, speed or acceleration limits. A smaller
+    distance fades out during the motion. `goal` replaces the primitive's goal smoothly; empty for none.
     """
 
     dmp: JointDmp
@@ -39,8 +39,8 @@ class JointDMP(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_o
 class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
     """Move the tool centre point along a Cartesian DMP (RCL table 7).
 
-    Rejected beforehand, with the reason, where the tool stands farther from the primitive's start than
-    the two reaches, or the motion cannot be followed. `goal` replaces the primitive's goal smoothly.
+    Rejected before the motion, with the reason, when the tool is farther from the primitive's start than
+    the two reaches, or the arm cannot follow the motion. `goal` replaces the primitive's goal smoothly.
     """
 
     dmp: CartDmp
@@ -52,10 +52,10 @@ class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only
 class Compliance(Message, frozen=True, kw_only=True):
     """M ẍ + D ẋ + K x = F_measured - F_wanted for the offset x, for each axis: along x y z, then about x y z.
 
-    An axis with `active` 0 keeps to the path, one with 1 follows the force. Masses are kg and kg m²,
-    damping N s/m and N m s/rad, stiffness N/m and N m/rad (0: pure force control). `frame` says along
-    which axes, the task frame: those of the world, of the arm's base, or of the tool as it stands when
-    the motion starts. The offset stays within `reach_m` and `turn_rad`, its speed within `speed_m_s`
+    An axis with `active` 0 follows the path, one with 1 the force. Masses are kg and kg m²,
+    damping N s/m and N m s/rad, stiffness N/m and N m/rad (0: pure force control). `frame` selects the
+    axes of the task frame: those of the world, of the arm's base, or of the tool at the start of
+    the motion. The offset stays within `reach_m` and `turn_rad`, its speed within `speed_m_s`
     and `turn_rad_s`.
     """
 
@@ -77,7 +77,7 @@ class Compliance(Message, frozen=True, kw_only=True):
 
 
 class CartAdmitFeedback(Message, frozen=True, kw_only=True):
-    """The measured force and torque on the tool (world axes) and where it is (RCL table 8)."""
+    """The measured wrench on the tool (world axes) and the pose of the tool (RCL table 8)."""
 
     wrench: Wrench
     pose: Pose
@@ -85,9 +85,9 @@ class CartAdmitFeedback(Message, frozen=True, kw_only=True):
 
 
 class CartAdmitResult(Message, frozen=True, kw_only=True):
-    """What a pass has learned (RCL table 8): give `offsets` to the next pass; None after one that was cut short.
+    """The result of a learning pass (RCL table 8): pass `offsets` to the next one; None after an interrupted pass.
 
-    The force errors are newton, over the whole pass and the active axes x, y and z together; 0 after one that failed.
+    The force errors are newton, over the whole pass and the active axes x, y and z together; 0 after a failed pass.
     """
 
     offsets: CartOffsets | None
@@ -98,10 +98,10 @@ class CartAdmitResult(Message, frozen=True, kw_only=True):
 
 
 class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_only=True):
-    """Move along a Cartesian DMP and press as `force` says, by admittance; returns the learned offsets (RCL table 8).
+    """Move along a Cartesian DMP with the reference `force` by admittance; return the learned offsets (RCL table 8).
 
-    `offsets` of an earlier pass are added from the beginning, cut off at the reach; None for zero.
-    `slow_per_n` is the phase stopping: the motion slows to 1 / (1 + slow_per_n · |force error|). `N`
+    `offsets` of an earlier pass are added from the start, limited to the reach; None for zero.
+    `slow_per_n` sets the phase stopping: the motion slows to 1 / (1 + slow_per_n · |force error|). `N`
     kernels encode the offsets.
     """
 
@@ -116,17 +116,17 @@ class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_o
 
 
 class TrimInterval(Message, frozen=True, kw_only=True):
-    """What was used of a recording: from `start_s` to `end_s`, counted from its first sample."""
+    """The used interval of a recording: from `start_s` to `end_s` after its first sample."""
 
     start_s: float
     end_s: float
 
 
 class JointFit(Message, frozen=True, kw_only=True):
-    """How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end.
+    """The error of a learned joint DMP against its recording: RMS, maximum, and at the goal.
 
-    `joint` is the one with the greatest error, counted from 0. `rms_m` and `max_m` are how far that puts the tool
-    centre point off, None where nobody knew the arm.
+    `joint` is the index of the joint with the greatest error, from 0. `rms_m` and `max_m` are the resulting errors
+    of the tool centre point, None when the arm is unknown.
     """
 
     kernels: int
@@ -140,7 +140,7 @@ class JointFit(Message, frozen=True, kw_only=True):
 
 
 class CartFit(Message, frozen=True, kw_only=True):
-    """How far a learned Cartesian DMP is from its recording: over all samples, the worst one, the goal at the end."""
+    """The error of a learned Cartesian DMP against its recording: RMS, maximum, and at the goal."""
 
     kernels: int
     rms_m: float
@@ -153,14 +153,14 @@ class CartFit(Message, frozen=True, kw_only=True):
 
 
 class LearnedJointDmp(Message, frozen=True, kw_only=True):
-    """A joint DMP and how well it fits."""
+    """A joint DMP and its fit."""
 
     dmp: JointDmp
     fit: JointFit
 
 
 class LearnedCartDmp(Message, frozen=True, kw_only=True):
-    """A Cartesian DMP and how well it fits."""
+    """A Cartesian DMP and its fit."""
 
     dmp: CartDmp
     fit: CartFit
@@ -169,7 +169,7 @@ class LearnedCartDmp(Message, frozen=True, kw_only=True):
 class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
     """Learn a joint DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
 
-    `trim` cuts the rest at both ends off.
+    `trim` removes the time at rest at both ends.
     """
 
     entry: str = ""
@@ -187,8 +187,8 @@ class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
 class LearnCartDmp(Service[LearnedCartDmp], frozen=True, kw_only=True):
     """Learn a Cartesian DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
 
-    A recording without tool poses is followed through the arm's kinematics. `trim` cuts the rest at
-    both ends off.
+    The tool poses of a recording without them are computed by forward kinematics. `trim` removes the time
+    at rest at both ends.
     """
 
     entry: str = ""

@@ -1,4 +1,4 @@
-"""Named entries over the bus, answered under `store` (RCY 2.2)."""
+"""Named entries over the bus, served under `store` (RCY 2.2)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from engine.skill import Service
 
 
 class EntryRecord(Message, frozen=True, kw_only=True, omit_defaults=True):
-    """A named entry as stored: `value` has the fields of its `kind`; `revision` counts its changes.
+    """A stored entry: `value` has the fields of its `kind`; `revision` counts its changes.
 
-    `tags` is None where nothing is said of them.
+    `tags` is None when unspecified.
     """
 
     kind: str
@@ -22,16 +22,16 @@ class EntryRecord(Message, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class ReadEntry(Service[EntryRecord], frozen=True, kw_only=True):
-    """Return the entry `name` of `kind`; fails with the near names when there is none."""
+    """Return the entry `name` of `kind`; fails with similar names when there is none."""
 
     kind: str
     name: str
 
 
 class WriteEntry(Service[EntryRecord], frozen=True, kw_only=True):
-    """Write an entry; with `expected_revision`, only when the stored one still has it.
+    """Write an entry; with `expected_revision`, only when the stored entry has that revision.
 
-    `tags` replace those it has, None keeps them. `by` and `reason` say in its history who wrote it and why.
+    `tags` replace the present ones, None keeps them. `by` and `reason` are the author and the reason in its history.
     """
 
     kind: str
@@ -44,7 +44,7 @@ class WriteEntry(Service[EntryRecord], frozen=True, kw_only=True):
 
 
 class EntryChanged(Message, frozen=True, kw_only=True):
-    """One change of an entry: by whom, when (UTC, milliseconds since 1970) and why; `store/changes` has each."""
+    """One change of an entry: author, time (UTC, milliseconds since 1970), reason; published on `store/changes`."""
 
     kind: str
     name: str
@@ -57,7 +57,7 @@ class EntryChanged(Message, frozen=True, kw_only=True):
 
 
 class DeleteEntry(Service[EntryChanged], frozen=True, kw_only=True):
-    """Remove an entry; its history stays, and `undo_entry` brings it back."""
+    """Delete an entry; its history is kept, and `undo_entry` restores it."""
 
     kind: str
     name: str
@@ -67,7 +67,7 @@ class DeleteEntry(Service[EntryChanged], frozen=True, kw_only=True):
 
 
 class UndoEntry(Service[EntryChanged], frozen=True, kw_only=True):
-    """Bring back what an entry was before its last change; again, one step further into the past."""
+    """Restore an entry as it was before its last change; each further undo goes one change back."""
 
     kind: str
     name: str
@@ -83,14 +83,14 @@ class EntryHistory(Message, frozen=True, kw_only=True):
 
 
 class ReadHistory(Service[EntryHistory], frozen=True, kw_only=True):
-    """Return every change of an entry; none when it never was."""
+    """Return every change of an entry; empty when it never existed."""
 
     kind: str
     name: str
 
 
 class ReadRevision(Service[EntryRecord], frozen=True, kw_only=True):
-    """Return what an entry was after one of its changes; fails where it was deleted by it, or never was."""
+    """Return an entry at one of its revisions; fails when that revision deleted it or does not exist."""
 
     kind: str
     name: str
@@ -98,7 +98,7 @@ class ReadRevision(Service[EntryRecord], frozen=True, kw_only=True):
 
 
 class EntryList(Message, frozen=True, kw_only=True):
-    """The entries that matched, without their values."""
+    """The matching entries without their values."""
 
     entries: tuple[tuple[str, str, int], ...] = msgspec.field(default=())
 
@@ -106,8 +106,8 @@ class EntryList(Message, frozen=True, kw_only=True):
 class ListEntries(Service[EntryList], frozen=True, kw_only=True):
     """List (kind, name, revision) of the entries of `kind` (all kinds when empty) under `prefix`.
 
-    With `tags` only those that have all of them, with `text` those where each of its words begins a
-    word of the name or of a tag.
+    With `tags`, only entries with all of them; with `text`, only entries where each of its words is the
+    beginning of a word of the name or of a tag.
     """
 
     kind: str = ""

@@ -1,4 +1,4 @@
-"""Skills of a gripper with two fingers, answered under `<arm>/gripper` (RCY 4.1, LUT 4.4, WLK)."""
+"""Skills of a gripper with two fingers, served under `<arm>/gripper` (RCY 4.1, LUT 4.4, WLK)."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ FingerSpeed = Annotated[
 
 
 class GripperSetting(Message, frozen=True, kw_only=True):
-    """What a gripper was doing when it was taught: `held` something `width_m` wide, or stood that far open.
+    """The taught setting of a gripper: `held` a part `width_m` wide, or was open by that width.
 
-    `force_n` is what it pressed with, 0 where nobody said.
+    `force_n` is the grasp force, 0 when unknown.
     """
 
     width_m: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
@@ -27,16 +27,16 @@ class GripperSetting(Message, frozen=True, kw_only=True):
 
 
 class GripperFeedback(Message, frozen=True, kw_only=True):
-    """The measured opening on the way."""
+    """The measured opening during the motion."""
 
     width_m: float
 
 
 class GraspResult(Message, frozen=True, kw_only=True):
-    """What the fingers hold, judged from pad contact and from where they stopped.
+    """Whether the fingers hold a part, judged from pad contact and their final opening.
 
-    `reason` says in words why nothing is held; it is empty when `held`. `start` is how the gripper was before,
-    where that is known.
+    `reason` is why nothing is held; it is empty when `held`. `start` is the setting of the gripper before,
+    when known.
     """
 
     held: bool
@@ -53,7 +53,7 @@ class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tru
 
 
 class GripperMove(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
-    """Move the fingers to an opening, holding nothing."""
+    """Move the fingers to an opening without a part."""
 
     width_m: Width
     speed_m_s: FingerSpeed = 0.1
@@ -62,8 +62,8 @@ class GripperMove(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tru
 class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
     """Close until the fingers stop and press with `force_n`.
 
-    Succeeds as an action whether or not something is held; `GraspResult.held` tells. Held means
-    that both pads touch and the final opening lies within `width_m` -/+ the tolerances.
+    Succeeds as an action whether or not a part is held, see `GraspResult.held`. Held means
+    that both pads touch and the final opening is within `width_m` -/+ the tolerances.
     """
 
     width_m: Width
@@ -74,4 +74,4 @@ class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tr
 
 
 class ReadGripper(Service[GripperState], frozen=True, kw_only=True):
-    """Return the measured state of the gripper now."""
+    """Return the measured state of the gripper."""

@@ -1,4 +1,4 @@
-"""Leading an arm by hand, and recording where it is led; answered under the arm's name (RCL 4.1.2, RCY 7.1)."""
+"""Hand guiding of an arm and its recording, served under the arm's name (RCL 4.1.2, RCY 7.1)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,12 @@ from engine.skill import Action, Service
 SamplePeriod = Annotated[
     float, msgspec.Meta(ge=0.002, le=1.0, description="Time between two samples", extra_json_schema={"unit": "s"})
 ]
-GuideDuration = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long", extra_json_schema={"unit": "s"})]
-DampingShare = Annotated[
-    float, msgspec.Meta(ge=0.0, le=1.0, description="Share of the nominal damping that is left in the joints")
-]
+GuideDuration = Annotated[float, msgspec.Meta(gt=0.0, description="Duration", extra_json_schema={"unit": "s"})]
+DampingShare = Annotated[float, msgspec.Meta(ge=0.0, le=1.0, description="Fraction of the nominal joint damping")]
 
 
 class GuideFeedback(Message, frozen=True, kw_only=True):
-    """Where the arm is led, and how many samples are recorded."""
+    """The present configuration and pose of the arm, and the number of recorded samples."""
 
     joints: tuple[float, ...]
     pose: Pose
@@ -27,9 +25,9 @@ class GuideFeedback(Message, frozen=True, kw_only=True):
 
 
 class GuideResult(Message, frozen=True, kw_only=True):
-    """Where the arm was left; `samples` over `duration_s` are in the entry of kind `trajectory` named `entry`.
+    """The final configuration; `samples` over `duration_s` are in the entry `entry` of kind `trajectory`.
 
-    `entry` is empty when nothing was to be recorded, or when the goal was cancelled.
+    `entry` is empty without a recording, or when the goal was cancelled.
     """
 
     joints: tuple[float, ...]
@@ -40,11 +38,11 @@ class GuideResult(Message, frozen=True, kw_only=True):
 
 
 class GuideArm(Action[GuideResult, GuideFeedback], frozen=True, kw_only=True):
-    """Let the arm float in gravity compensation so that it can be led by hand; it then holds where it was left.
+    """Put the arm into gravity compensation for hand guiding; afterwards it holds its final configuration.
 
     Ends by FinishGuiding, after `duration_s`, or when cancelled. With `record` the joints, the tool's
-    poses and the wrench on it are sampled every `sample_s` and written to the store under that name,
-    replacing what is there. Time in which the goal is held is left out.
+    poses and the wrench on the tool are sampled every `sample_s` and written to the store under that name,
+    replacing an existing entry. Time in which the goal is held is not recorded.
     """
 
     damping: DampingShare = 0.1
@@ -54,10 +52,10 @@ class GuideArm(Action[GuideResult, GuideFeedback], frozen=True, kw_only=True):
 
 
 class FinishGuidingResult(Message, frozen=True, kw_only=True):
-    """The arm holds itself again."""
+    """The arm holds its configuration again."""
 
     joints: tuple[float, ...]
 
 
 class FinishGuiding(Service[FinishGuidingResult], frozen=True, kw_only=True):
-    """End the guiding under way, whoever began it, also a paused one; return when the arm holds itself."""
+    """End the active guiding of any sender, also a paused one; return when the arm holds its configuration."""

@@ -1,4 +1,4 @@
-"""Skills of a hand that closes with one motor, answered under `<arm>/hand` (RCY 7.3)."""
+"""Skills of a hand that closes with one motor, served under `<arm>/hand` (RCY 7.3)."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import msgspec
 from engine.messages import HandState, Message
 from engine.skill import Action, Service
 
-Percent = Annotated[float, msgspec.Meta(ge=0.0, le=100.0, description="How far to close: 0 open, 100 closed")]
-ClosingTime = Annotated[float, msgspec.Meta(gt=0.0, description="Time for the way in seconds")]
+Percent = Annotated[float, msgspec.Meta(ge=0.0, le=100.0, description="Closing position: 0 open, 100 closed")]
+ClosingTime = Annotated[float, msgspec.Meta(gt=0.0, description="Duration of the motion in seconds")]
 
 
 class HandFeedback(Message, frozen=True, kw_only=True):
-    """How far the motor has closed the hand on the way."""
+    """The closing position during the motion."""
 
     closed_percent: float
 
 
 class HandResult(Message, frozen=True, kw_only=True):
-    """What the hand holds, judged from what thumb, fingers and palm touch.
+    """Whether the hand holds a part, judged from the contacts of thumb, fingers and palm.
 
-    `part` is what is held, `?` where the hand cannot tell; `reason` says in words why nothing is, and
+    `part` is the name of the held part, `?` when unknown; `reason` is why nothing is held, and
     is empty when `held`.
     """
 
@@ -36,8 +36,8 @@ class HandResult(Message, frozen=True, kw_only=True):
 class HandClose(Action[HandResult, HandFeedback], frozen=True, kw_only=True):
     """Close to `percent` in `time_s`, or as fast as the motor can.
 
-    Fingers that meet something stop and the others go on. Succeeds as an action whether or not
-    something is held; `HandResult.held` tells.
+    A finger stops at a contact while the others continue. Succeeds as an action whether or not
+    a part is held, see `HandResult.held`.
     """
 
     percent: Percent
@@ -51,4 +51,4 @@ class HandOpen(Action[HandResult, HandFeedback], frozen=True, kw_only=True):
 
 
 class ReadHand(Service[HandState], frozen=True, kw_only=True):
-    """Return the measured state of the hand now."""
+    """Return the measured state of the hand."""

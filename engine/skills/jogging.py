@@ -1,8 +1,8 @@
-"""Moving an arm by hand from a panel: as long as told, or step by step; answered under the arm's name.
+"""Jogging of an arm from a panel, continuously or in steps; served under the arm's name.
 
 Hold-to-run: send JogJoints or JogTool without a velocity and publish `JogCommand`s on `<arm>/jog` while
-the key is down. When they stay away for `watchdog_s` the arm comes to rest, and after `idle_s` the
-goal ends as succeeded. Cancel it to end at once.
+the key is pressed. After `watchdog_s` without a command the arm comes to rest, and after `idle_s` the
+goal ends as succeeded. Cancel the goal to end it at once.
 """
 
 from __future__ import annotations
@@ -18,24 +18,26 @@ from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMoti
 from engine.skills.planning import Margin
 
 WatchdogTime = Annotated[
-    float, msgspec.Meta(gt=0.0, le=2.0, description="Come to rest after so long a silence, in seconds")
+    float, msgspec.Meta(gt=0.0, le=2.0, description="Time without a command until the arm comes to rest, in seconds")
 ]
-IdleTimeout = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long a silence, in seconds")]
+IdleTimeout = Annotated[
+    float, msgspec.Meta(gt=0.0, description="Time without a command until the goal ends, in seconds")
+]
 Duration = Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]
 _STILL: Vector3 = (0.0, 0.0, 0.0)
 
 
 class JogCommand(Message, frozen=True, kw_only=True):
-    """How fast to go from now on, on `<arm>/jog`: rad/s a joint for JogJoints; m/s, then rad/s for JogTool."""
+    """The commanded velocity on `<arm>/jog`: rad/s per joint for JogJoints; m/s, then rad/s for JogTool."""
 
     velocity: tuple[float, ...]
 
 
 class JogCollisionOptions(Message, frozen=True, kw_only=True):
-    """What of the planning scene a jog minds: nothing where it is not `minded`.
+    """Collision avoidance of a jog; disabled when `minded` is false.
 
-    It stays `margin_m` away from obstacles, other arms and what cameras see, but for the names in `may_touch`,
-    such as a part that is to be gripped. An arm that is nearer already may go away.
+    The arm keeps `margin_m` from obstacles, other arms and occupied space, except the names in `may_touch`,
+    such as a part to be grasped. An arm that is closer already may move away.
     """
 
     minded: bool = True
@@ -44,23 +46,23 @@ class JogCollisionOptions(Message, frozen=True, kw_only=True):
 
 
 class JointJogFeedback(Message, frozen=True, kw_only=True):
-    """Where the arm is, radians, and what holds it back, in words; empty where nothing does."""
+    """The present configuration, radians, and the reason why the motion is limited; empty when it is not."""
 
     joints: tuple[float, ...]
     held_by: str = ""
 
 
 class ToolJogFeedback(Message, frozen=True, kw_only=True):
-    """Where the tool centre point is, and what holds the arm back, in words; empty where nothing does."""
+    """The present pose of the tool centre point, and the reason why the motion is limited; empty when it is not."""
 
     pose: Pose
     held_by: str = ""
 
 
 class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_only=True):
-    """Turn the joints at `velocity_rad_s` for `duration_s`, or as `<arm>/jog` tells when both are left out.
+    """Move the joints at `velocity_rad_s` for `duration_s`, or as commanded on `<arm>/jog` when both are omitted.
 
-    Slows down before a joint limit and stands still at it.
+    Decelerates before a joint limit and stops at it.
     """
 
     velocity_rad_s: tuple[float, ...] = ()
@@ -71,10 +73,10 @@ class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_onl
 
 
 class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=True):
-    """Move the tool at a velocity for `duration_s`, or as `<arm>/jog` tells when both are left out.
+    """Move the tool at a velocity for `duration_s`, or as commanded on `<arm>/jog` when both are omitted.
 
-    `velocity` is m/s along and rad/s about the axes of `frame`, at the tool centre point. Where a
-    joint limit or a singularity is near, the whole velocity becomes smaller.
+    `velocity` is m/s along and rad/s about the axes of `frame`, at the tool centre point. Near a
+    joint limit or a singularity, the whole velocity is scaled down.
     """
 
     velocity: tuple[float, ...] = ()
@@ -86,7 +88,7 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
 
 
 class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
-    """Turn the joints by `step_rad`, one value a joint; rejected beforehand where a limit is in the way."""
+    """Move the joints by `step_rad`, one value per joint; rejected before the motion when a joint limit is exceeded."""
 
     step_rad: tuple[float, ...]
     speed: Speed = 0.1
@@ -94,10 +96,10 @@ class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw
 
 
 class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
-    """Move the tool straight by `step_m` and turn it by the rotation vector `turn_rad`, along the axes of `frame`."""
+    """Move the tool straight by `step_m` and rotate it by the rotation vector `turn_rad`, in the axes of `frame`."""
 
     step_m: Vector3 = _STILL
     turn_rad: Vector3 = _STILL
     frame: Axes = "world"
-    speed_m_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.5, description="Greatest speed on the way")] = 0.05
+    speed_m_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.5, description="Maximum speed of the tool")] = 0.05
     scene: JogCollisionOptions = JogCollisionOptions()

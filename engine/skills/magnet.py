@@ -1,4 +1,4 @@
-"""Skills of a switchable magnet, answered under `<arm>/magnet` (IRB 4.1, 4.5)."""
+"""Skills of a switchable magnet, served under `<arm>/magnet` (IRB 4.1, 4.5)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from engine.skill import Action, Service
 
 
 class MagnetFeedback(Message, frozen=True, kw_only=True):
-    """How hard the magnet pulls at what touches it on the way."""
+    """The pull on the touching part while the field changes."""
 
     pull_n: float
 
 
 class MagnetResult(Message, frozen=True, kw_only=True):
-    """What the magnet holds once its field is settled.
+    """Whether the magnet holds a part when its field has settled.
 
-    `part` is what is held, `?` where the magnet cannot tell; `reason` says in words why nothing is, and
+    `part` is the name of the held part, `?` when unknown; `reason` is why nothing is held, and
     is empty when `held`.
     """
 
@@ -27,13 +27,13 @@ class MagnetResult(Message, frozen=True, kw_only=True):
 
 
 class MagnetSwitch(Action[MagnetResult, MagnetFeedback], frozen=True, kw_only=True):
-    """Switch the magnet on or off and confirm what it holds.
+    """Switch the magnet on or off and report the held part.
 
-    Succeeds as an action whether or not something is held; `MagnetResult.held` tells.
+    Succeeds as an action whether or not a part is held, see `MagnetResult.held`.
     """
 
     on: bool
 
 
 class ReadMagnet(Service[MagnetState], frozen=True, kw_only=True):
-    """Return the measured state of the magnet now."""
+    """Return the measured state of the magnet."""

@@ -1,7 +1,7 @@
-"""Motion skills of one arm, answered under the arm's name (RCL 4.3, RCY 4.3).
+"""Motion skills of one arm, served under the arm's name (RCL 4.3, RCY 4.3).
 
-The goal is given to `<arm>/<skill_name>`. Every action returns its final configuration or
-pose, also when it was preempted or failed on the way; it leaves the arm at rest and ready for the next.
+Goals are sent to `<arm>/<skill_name>`. Every action returns its final configuration or pose, also when
+it was preempted or failed during the motion; afterwards the arm is at rest and ready for the next goal.
 """
 
 from __future__ import annotations
@@ -13,23 +13,23 @@ import msgspec
 from engine.messages import Message, Pose
 from engine.skill import Action, Service
 
-Speed = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="Share of the joint speed limits")]
+Speed = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="Fraction of the joint speed limits")]
 PoseMatch = Annotated[
     Literal["pose", "position", "axis"],
-    msgspec.Meta(description="What of the pose counts: all, its position, or position and direction of z"),
+    msgspec.Meta(description="Constrained part of the pose: all, the position, or position and direction of z"),
 ]
-"""`pose` needs an arm of six joints, `axis` (z of the tool) five, `position` two or three; the rest comes as it may."""
+"""`pose` needs an arm of six joints, `axis` (z of the tool) five, `position` two or three; the rest is free."""
 
 
 class JointMotionFeedback(Message, frozen=True, kw_only=True):
-    """Where the arm is on its way: `progress` from 0 to 1 along the path."""
+    """The present configuration, and `progress` from 0 to 1 along the path."""
 
     joints: tuple[float, ...]
     progress: float
 
 
 class JointMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
-    """The measured configuration at the end, radians, and the configuration `start` that the motion began at."""
+    """The measured configuration at the end, radians, and the configuration `start` of the motion."""
 
     joints: tuple[float, ...]
     duration_s: float
@@ -37,14 +37,14 @@ class JointMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class CartMotionFeedback(Message, frozen=True, kw_only=True):
-    """The measured pose of the tool centre point on its way."""
+    """The measured pose of the tool centre point, and `progress` from 0 to 1 along the path."""
 
     pose: Pose
     progress: float
 
 
 class CartMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
-    """The measured pose of the tool centre point at the end, and the configuration `start` that the motion began at."""
+    """The measured pose of the tool centre point at the end, and the configuration `start` of the motion."""
 
     pose: Pose
     duration_s: float
@@ -61,8 +61,8 @@ class JointTrapVel(Action[JointMotionResult, JointMotionFeedback], frozen=True, 
 class CartTrapVel(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
     """Move to a pose of the tool centre point by a joint-space trapezoidal profile (RCL table 4).
 
-    The goal configuration is the inverse-kinematics solution nearest to the current one. An arm of
-    fewer than six joints reaches hardly any full pose: ask it for a `match` of `position` or `axis`.
+    The goal configuration is the inverse-kinematics solution nearest to the current one. An arm with
+    fewer than six joints reaches few full poses: use a `match` of `position` or `axis`.
     """
 
     pose: Pose
@@ -73,7 +73,7 @@ class CartTrapVel(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
 class CartLinTask(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
     """Move the tool centre point on a straight line, minimum jerk in position and SLERP (RCL table 5).
 
-    Rejected beforehand, with the reason, where a joint limit or joint speed would be exceeded
+    Rejected before the motion, with the reason, when a joint limit or joint speed would be exceeded
     or the line cannot be followed.
     """
 
@@ -82,17 +82,17 @@ class CartLinTask(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
 
 
 class ForwardKinematics(Service[Pose], frozen=True, kw_only=True):
-    """Return the pose of the tool centre point for `joints`, or for the measured ones when empty."""
+    """Return the pose of the tool centre point for `joints`, or for the measured configuration when empty."""
 
     joints: tuple[float, ...] = ()
 
 
 class InverseKinematicsResult(Message, frozen=True, kw_only=True):
-    """A configuration for a pose, radians, and how well the arm can move there.
+    """A configuration for a pose, radians, with measures of manipulability.
 
-    `dexterity` is the smallest singular value of the Jacobian, metres and radians weighed alike;
-    `manipulability` the product of all of them. Where `singular`, `remark` says in words which
-    singularity it is and what the tool can hardly do.
+    `dexterity` is the smallest singular value of the Jacobian, metres and radians weighted equally;
+    `manipulability` is the product of all singular values. When `singular`, `remark` names the
+    singularity and the restricted motion of the tool.
     """
 
     joints: tuple[float, ...]
@@ -103,10 +103,10 @@ class InverseKinematicsResult(Message, frozen=True, kw_only=True):
 
 
 class InverseKinematics(Service[InverseKinematicsResult], frozen=True, kw_only=True):
-    """Return the configuration for a pose of the tool centre point that is soonest reached from `seed`.
+    """Return the configuration for a pose of the tool centre point that is reached fastest from `seed`.
 
-    From the measured joints when `seed` is empty. Fails, with the reason, where the arm does not
-    reach the pose, or the part of it that `match` names, within its joint limits.
+    An empty `seed` stands for the measured configuration. Fails, with the reason, when the arm cannot
+    reach the pose, or the part of it that `match` selects, within its joint limits.
     """
 
     pose: Pose
@@ -115,10 +115,10 @@ class InverseKinematics(Service[InverseKinematicsResult], frozen=True, kw_only=T
 
 
 class InverseKinematicsSolutions(Message, frozen=True, kw_only=True):
-    """Configurations for a pose, radians, soonest reached from the seed first.
+    """Configurations for a pose, radians, sorted by the time to reach them from the seed.
 
-    `complete` tells whether these are all there are; of a redundant arm they are a sample. `how`
-    says in words where they come from.
+    `complete` is true when these are all solutions; for a redundant arm they are a sample. `how`
+    describes the solution method.
     """
 
     solutions: tuple[tuple[float, ...], ...]
@@ -127,9 +127,9 @@ class InverseKinematicsSolutions(Message, frozen=True, kw_only=True):
 
 
 class AllInverseKinematics(Service[InverseKinematicsSolutions], frozen=True, kw_only=True):
-    """Return the configurations for a pose of the tool centre point, every turn that the limits allow among them.
+    """Return the configurations for a pose of the tool centre point, including all turns within the joint limits.
 
-    Ordered by how soon they are reached from `seed`, the measured joints when it is empty. Fails as
+    Sorted by the time to reach them from `seed`, the measured configuration when empty. Fails as
     `InverseKinematics` does.
     """
 

@@ -1,4 +1,4 @@
-"""Where an arm would be along a taught entry, to be looked at before it moves; answered under the arm's name."""
+"""A preview of an arm's motion along a taught entry before it moves; served under the arm's name."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from engine.messages import Message
 from engine.skill import Service
 
 TraceableKind = Literal["joints", "pose", "trajectory", "dmp", "cart_dmp"]
-"""The kinds of entries that have a place."""
+"""The kinds of entries that can be traced."""
 
 
 class Trace(Message, frozen=True, kw_only=True):
-    """An entry as an arm would carry it out: one row a time.
+    """The motion of an arm along an entry, one row per time.
 
-    `joints` are radians in the order of `joint_names`, empty where the arm cannot follow; `poses` are
+    `joints` are radians in the order of `joint_names`, empty when the arm cannot follow; `poses` are
     x y z (m) and a unit quaternion x y z w of the tool centre point in the world. `times_s` is 0 for a
-    single configuration. `remark` says why there are no joints.
+    single configuration. `remark` is the reason for missing joints.
     """
 
     times_s: tuple[float, ...]
@@ -29,9 +29,9 @@ class Trace(Message, frozen=True, kw_only=True):
 
 
 class TraceMotion(Service[Trace], frozen=True, kw_only=True):
-    """Return where the arm is along an entry of `kind` with the fields `value`; nothing moves.
+    """Return the motion of the arm along an entry of `kind` with the fields `value`; nothing moves.
 
-    At most `most` rows, both ends among them. Fails where the entry is not of this arm.
+    Returns at most `most` rows, including both ends. Fails when the entry belongs to another arm.
     """
 
     kind: TraceableKind

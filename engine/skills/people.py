@@ -1,6 +1,6 @@
-"""People of a simulated cell, answered under `cell`: an arm that reaches into the way of the robots.
+"""Simulated people of a cell, served under `cell`: a hand that reaches into the workspace of the robots.
 
-A real cell does not have these; there, people come by themselves.
+A real cell does not have these skills.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ StayTime = Annotated[float, msgspec.Meta(ge=0.0, le=3600.0, extra_json_schema={"
 
 
 class ReachResult(Message, frozen=True, kw_only=True):
-    """Whose hand is on its way, where to and how long it takes to get there."""
+    """The person whose hand moves, the goal of the hand, and the time until it arrives."""
 
     person: str
     hand_m: Vector3
@@ -28,11 +28,11 @@ class ReachResult(Message, frozen=True, kw_only=True):
 
 
 class Reach(Service[ReachResult], frozen=True, kw_only=True):
-    """Let the hand of a person move to `hand_m` (world) on a straight line, from now on; replaces what it did.
+    """Move the hand of a person to `hand_m` (world) on a straight line; replaces its present motion.
 
-    It ends at rest and is nowhere faster than `speed_m_s`; a hand that is on its way turns off it smoothly, and may
-    be faster only until it has slowed down. With `stay_s` it goes back to where the person rests after that time,
-    else it stays. A place that the arm does not reach is refused, and a way that leads through the own shoulder.
+    The hand ends at rest and does not exceed `speed_m_s`; a moving hand changes its direction smoothly, and may
+    exceed that speed only while it decelerates. With `stay_s` it returns to its rest position after that time,
+    else it stays. Refused for a position out of reach and for a path through the person's own shoulder.
     """
 
     person: str
@@ -42,18 +42,18 @@ class Reach(Service[ReachResult], frozen=True, kw_only=True):
 
 
 class Withdraw(Service[ReachResult], frozen=True, kw_only=True):
-    """Let the hand of a person go back to where it rests."""
+    """Move the hand of a person back to its rest position."""
 
     person: str
     speed_m_s: HandSpeed = 0.8
 
 
 class ContactCount(Message, frozen=True, kw_only=True):
-    """How often bodies of two groups began to touch since the world was opened, how long any did, how hard at most.
+    """The contacts between two groups of bodies since the world was opened: number, duration, greatest force.
 
-    Each pair of bodies counts for itself; a contact begins when two touch that did not one step of the physics
-    before. The force is that of a pair, over all its points. `pairs` are the names of those that touched. A run
-    that is resumed goes on counting.
+    Each pair of bodies counts separately; a contact begins when two bodies touch that did not touch one physics
+    step before. The force is that of a pair, summed over its contact points. `pairs` are the names of the touching
+    bodies. A resumed run continues to count.
     """
 
     contacts: int
@@ -63,6 +63,6 @@ class ContactCount(Message, frozen=True, kw_only=True):
 
 
 class CountContacts(Service[ContactCount], frozen=True, kw_only=True):
-    """Return the physics' own count of contacts between a person and everything that is no person."""
+    """Return the contacts, counted by the physics engine, between a person and all bodies that are not persons."""
 
     person: str

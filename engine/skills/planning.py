@@ -1,8 +1,8 @@
-"""Collision-free motion of one arm, answered under the arm's name: plan, execute a plan, move free of collisions.
+"""Collision-free motion of one arm, served under the arm's name: plan a path, execute a plan, plan and execute.
 
-Plans take the planning scene of the cell (see `planning_scene`) and what the cameras see of it. A motion that
-adapts looks at everything that changes while it is under way: where a collision is predicted the arm
-decelerates, looks for another way from where it stands and goes on; without one it waits until there is.
+Plans use the planning scene of the cell (see `planning_scene`) and its occupancy from the cameras. An adaptive
+motion monitors all changes during the motion: on a predicted collision the arm decelerates, plans another path
+from its present configuration and continues; while there is no path, it waits.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ PlannerName = Annotated[
     ),
 ]
 PlanningTime = Annotated[
-    float, msgspec.Meta(gt=0.0, le=60.0, description="Longest search for a way", extra_json_schema={"unit": "s"})
+    float, msgspec.Meta(gt=0.0, le=60.0, description="Maximum planning time", extra_json_schema={"unit": "s"})
 ]
 Margin = Annotated[
     float,
-    msgspec.Meta(ge=0.0, le=0.2, description="Least distance from obstacles", extra_json_schema={"unit": "m"}),
+    msgspec.Meta(ge=0.0, le=0.2, description="Clearance from obstacles", extra_json_schema={"unit": "m"}),
 ]
 BlockedPathTimeout = Annotated[
     float,
-    msgspec.Meta(ge=0.0, le=3600.0, description="Longest wait for a free way", extra_json_schema={"unit": "s"}),
+    msgspec.Meta(ge=0.0, le=3600.0, description="Maximum wait for a free path", extra_json_schema={"unit": "s"}),
 ]
 Tilt = Annotated[
-    float, msgspec.Meta(gt=0.0, le=3.2, description="Greatest turn of the tool", extra_json_schema={"unit": "rad"})
+    float, msgspec.Meta(gt=0.0, le=3.2, description="Maximum rotation of the tool", extra_json_schema={"unit": "rad"})
 ]
 
 MotionPhase = Literal["planning", "moving", "braking", "waiting"]
 
 
 class KeepOrientation(Message, frozen=True, kw_only=True):
-    """The tool keeps the orientation that it has at the start, within a tolerance.
+    """The tool keeps its orientation at the start, within a tolerance.
 
-    With `free_about`, a direction in the frame of the tool, it may turn about that: a full cup has (0, 0, 1).
+    The tool may rotate about `free_about`, a direction in the frame of the tool: (0, 0, 1) for a full cup.
     """
 
     tolerance_rad: Tilt = 0.1
@@ -51,7 +51,7 @@ class KeepOrientation(Message, frozen=True, kw_only=True):
 
 
 class MotionTarget(Message, frozen=True, kw_only=True):
-    """Where to: either `joints` (radians) or `pose` of the tool centre point, of which `match` says what counts."""
+    """The target: either `joints` (radians) or the part of `pose` of the tool centre point that `match` selects."""
 
     joints: tuple[float, ...] = ()
     pose: Pose | None = None
@@ -59,7 +59,7 @@ class MotionTarget(Message, frozen=True, kw_only=True):
 
 
 class PlanOptions(Message, frozen=True, kw_only=True):
-    """Options of a planning request: planner, time limit, seed, distance from obstacles, speed."""
+    """Options of a planning request: planner, time limit, seed, clearance, speed."""
 
     planner: PlannerName = "fast"
     time_s: PlanningTime = 1.0
@@ -70,11 +70,11 @@ class PlanOptions(Message, frozen=True, kw_only=True):
 
 
 class PlannedMotion(Message, frozen=True, kw_only=True):
-    """A way that was found free of collisions: waypoints joined by straight joint lines, the first one the start.
+    """A collision-free path: waypoints connected by straight lines in joint space, from the start.
 
-    Who goes it rounds its corners and times it for `speed`, which takes `duration_s`. `tool_path` are points of
-    the tool centre along the way, in the world, for drawing. `found_by` is the planner that found it,
-    `planning_s` what finding, shortening, confirming and timing took.
+    The execution blends its corners and times it for `speed`, which takes `duration_s`. `tool_path` are points of
+    the tool centre along the path, in the world, for drawing. `found_by` is the planner that found the path,
+    `planning_s` the time for planning, shortening, validation and time parameterization.
     """
 
     robot: str
@@ -87,7 +87,7 @@ class PlannedMotion(Message, frozen=True, kw_only=True):
 
 
 class PlanFeedback(Message, frozen=True, kw_only=True):
-    """The search goes on."""
+    """The elapsed planning time."""
 
     elapsed_s: float
 
@@ -95,8 +95,8 @@ class PlanFeedback(Message, frozen=True, kw_only=True):
 class PlanMotion(Action[PlannedMotion, PlanFeedback], frozen=True, kw_only=True):
     """Plan a collision-free path to `target` and publish it; the arm is not commanded and may be moving.
 
-    From `start` (radians), or from where the arm is set to stand where it is empty. Fails with the reason: what
-    is touched at the start or at the goal, that the arm does not reach the goal, or that no way was found.
+    Starts at `start` (radians), or at the arm's present set point when empty. Fails with the reason: a collision
+    at the start or at the goal, an unreachable goal, or no path found.
     """
 
     target: MotionTarget
@@ -105,9 +105,9 @@ class PlanMotion(Action[PlannedMotion, PlanFeedback], frozen=True, kw_only=True)
 
 
 class FreeMotionFeedback(Message, frozen=True, kw_only=True):
-    """What a collision-free motion does: `progress` along the present way, 0 to 1, and why it brakes or waits.
+    """The state of a collision-free motion: `progress` along the present path, 0 to 1, and why it brakes or waits.
 
-    `replans` counts new ways found on the way, `waited_s` the time without one.
+    `replans` counts the new paths found during the motion, `waited_s` is the time without a path.
     """
 
     phase: MotionPhase
@@ -119,11 +119,11 @@ class FreeMotionFeedback(Message, frozen=True, kw_only=True):
 
 
 class FreeMotionResult(Message, frozen=True, kw_only=True):
-    """The measured configuration at the end, radians, and what it took to get there.
+    """The measured configuration at the end, radians, and statistics of the motion.
 
-    `stops` counts how often the arm stopped before a predicted collision, `replans` how often it went on along
-    another way, `reused` how often along the old one because that was free again. A motion that was given up
-    because its way stayed blocked for longer than its patience says in `blocked` by what; else that is empty.
+    `stops` counts the stops before a predicted collision, `replans` the continuations along another path,
+    `reused` those along the old path because it was free again. `blocked` names the obstacle when the motion was
+    given up because its path was blocked for longer than its patience; else it is empty.
     """
 
     joints: tuple[float, ...]
@@ -136,9 +136,9 @@ class FreeMotionResult(Message, frozen=True, kw_only=True):
 
 
 class Adaptation(Message, frozen=True, kw_only=True):
-    """What to do about changes on the way: look out for them, and how long to wait where there is no other way.
+    """Reaction to changes during the motion: whether to monitor the path, and how long to wait for a free path.
 
-    Without `watch` the arm goes its way whatever appears in it. With `patience_s` 0 it does not wait: it fails
+    Without `watch` the arm does not react to new obstacles. With `patience_s` 0 it does not wait: it fails
     with the reason, at rest.
     """
 
@@ -147,9 +147,9 @@ class Adaptation(Message, frozen=True, kw_only=True):
 
 
 class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_only=True):
-    """Execute a path that was planned before, from its start.
+    """Execute a planned path from its start.
 
-    Rejected where the arm stands elsewhere, or where the way is no longer free and nothing may be adapted.
+    Rejected when the arm is not at the start, or when the path is no longer free and adaptation is disabled.
     """
 
     plan: PlannedMotion
@@ -158,10 +158,10 @@ class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_
 
 
 class MoveFree(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_only=True):
-    """Plan a collision-free path to `target` and execute it; `Adaptation` says what happens on the path.
+    """Plan a collision-free path to `target` and execute it; `adaptation` defines the reaction to changes.
 
-    Rejected with the reason where there is none and none will be; where only somebody, or another arm, is in
-    every way, it is accepted and waits.
+    Rejected with the reason when no path is possible; when only a person or another arm blocks every path,
+    the goal is accepted and waits.
     """
 
     target: MotionTarget
@@ -170,10 +170,10 @@ class MoveFree(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_onl
 
 
 class PathPreview(Message, frozen=True, kw_only=True):
-    """The way of an arm as the 3D view shows it, the latest value of `<arm>/planned_path`.
+    """The path of an arm for the 3D view, the latest value of `<arm>/planned_path`.
 
-    `joints` are configurations along the way, `tool_path` the tool centre at each of them, in the world.
-    Empty when there is nothing to show. `state` is `proposed` until the arm goes the way.
+    `joints` are configurations along the path, `tool_path` the tool centre at each of them, in the world.
+    Empty when there is no path. `state` is `proposed` until the arm executes the path.
     """
 
     robot: str

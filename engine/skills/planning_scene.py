@@ -1,6 +1,6 @@
-"""The planning scene of a cell, answered under `cell`: what arms must not touch, what they hold, what may touch.
+"""The planning scene of a cell, served under `cell`: obstacles, held parts and allowed contacts.
 
-Fixtures and parts of the cell document are in it by themselves; parts where they were last seen.
+It includes fixtures and parts of the cell document; parts at their last measured pose.
 Names are those of obstacles and parts, and `<arm>/<link>`; an arm's name stands for all its links.
 """
 
@@ -11,17 +11,17 @@ from engine.messages.shapes import AT_ORIGIN, Obstacle, Solid
 from engine.skill import Service
 
 FARTHEST_M = 1000.0
-"""The distance of what is not there: infinity could not be written down."""
+"""The distance when there is no obstacle: JSON has no infinity."""
 
 CONTACT_M = 0.005
-"""How deep a part may come to be in what it is put down on, and over how much of the end of its way.
+"""Allowed penetration of a part into the surface it is put down on, and the length at the end of the path.
 
-Measured poses, slip in a hand and parts that lie on one another are exact to about this.
+Measured poses, slip in a hand and stacked parts are accurate to about this distance.
 """
 
 
 class HeldPart(Message, frozen=True, kw_only=True):
-    """A part that moves along with a link of an arm, at `pose` in the frame of that link."""
+    """A part attached to a link of an arm, at `pose` in the frame of that link."""
 
     name: str
     robot: str
@@ -31,7 +31,7 @@ class HeldPart(Message, frozen=True, kw_only=True):
 
 
 class PlanningSceneState(Message, frozen=True, kw_only=True):
-    """The planning scene now, also the latest value of `cell/planning_scene`; `revision` rises with every change.
+    """The planning scene, also the latest value of `cell/planning_scene`; `revision` increases with every change.
 
     `allowed` are the pairs of names that may touch.
     """
@@ -47,19 +47,19 @@ class ReadPlanningScene(Service[PlanningSceneState], frozen=True, kw_only=True):
 
 
 class PutObstacle(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Put an obstacle into the scene, or another one in the place of that of the same name."""
+    """Add an obstacle to the scene, or replace the one of the same name."""
 
     obstacle: Obstacle
 
 
 class RemoveObstacle(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Take an obstacle out of the scene; one that is not there is no error, a name that never was one is."""
+    """Remove an obstacle; removing it again is not an error, a name that never was an obstacle is."""
 
     name: str
 
 
 class AllowContact(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Say whether two things, by name, may touch."""
+    """Allow or forbid the contact of two objects, by name."""
 
     first: str
     second: str
@@ -67,33 +67,33 @@ class AllowContact(Service[PlanningSceneState], frozen=True, kw_only=True):
 
 
 class AttachPart(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Let a part of the scene move with an arm from now on, from where it is relative to the tool.
+    """Attach a part of the scene to an arm at its present pose relative to the tool.
 
-    It may touch the tool that holds it, and what it touches at that moment, as the table that a part is lifted
-    from, until they have parted by 1 cm. One that another arm held goes over.
+    It may touch the tool that holds it, and the objects that it touches at that moment, such as the table that
+    it is lifted from, until they are 1 cm apart. A part held by another arm is handed over.
     """
 
     part: str
     robot: str
     link: str = ""
-    """The tool link where it is empty."""
+    """Empty for the tool link."""
 
 
 class DetachPart(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Let go of a part: it stays in the scene where it is. One that nobody holds is no error.
+    """Detach a part: it stays in the scene at its present pose. A part that is not held is not an error.
 
-    The links that are beside it then, as the fingers, may touch it until they have parted by 1 cm.
+    The adjacent links, such as the fingers, may touch it until they are 1 cm apart.
     """
 
     part: str
 
 
 class ForgetOccupancy(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Forget what the cameras have seen; what is still there is seen again."""
+    """Clear the occupancy from the cameras; objects that are still present are measured again."""
 
 
 class TouchingPair(Message, frozen=True, kw_only=True):
-    """Two things that touch, by name, and how deep they are in one another: the shortest way apart, in metres."""
+    """Two touching objects, by name, and their penetration depth in metres."""
 
     first: str
     second: str
@@ -101,9 +101,9 @@ class TouchingPair(Message, frozen=True, kw_only=True):
 
 
 class CollisionReport(Message, frozen=True, kw_only=True):
-    """What an arm touches in a configuration, and the smallest distance of what it must not touch.
+    """The contacts of an arm in a configuration, and its smallest distance from objects that it must not touch.
 
-    `nearest` are the two things at that distance, `FARTHEST_M` at most; both empty in an empty scene.
+    `nearest` are the two objects at that distance, `FARTHEST_M` at most; both empty in an empty scene.
     """
 
     touching: tuple[TouchingPair, ...]
@@ -112,7 +112,7 @@ class CollisionReport(Message, frozen=True, kw_only=True):
 
 
 class CheckCollision(Service[CollisionReport], frozen=True, kw_only=True):
-    """Return what an arm would touch at `joints` (radians), the measured ones where empty."""
+    """Return the contacts of an arm at `joints` (radians), the measured configuration when empty."""
 
     robot: str
     joints: tuple[float, ...] = ()

@@ -1,4 +1,4 @@
-"""A behavior proposed from what was taught, answered under `teach`: entries in their order, and what each is for."""
+"""A behavior proposed from taught entries, served under `teach`: the entries in order, each with its role."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from engine.messages import Message
 from engine.skill import Service
 
 StepKind = Literal["joints", "pose", "trajectory", "dmp", "cart_dmp", "gripper", "action"]
-"""The kind of an entry; of an `action` the name is `open` or `close`."""
+"""The kind of an entry; the name of an `action` is `open` or `close`."""
 Role = Literal["via", "approach", "grasp", "release", "depart", "follow", "open", "close"]
-"""What a step is for: a place on the way, one in front of a grasp or release, that itself, one after it; a motion."""
+"""The role of a step: via point, approach, grasp, release, departure, a motion to follow, or a tool action."""
 ToolName = Literal["gripper", "hand", "magnet"]
 
 
 class TaughtStep(Message, frozen=True, kw_only=True):
-    """An entry, or an action of the tool; without a `role` it is guessed. `part` is what a grasp takes."""
+    """An entry or an action of the tool; an omitted `role` is inferred. `part` is the part of a grasp."""
 
     kind: StepKind
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=128)]
@@ -26,11 +26,11 @@ class TaughtStep(Message, frozen=True, kw_only=True):
 
 
 class ProposalOptions(Message, frozen=True, kw_only=True):
-    """How the behavior is to work; every number is the default of one of its parameters.
+    """Options of the behavior; every number is the default of one of its parameters.
 
-    `approach_m` is the straight way in front of a grasp where no approach was taught; `width_m` the width of what
-    is grasped, None where nobody knows it: then whatever is between the fingers counts. `cell` is the path of the
-    cell document as the behavior is to name it, empty for none.
+    `approach_m` is the length of the straight approach to a grasp without a taught approach; `width_m` the width of
+    the grasped part, None when unknown: then any part between the fingers counts. `cell` is the path of the
+    cell document to be written in the behavior, empty for none.
     """
 
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=80)] = "from_demonstration"
@@ -44,9 +44,9 @@ class ProposalOptions(Message, frozen=True, kw_only=True):
 
 
 class Proposal(Message, frozen=True, kw_only=True):
-    """A behavior as YAML, with what it does in `words`; `steps` have the roles and parts that were decided.
+    """A behavior as YAML, with its description in `words`; `steps` have the selected roles and parts.
 
-    `remarks` are what the reader should know before running it. `arms` and `parts` are what can be chosen from.
+    `remarks` are notes to read before running it. `arms` and `parts` are the available choices.
     """
 
     text: str
@@ -60,9 +60,9 @@ class Proposal(Message, frozen=True, kw_only=True):
 
 
 class ProposeBehavior(Service[Proposal], frozen=True, kw_only=True):
-    """Return the behavior that goes through `steps`; nothing is written and nothing moves.
+    """Return the behavior that executes `steps`; nothing is written and nothing moves.
 
-    Fails where an entry is missing, or the steps make no sense in this order.
+    Fails when an entry is missing, or the order of the steps is invalid.
     """
 
     steps: Annotated[tuple[TaughtStep, ...], msgspec.Meta(min_length=1, max_length=200)]

@@ -1,4 +1,4 @@
-"""Skills of a simulated world, answered under `cell`; a real cell does not have them."""
+"""Skills of a simulated world, served under `cell`; a real cell does not have them."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from engine.skill import Service
 
 
 class ResetPartsResult(Message, frozen=True, kw_only=True):
-    """The parts that were put back."""
+    """The parts that were reset."""
 
     parts: tuple[str, ...]
 
 
 class ResetParts(Service[ResetPartsResult], frozen=True, kw_only=True):
-    """Put all parts back where they lay at the start, for the next trial.
+    """Reset all parts to their initial poses, for the next trial.
 
-    Refused while a run holds a robot or anything moves: no behavior can move parts by it.
+    Refused while a run holds a robot or anything moves, so that no behavior can move parts by it.
     """
 
 
 class PushBodyResult(Message, frozen=True, kw_only=True):
-    """The body that is pushed at from now on."""
+    """The pushed body."""
 
     body: str
 
 
 class PushBody(Service[PushBodyResult], frozen=True, kw_only=True):
-    """Push at a body for a while, as a hand would: along the world's axes, at a point of the body's own frame.
+    """Apply a force to a body for a time, as a hand would: along the world's axes, at a point of the body's frame.
 
-    `body` is `<arm>/<link>` or the name of a part. It replaces the last push at that body. Anybody may:
-    what a robot does about it is the robot's business.
+    `body` is `<arm>/<link>` or the name of a part. It replaces the last push at that body. Needs no lease:
+    a robot reacts to it as to any external force.
     """
 
     body: str

@@ -1,4 +1,4 @@
-"""The answer of services that switch something: done or not, and a word about it (RCL tables 9 to 11)."""
+"""The response of services that switch something: success and a message (RCL tables 9 to 11)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from engine.messages import Message
 
 
 class SwitchResult(Message, frozen=True, kw_only=True):
-    """`success` is true when what was asked for is so now; `message` says what was done, or why it was not."""
+    """`success` is true when the requested state is reached; `message` is what was done, or why it was not."""
 
     success: bool
     message: str

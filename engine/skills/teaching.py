@@ -1,4 +1,4 @@
-"""Teaching over the bus, answered under `teach` (RCY 7.1): triggers, captured data, saving it under a name."""
+"""Teaching over the bus, served under `teach` (RCY 7.1): triggers, captures, and saving captures as entries."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ CaptureForm = Literal["joints", "pose", "dmp", "cart_dmp", "trajectory", "grippe
 class ButtonState(Message, frozen=True, kw_only=True):
     """A button of a teaching device, on `buttons/<device>/<button>`: `value` is true while it is pressed.
 
-    `device` and `button` are lower-case words; the topic takes what anybody publishes.
+    `device` and `button` are lower-case words; anybody may publish on the topic.
     """
 
     value: bool
 
 
 class Trigger(Message, frozen=True, kw_only=True):
-    """What fires, and what then happens to which robot; the fields of RCY figure 12.
+    """A trigger with its callback and robot; the fields of RCY figure 12.
 
-    The topic's field `field` (the only boolean one, or `value` or `data`, where it is empty) is compared
-    with `trig_value`: `rising_edge` fires when they begin to be equal, `falling_edge` when they end to be,
-    `hold` lasts as long as they are.
-    `joint_dmp_N` is the number of kernels of the primitive, 0 lets the fit decide. `tf_save` captures where
-    `source_frame` is in `target_frame`, `gripper_save` how far the gripper is open and whether it holds something.
+    The topic's field `field` (when empty, the only boolean one, or `value` or `data`) is compared
+    with `trig_value`: `rising_edge` fires when they become equal, `falling_edge` when they become unequal,
+    `hold` is active while they are equal.
+    `joint_dmp_N` is the number of kernels of the primitive, 0 selects it by the fit. `tf_save` captures the pose of
+    `source_frame` in `target_frame`, `gripper_save` the opening of the gripper and whether it holds a part.
     """
 
     trig_name: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
@@ -52,11 +52,11 @@ class Trigger(Message, frozen=True, kw_only=True):
 
 
 class CaptureSummary(Message, frozen=True, kw_only=True):
-    """One capture in the buffer: when, by which trigger, of which robot, and what it is.
+    """One capture in the buffer: its time, trigger, robot and kind.
 
-    `form` is what it is saved as where nothing else is asked for. `samples` and `duration_s` are 0 for a
-    single configuration; `length_rad` is the way of all joints together, `peak_rad_s` the greatest speed
-    of a joint. `saved_as` names the entries that were made of it.
+    `form` is the default kind of entry to save it as. `samples` and `duration_s` are 0 for a
+    single configuration; `length_rad` is the path length of all joints together, `peak_rad_s` the greatest
+    speed of a joint. `saved_as` names the entries saved from it.
     """
 
     id: int
@@ -73,7 +73,7 @@ class CaptureSummary(Message, frozen=True, kw_only=True):
 
 
 class Capture(Message, frozen=True, kw_only=True):
-    """A capture with all its data; what it has not is None or empty."""
+    """A capture with all its data; missing data is None or empty."""
 
     summary: CaptureSummary
     names: tuple[str, ...] = ()
@@ -88,9 +88,9 @@ class Capture(Message, frozen=True, kw_only=True):
 
 
 class TriggerStatus(Message, frozen=True, kw_only=True):
-    """A trigger, the type of its topic's messages, and whether its button is pressed just now.
+    """A trigger, the type of its topic's messages, and whether its button is pressed.
 
-    `fault` says why it cannot fire, as where the messages have no such field; empty where it can.
+    `fault` is the reason why it cannot fire, such as a missing field of the messages; empty when it can.
     """
 
     trigger: Trigger
@@ -100,9 +100,9 @@ class TriggerStatus(Message, frozen=True, kw_only=True):
 
 
 class TeachStatus(Message, frozen=True, kw_only=True):
-    """What the Helping Hand does, also the latest value of `teach/status`.
+    """The status of the Helping Hand, also the latest value of `teach/status`.
 
-    `recording` and `guided` are names of robots; `said` is its last word, such as why a capture was refused.
+    `recording` and `guided` are names of robots; `said` is its last message, such as why a capture was refused.
     """
 
     triggers: tuple[TriggerStatus, ...]
@@ -113,26 +113,26 @@ class TeachStatus(Message, frozen=True, kw_only=True):
 
 
 class ReadTeachStatus(Service[TeachStatus], frozen=True, kw_only=True):
-    """Return what the Helping Hand does."""
+    """Return the status of the Helping Hand."""
 
 
 class SetTriggers(Service[TeachStatus], frozen=True, kw_only=True):
-    """Listen to these triggers from now on, instead of those before; a recording under way ends and is kept."""
+    """Replace the triggers; an active recording ends and is kept."""
 
     triggers: tuple[Trigger, ...]
 
 
 class FireTrigger(Service[TeachStatus], frozen=True, kw_only=True):
-    """Do what a trigger does, as if its button had been pressed (`pressed`) or let go."""
+    """Execute a trigger as if its button had been pressed (`pressed`) or released."""
 
     trig_name: str
     pressed: bool = True
 
 
 class TeachNow(Service[TeachStatus], frozen=True, kw_only=True):
-    """Do what a trigger with this `callback` would do to `robot`, without one.
+    """Execute `callback` for `robot` without a trigger.
 
-    `pressed` begins a recording or lets the arm float, not `pressed` ends it; the others look at `pressed` only.
+    `pressed` starts a recording or gravity compensation, not `pressed` ends it; other callbacks require `pressed`.
     """
 
     callback: Callback
@@ -151,8 +151,8 @@ class ReadCapture(Service[Capture], frozen=True, kw_only=True):
 class SaveCapture(Service[EntryRecord], frozen=True, kw_only=True):
     """Write a capture to the store as a named entry; it stays in the buffer.
 
-    As what it is, or as `form` where that can be made of it: every recording can be saved as `trajectory`,
-    `dmp`, `cart_dmp`, and the last configuration of it as `joints` or `pose`.
+    `form` selects another kind than the default: every recording can be saved as `trajectory`,
+    `dmp` or `cart_dmp`, and its last configuration as `joints` or `pose`.
     Fails when the entry exists, unless `replace`.
     """
 
@@ -166,6 +166,6 @@ class SaveCapture(Service[EntryRecord], frozen=True, kw_only=True):
 
 
 class DiscardCapture(Service[TeachStatus], frozen=True, kw_only=True):
-    """Throw a capture away; one that is not there is no error."""
+    """Discard a capture; a missing one is not an error."""
 
     id: int

@@ -1,4 +1,4 @@
-"""The file in which the Helping Hand keeps its triggers, answered under `teach` (RCY 7.1)."""
+"""The trigger document of the Helping Hand, served under `teach` (RCY 7.1)."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from engine.skills.teaching import TeachStatus
 
 
 class TriggerDocument(Message, frozen=True, kw_only=True):
-    """The YAML text of the triggers and the file it is kept in, empty where they live only as long as the server."""
+    """The YAML text of the triggers and its file, empty when they are kept only while the server runs."""
 
     file: str
     text: str
 
 
 class ReadTriggerDocument(Service[TriggerDocument], frozen=True, kw_only=True):
-    """Return the triggers as they are written."""
+    """Return the trigger document."""
 
 
 class WriteTriggerDocument(Service[TeachStatus], frozen=True, kw_only=True):
-    """Write the triggers as `text` and listen to them; refused, with line and column, where it is no such document."""
+    """Write the trigger document `text` and use its triggers; an invalid one is refused with line and column."""
 
     text: Annotated[str, msgspec.Meta(max_length=200_000)]

@@ -1,7 +1,7 @@
-"""What a detector finds in the images of a camera, and how it is asked: answered under the camera's name.
+"""Detections in the images of a camera and the detection service, served under the camera's name.
 
-Without being asked it publishes on `<camera>/detections` while somebody reads that topic, or while the parameter
-`<camera>/detect_always` is true; the parameter `<camera>/detection_rate_hz` says how often.
+A detector publishes on `<camera>/detections` while the topic has subscribers, or while the parameter
+`<camera>/detect_always` is true; the parameter `<camera>/detection_rate_hz` is the rate.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from engine.messages import Message, Pose, Vector3
 from engine.messages.pose_algebra import compose_poses, rotate_vector
 from engine.skill import Service
 
-Score = Annotated[float, msgspec.Meta(ge=0.0, le=1.0, description="How sure the detector is, 0 to 1")]
+Score = Annotated[float, msgspec.Meta(ge=0.0, le=1.0, description="Confidence of the detector, 0 to 1")]
 Vertices = tuple[Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3]
 Rectangle = tuple[float, float, float, float]
 
 
 class Detection(Message, frozen=True, kw_only=True):
-    """One thing that was found: what it is and the oriented box that it fills.
+    """One detected object: its label and its oriented bounding box.
 
     `pose` is that of the box's centre in the frame that it names, `size_m` its full edge lengths along its own
-    axes. `rectangle_px` are left, top, right and bottom of what is seen of it in the camera's image, in pixels
-    whose centres are at whole numbers; None where the detector does not tell.
+    axes. `rectangle_px` are left, top, right and bottom of its visible area in the camera's image, in pixels
+    whose centres are at whole numbers; None when the detector does not provide it.
     """
 
     label: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
@@ -36,11 +36,11 @@ class Detection(Message, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if not min(self.size_m) > 0.0:
-            raise ValueError(f"a box with the edges {self.size_m} m has no room")
+            raise ValueError(f"the edges of a box must be positive, not {self.size_m} m")
 
     @property
     def vertices_m(self) -> Vertices:
-        """The corners of the box in the frame of `pose`, x slowest and z fastest, the lower ones first."""
+        """The corners of the box in the frame of `pose`, x slowest and z fastest, lower values first."""
         corners: list[Vector3] = []
         for signs in product((-0.5, 0.5), repeat=3):
             x, y, z = (sign * edge for sign, edge in zip(signs, self.size_m, strict=True))
@@ -50,10 +50,10 @@ class Detection(Message, frozen=True, kw_only=True):
 
 
 class Detections(Message, frozen=True, kw_only=True):
-    """Everything that was found in one image, published on `<camera>/detections`; best scores first.
+    """All detections in one image, published on `<camera>/detections`; highest scores first.
 
     `time_s` is that of the image, `image_px` its width and height. All boxes are in `frame`, which was at
-    `frame_pose` in the world. After `fresh_s` they tell of the past: later ones should have come.
+    `frame_pose` in the world. After `fresh_s` they are stale: newer ones should have arrived.
     """
 
     camera: str
@@ -65,11 +65,11 @@ class Detections(Message, frozen=True, kw_only=True):
     fresh_s: float = 1.0
 
     def in_world(self, detection: Detection) -> Pose:
-        """Return where the box of one of the detections was in the world."""
+        """Return the pose of a detection's box in the world."""
         return compose_poses(self.frame_pose, detection.pose)
 
     def only(self, *, labels: tuple[str, ...] = (), minimal_score: float = 0.0) -> Detections:
-        """Return those with one of the labels, any where there are none, whose score is high enough."""
+        """Return the detections with one of the labels (any label when empty) and at least the minimal score."""
         kept = tuple(
             each for each in self.detections if each.score >= minimal_score and (not labels or each.label in labels)
         )
@@ -77,9 +77,9 @@ class Detections(Message, frozen=True, kw_only=True):
 
 
 class DetectObjects(Service[Detections], frozen=True, kw_only=True):
-    """Return what is found in the camera's next image: `labels` only, anything where empty, from a score on.
+    """Return the detections in the camera's next image with one of `labels` (any when empty) and a minimal score.
 
-    Refused while the camera gives no images.
+    Refused while the camera provides no images.
     """
 
     labels: tuple[str, ...] = ()

@@ -1,7 +1,7 @@
-"""The stop of a cell on a path that no event loop can delay: a process of its own between people and controllers.
+"""The stop of a cell, independent of every event loop: a separate process between operators and controllers.
 
-The relay's process takes STOP from HTTP and signals and passes it to every *stop line*, a socket that the process
-of a controller or driver reads by itself. The engine is told at the same time; whether it answers changes nothing.
+The relay's process receives STOP over HTTP and by signals and forwards it to every *stop line*, a socket that the
+process of a controller or driver reads itself. The engine is notified at the same time; the stop does not depend on it.
 """
 
 from engine.stop.relay import StopEndpoint, StopRelay

@@ -1,4 +1,4 @@
-"""What the relay's process knows and does: it passes STOP on to every line, and keeps who has come to rest."""
+"""The logic of the relay's process: forwards STOP to every line and records which devices are at rest."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from engine.stop.relay_messages import (
 
 _READ_BYTES = 65536
 _MAX_DESCRIPTORS = 16
-GRACE_S = 0.1
-"""How long the engine may take to answer a question; the lines are told of a signal after that."""
-NOTE_S = 0.05
-"""How long an answer to STOP waits for the engine; a later one finds it in the status."""
+PROBE_TIMEOUT_S = 0.1
+"""Time limit of the engine's reply to a probe; after that, a signal stops the lines."""
+ENGINE_TIMEOUT_S = 0.05
+"""Time that the response to STOP waits for the engine; a later reply appears in the status."""
 ACKNOWLEDGE_S = 0.2
-"""How long an answer to STOP waits for the devices."""
+"""Time that the response to STOP waits for the devices."""
 LINGER_S = 5.0
-"""How long STOP is still answered after the engine has died."""
+"""Time during which STOP is still served after the engine's process has ended."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _Source = Literal["http", "engine", "signal", "loss"]
 
@@ -60,12 +60,12 @@ class _Line:
 
 
 class StopDispatcher:
-    """Counts the stops, tells lines and engine, and keeps what they answer.
+    """Numbers the stops, notifies lines and engine, and stores their replies.
 
     Args:
-        engine: The socket to the engine, which descriptors come through.
-        signals: Gets a byte with its number for every signal that the engine's process catches, at once, also
-            while its interpreter is held.
+        engine: The socket to the engine, which also carries file descriptors.
+        signals: Receives one byte, the number, for every signal that the engine's process catches, at once, also
+            while its interpreter is blocked.
     """
 
     def __init__(self, engine: socket.socket, signals: socket.socket) -> None:
@@ -78,9 +78,9 @@ class StopDispatcher:
         self._lines: dict[str, _Line] = {}
         self._newest = StopNotice(stop=0, reason="", source="engine")
         self._since_s = 0.0
-        self._questions = 0
+        self._probes = 0
         self._answered = 0
-        self._asked_for_stop = 0
+        self._probe_of_stop = 0
         self._changed = asyncio.Event()
         self._engine_ended = False
         self._stops_at_signals = False
@@ -90,34 +90,34 @@ class StopDispatcher:
         self.over: asyncio.Future[None] = self._loop.create_future()
 
     def begin(self) -> None:
-        """Listen to engine and signals."""
+        """Start reading from engine and signals."""
         for source, read in ((self._engine, self._read_engine), (self._signals, self._read_signals)):
             source.setblocking(False)
             self._loop.add_reader(source.fileno(), read)
-        self._tell_engine(RelayReady())
+        self._send_to_engine(RelayReady())
 
     def stop(self, reason: str, source: _Source) -> int:
-        """Tell every line and the engine to stop, and return the stop's number."""
+        """Send the stop to every line and the engine, and return its number."""
         self._since_s = self._loop.time()
         notice = self._newest = StopNotice(stop=self._newest.stop + 1, reason=reason, source=source)
         for line in self._lines.values():
-            self._tell(line, notice)
+            self._send_to_line(line, notice)
         if source != "engine":
-            self._tell_engine(notice)
-        self._asked_for_stop = self._ask_engine()
+            self._send_to_engine(notice)
+        self._probe_of_stop = self._probe_engine()
         return notice.stop
 
     async def stopped(self, reason: str, source: _Source = "http") -> StopStatus:
-        """Stop, and return the status once all have acknowledged and the engine was heard, or is late."""
+        """Stop, and return the status once all devices have acknowledged and the engine has replied, or are late."""
         number = self.stop(reason, source)
-        await self._until(lambda: self._engine_informed, self._since_s + NOTE_S)
+        await self._until(lambda: self._engine_informed, self._since_s + ENGINE_TIMEOUT_S)
         await self._until(
             lambda: self.status().acknowledged or self._newest.stop != number, self._since_s + ACKNOWLEDGE_S
         )
         return self.status()
 
     def status(self) -> StopStatus:
-        """Return how far the newest stop is."""
+        """Return the status of the newest stop."""
         number = self._newest.stop
         devices = tuple(
             DeviceStop(
@@ -141,7 +141,7 @@ class StopDispatcher:
 
     @property
     def _engine_informed(self) -> bool:
-        return not self._engine_ended and self._answered >= self._asked_for_stop
+        return not self._engine_ended and self._answered >= self._probe_of_stop
 
     async def _until(self, done: Callable[[], bool], deadline_s: float) -> None:
         while not done():
@@ -175,10 +175,10 @@ class StopDispatcher:
                 self._add_line(message.device, socket.socket(fileno=self._descriptors.popleft()))
             case StopCommand():
                 stop = self.stop(message.reason, "engine")
-                self._tell_engine(StopCommandReply(stop=stop, request=message.request))
+                self._send_to_engine(StopCommandReply(stop=stop, request=message.request))
             case StopRelease():
                 for line in self._lines.values():
-                    self._tell(line, message)
+                    self._send_to_line(line, message)
             case ProbeReply():
                 self._answered = max(self._answered, message.number)
                 self._changed.set()
@@ -188,10 +188,10 @@ class StopDispatcher:
                 pass
 
     def _add_line(self, device: str, connection: socket.socket) -> None:
-        """Keep a line; one of the same device, of a process that is gone, makes room for it."""
-        before = self._lines.pop(device, None)
-        if before is not None and before.connected:
-            self._cut(before)
+        """Add a line; it replaces a line of the same device whose process has ended."""
+        previous = self._lines.pop(device, None)
+        if previous is not None and previous.connected:
+            self._cut(previous)
         connection.setblocking(False)
         line = self._lines[device] = _Line(
             device=device, connection=connection, reader=MessageReader(StopAcknowledgement)
@@ -227,24 +227,24 @@ class StopDispatcher:
 
     def _take_signal(self, reason: str) -> None:
         if self._stops_at_signals:
-            stopping = asyncio.create_task(self._stop_and_say(reason))
+            stopping = asyncio.create_task(self._stop_and_report(reason))
             self._stopping.add(stopping)
             stopping.add_done_callback(self._stopping.discard)
         else:
-            self._loop.call_later(GRACE_S, self._stop_unless_answered, self._ask_engine(), reason)
+            self._loop.call_later(PROBE_TIMEOUT_S, self._stop_unless_answered, self._probe_engine(), reason)
 
-    async def _stop_and_say(self, reason: str) -> None:
+    async def _stop_and_report(self, reason: str) -> None:
         status = await self.stopped(reason, "signal")
         silent = [device.name for device in status.devices if not device.acknowledged]
         if silent:
-            _say(f"STOP is not acknowledged by {', '.join(silent)}")
+            _write_stderr(f"STOP is not acknowledged by {', '.join(silent)}")
         elif status.devices:
-            _say(f"STOP acknowledged after {1e3 * status.after_s:.0f} ms")
+            _write_stderr(f"STOP acknowledged after {1e3 * status.after_s:.0f} ms")
 
-    def _stop_unless_answered(self, question: int, reason: str) -> None:
-        if self._answered < question and not self._engine_ended:
+    def _stop_unless_answered(self, probe: int, reason: str) -> None:
+        if self._answered < probe and not self._engine_ended:
             self.stop(f"{reason}; the engine does not answer", "signal")
-            _say("the engine does not answer: its robots were told to come to rest without it")
+            _write_stderr("the engine does not answer: its robots are stopped without it")
 
     def _engine_lost(self) -> None:
         self._loop.remove_reader(self._engine.fileno())
@@ -253,16 +253,16 @@ class StopDispatcher:
         self.stop("the engine has ended", "loss")
         self._loop.call_later(LINGER_S, self._end)
 
-    def _ask_engine(self) -> int:
-        self._questions += 1
-        self._tell_engine(EngineProbe(number=self._questions))
-        return self._questions
+    def _probe_engine(self) -> int:
+        self._probes += 1
+        self._send_to_engine(EngineProbe(number=self._probes))
+        return self._probes
 
-    def _tell_engine(self, message: FromRelay) -> None:
+    def _send_to_engine(self, message: FromRelay) -> None:
         if not self._engine_ended:
             self._to_engine.send(encode_message(message))
 
-    def _tell(self, line: _Line, message: ToDevice) -> None:
+    def _send_to_line(self, line: _Line, message: ToDevice) -> None:
         if not line.connected:
             return
         try:
@@ -275,5 +275,5 @@ class StopDispatcher:
             self.over.set_result(None)
 
 
-def _say(line: str) -> None:
+def _write_stderr(line: str) -> None:
     os.write(2, f"flexcell: {line}\n".encode())

@@ -1,4 +1,4 @@
-"""What waits to be sent on a socket that may be full, because whoever reads it is suspended."""
+"""A send buffer for a socket that may be full because its reader is suspended."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import socket
 
 
 class Outbox:
-    """Sends bytes in order without ever waiting; what the socket does not take follows when it does.
+    """Sends bytes in order without blocking; bytes that the socket does not accept are sent when it is writable.
 
-    Belongs to the running event loop. That the other end has gone is left to whoever reads the socket.
+    Belongs to the running event loop. The reader of the socket detects that the other end is closed.
     """
 
     def __init__(self, connection: socket.socket) -> None:
@@ -19,16 +19,16 @@ class Outbox:
 
     @property
     def empty(self) -> bool:
-        """Whether everything is sent."""
+        """Whether all bytes are sent."""
         return not self._unsent
 
     def send(self, data: bytes = b"") -> None:
-        """Send what waits, then `data`, as far as the socket takes it."""
+        """Send the buffered bytes, then `data`, as far as the socket accepts them."""
         self._unsent += data
         try:
             del self._unsent[: self._connection.send(self._unsent)]
         except BlockingIOError:
-            # The writer below goes on.
+            # The writer below sends the rest.
             pass
         except OSError:
             self._unsent.clear()
@@ -38,6 +38,6 @@ class Outbox:
             self._loop.remove_writer(self._connection.fileno())
 
     def close(self) -> None:
-        """Send no more."""
+        """Stop sending and discard the buffered bytes."""
         self._loop.remove_writer(self._connection.fileno())
         self._unsent.clear()

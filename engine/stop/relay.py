@@ -1,4 +1,4 @@
-"""The engine's side of the stop relay: starts its process, hands out stop lines, and hears of every stop."""
+"""The engine's side of the stop relay: starts its process, creates stop lines, and receives every stop."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _WHAT = "the stop relay"
 _START_S = 20.0
 _ORDER_S = 0.3
 _END_S = 2.0
-_WORDS_S = 0.2
+_EXIT_TIMEOUT_S = 0.2
 _log = logging.getLogger("flexcell.stop")
 
 StopCallback = Callable[[StopNotice], Awaitable[None]]
@@ -49,26 +49,26 @@ StopCallback = Callable[[StopNotice], Awaitable[None]]
 
 @dataclass(frozen=True, kw_only=True)
 class StopEndpoint:
-    """Where STOP is taken whatever the engine does: POST `{"token": …, "reason": …}` to `url`."""
+    """The address of STOP, independent of the engine: POST `{"token": …, "reason": …}` to `url`."""
 
     url: str
     token: str
 
     @property
     def origin(self) -> str:
-        """The origin of `url`, as a browser has it."""
+        """The origin of `url`, as a browser writes it."""
         parts = urlsplit(self.url)
         return f"{parts.scheme}://{parts.netloc}"
 
 
 class StopRelay:
-    """A stop that needs no event loop: `async with` starts the relay's process and ends it.
+    """A stop that needs no event loop of the engine: `async with` starts the relay's process and ends it.
 
     Belongs to the event loop that enters it. Not a safety function: see docs/concepts/safety.md.
 
     Args:
-        host: Loopback address to take STOP at over HTTP; None for signals only.
-        port: TCP port; 0 takes a free one.
+        host: Loopback address of STOP over HTTP; None for signals only.
+        port: TCP port; 0 selects a free one.
     """
 
     def __init__(self, *, host: str | None = None, port: int = 0) -> None:
@@ -85,7 +85,7 @@ class StopRelay:
         self._orders: dict[int, asyncio.Future[int]] = {}
         self._requests = 0
         self._callback: StopCallback | None = None
-        self._carried_out: set[asyncio.Task[None]] = set()
+        self._stop_tasks: set[asyncio.Task[None]] = set()
         self._origins: tuple[str, ...] = ()
         self._watches_signals = False
         self._stops_at_signals = False
@@ -94,35 +94,35 @@ class StopRelay:
 
     @property
     def lost_reason(self) -> str:
-        """Why the relay is gone; empty while it works."""
+        """Why the relay has ended; empty while it works."""
         return self._lost_reason
 
     def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell`, on the event loop, when the relay is gone and when it is back."""
+        """Call `tell`, on the event loop, when the relay has ended and when it is reconnected."""
         self._when_connection_changes.append(tell)
 
     async def reconnect(self) -> str:
-        """Start the relay's process again; devices need new lines, so they are connected again after it.
+        """Start the relay's process again; devices need new lines, so they are reconnected afterwards.
 
         Raises:
-            RobotError: it does not start.
+            RobotError: the process does not start.
         """
         if self._lost_reason:
             self._end_process()
             await self._start()
-            self._tell_connection()
+            self._notify_connection()
         return ""
 
     @property
     def endpoint(self) -> StopEndpoint | None:
-        """Where STOP is taken over HTTP; None where it is not."""
+        """The address of STOP over HTTP; None when there is none."""
         if self._listener is None:
             return None
         host, port = self._listener.getsockname()[:2]
         return StopEndpoint(url=f"http://{host_in_url(host)}:{port}/stop", token=self._token)
 
     async def __aenter__(self) -> Self:
-        """Start the process; raises FlexcellError when it does not start, or the port is taken."""
+        """Start the process; raises FlexcellError when it does not start or the port is in use."""
         if self._host is not None:
             self._listener = bound_socket(self._host, self._port, option="--stop-port")
         try:
@@ -135,37 +135,37 @@ class StopRelay:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the process; every line has been closed before, or is cut now."""
+        """End the process; lines that are still open are cut."""
         self._callback = None
-        for task in self._carried_out:
+        for task in self._stop_tasks:
             task.cancel()
-        if self._carried_out:
-            await asyncio.wait(self._carried_out)
+        if self._stop_tasks:
+            await asyncio.wait(self._stop_tasks)
         self._send(CloseRelay())
         self._end()
 
     def kill(self) -> None:
-        """End the relay's process at once, as a crash would; for tests and benchmarks."""
+        """Kill the relay's process, as a crash would; for tests and benchmarks."""
         if self._process is not None:
             self._process.kill()
 
     def on_stop(self, callback: StopCallback | None) -> None:
-        """Call back with every stop that did not come from this engine; it has reached the devices already.
+        """Call `callback` with every stop from another source; the devices have already received it.
 
-        What the callback raises is logged, and the devices stay latched; when it returns they are released.
+        An error of the callback is logged, and the devices stay latched; when it returns they are released.
         """
         self._callback = callback
 
     def allow_origins(self, origins: Iterable[str]) -> None:
-        """Let pages of these origins, such as `http://127.0.0.1:8642`, read the answer to STOP."""
+        """Allow pages of these origins, such as `http://127.0.0.1:8642`, to read the response to STOP."""
         self._origins = tuple(origins)
         self._configure()
 
     def new_line(self, device: str) -> socket.socket:
-        """Return the device's end of a new stop line, to be handed to its process and closed here.
+        """Return the device's end of a new stop line; the caller passes it to the device's process and closes it here.
 
         Raises:
-            CellError: the relay is gone.
+            CellError: the relay has ended or does not read its messages.
         """
         if self._control is None or self._outbox is None:
             raise CellError(self._lost_reason or "the stop relay is not open", where=device, hint=CONNECT_AGAIN)
@@ -177,13 +177,13 @@ class StopRelay:
             socket.send_fds(self._control, [encode_message(NewStopLine(device=device))], [ours.fileno()])
         except OSError as error:
             theirs.close()
-            raise CellError(f"the stop relay takes no line: {error}", where=device) from error
+            raise CellError(f"the stop relay accepts no stop line: {error}", where=device) from error
         finally:
             ours.close()
         return theirs
 
     async def order(self, reason: str) -> int | None:
-        """Have every device told to stop, and return the stop's number, for `release`; None where the relay is gone."""
+        """Send a stop to every device and return its number, for `release`; None when the relay has ended."""
         if self._control is None:
             return None
         self._requests += 1
@@ -200,26 +200,26 @@ class StopRelay:
             self._orders.pop(request, None)
 
     def release(self, stop: int) -> None:
-        """Let devices that this stop, or an earlier one, has latched move again: what was under way has ended."""
+        """Unlatch devices that this stop or an earlier one has latched; call it when the stopped runs have ended."""
         self._send(StopRelease(stop=stop))
 
     @contextmanager
     def watched_signals(self, *, at_once: bool = False) -> Generator[None]:
-        """Have the relay see SIGINT and SIGTERM while the block runs, also while this interpreter is held.
+        """Report SIGINT and SIGTERM to the relay while the block runs, also while this interpreter is blocked.
 
         The relay stops the devices `at_once`, or when the event loop does not answer. Main thread only. The signals
-        need handlers set by `signal.signal`: an event loop's own would take the descriptor that this needs.
+        need handlers set by `signal.signal`: those of an event loop would use the wakeup descriptor needed here.
         """
         assert self._signals is not None
         self._stops_at_signals = at_once
         self._configure()
-        before = signal.set_wakeup_fd(self._signals.fileno(), warn_on_full_buffer=False)
+        previous_fd = signal.set_wakeup_fd(self._signals.fileno(), warn_on_full_buffer=False)
         self._watches_signals = True
         try:
             yield
         finally:
             self._watches_signals = self._stops_at_signals = False
-            signal.set_wakeup_fd(before)
+            signal.set_wakeup_fd(previous_fd)
 
     async def _start(self) -> None:
         control, theirs = socket.socketpair()
@@ -244,7 +244,7 @@ class StopRelay:
             async with asyncio.timeout(_START_S):
                 await self._ready
         except TimeoutError as error:
-            self._forget_control()
+            self._close_control()
             raise RobotError(f"{_WHAT} does not answer within {_START_S:g} s") from error
         self._lost_reason = ""
 
@@ -268,37 +268,37 @@ class StopRelay:
                 if ordered is not None and not ordered.done():
                     ordered.set_result(message.stop)
             case StopNotice():
-                task = asyncio.get_running_loop().create_task(self._carry_out(message), name=f"stop {message.stop}")
-                self._carried_out.add(task)
-                task.add_done_callback(self._carried_out.discard)
+                task = asyncio.get_running_loop().create_task(self._execute_stop(message), name=f"stop {message.stop}")
+                self._stop_tasks.add(task)
+                task.add_done_callback(self._stop_tasks.discard)
             case _:
                 pass
 
-    async def _carry_out(self, notice: StopNotice) -> None:
+    async def _execute_stop(self, notice: StopNotice) -> None:
         _log.warning("STOP: %s", notice.reason)
         try:
             if self._callback is not None:
                 await self._callback(notice)
         except FlexcellError as error:
-            _log.error("after STOP the devices stay stopped: %s", error)
+            _log.error("the devices stay latched after STOP: %s", error)
             return
         if notice.stop:
             self.release(notice.stop)
 
     def _lost(self) -> None:
-        """Treat the loss of the relay as a stop: every device has found its line cut."""
-        self._forget_control()
-        reason = f"{_WHAT} has ended{_how(self._process)}"
+        """Treat the loss of the relay as a stop: the line of every device is cut."""
+        self._close_control()
+        reason = f"{_WHAT} has ended{_exit_text(self._process)}"
         if self._ready is not None and not self._ready.done():
             self._ready.set_exception(RobotError(f"{reason} before it was ready"))
             return
         self._lost_reason = reason
-        self._tell_connection()
+        self._notify_connection()
         self._take(StopNotice(stop=0, reason=reason, source="loss"))
 
-    def _tell_connection(self) -> None:
-        for tell in self._when_connection_changes:
-            tell()
+    def _notify_connection(self) -> None:
+        for callback in self._when_connection_changes:
+            callback()
 
     def _configure(self) -> None:
         settings = RelaySettings(token=self._token, origins=self._origins, stops_at_signals=self._stops_at_signals)
@@ -308,7 +308,7 @@ class StopRelay:
         if self._outbox is not None:
             self._outbox.send(encode_message(message))
 
-    def _forget_control(self) -> None:
+    def _close_control(self) -> None:
         control, self._control = self._control, None
         outbox, self._outbox = self._outbox, None
         if control is not None and outbox is not None:
@@ -318,7 +318,7 @@ class StopRelay:
 
     def _end(self) -> None:
         self._lost_reason = self._lost_reason or "the stop relay was closed"
-        self._forget_control()
+        self._close_control()
         if self._listener is not None:
             self._listener.close()
         self._end_process()
@@ -335,10 +335,10 @@ class StopRelay:
                 process.wait()
 
 
-def _how(process: subprocess.Popen[bytes] | None) -> str:
-    """Say how the process ended; empty while it lives on with its end of the socket closed."""
+def _exit_text(process: subprocess.Popen[bytes] | None) -> str:
+    """Return how the process ended; empty while it still runs with its end of the socket closed."""
     if process is None:
         return ""
     with suppress(subprocess.TimeoutExpired):
-        return f" {exit_code_text(process.wait(timeout=_WORDS_S))}"
+        return f" {exit_code_text(process.wait(timeout=_EXIT_TIMEOUT_S))}"
     return ""

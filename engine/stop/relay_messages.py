@@ -1,4 +1,4 @@
-"""What travels between the engine, the relay's process and the stop lines: one JSON object a line."""
+"""Messages between the engine, the relay's process and the stop lines: one JSON object per line."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ MAX_REASON = 500
 
 
 class _Message(msgspec.Struct, frozen=True, kw_only=True, tag_field="message"):
-    """Root of the messages."""
+    """Base of the messages."""
 
 
 class StopNotice(_Message, frozen=True, kw_only=True, tag="stop"):
-    """Everything stops: to a device's process, which latches; to the engine, which ends its runs.
+    """A stop of the cell: a device's process latches, the engine ends its runs.
 
-    `stop` counts from 1. `source` is where it came from: a page or client over `http`, the `engine` itself, a
-    `signal` that the engine did not answer, or the `loss` of the engine.
+    `stop` counts from 1. `source` is a page or client over `http`, the `engine` itself, a `signal` that the engine
+    did not answer, or the `loss` of the engine.
     """
 
     stop: int
@@ -29,20 +29,20 @@ class StopNotice(_Message, frozen=True, kw_only=True, tag="stop"):
 
 
 class StopRelease(_Message, frozen=True, kw_only=True, tag="release"):
-    """The engine has ended what was under way: a device that is latched by this stop, or an earlier one, unlatches."""
+    """The engine has ended its runs: a device that is latched by this stop or an earlier one unlatches."""
 
     stop: int
 
 
 class StopAcknowledgement(_Message, frozen=True, kw_only=True, tag="acknowledged"):
-    """A device has taken a stop and decelerates; once `at_rest`, it has come to rest."""
+    """A device has received a stop and decelerates; with `at_rest` it has come to rest."""
 
     stop: int
     at_rest: bool
 
 
 class RelaySettings(_Message, frozen=True, kw_only=True, tag="settings"):
-    """Engine to relay: who may stop over HTTP, the origins of pages that may read the answer, what signals mean."""
+    """Engine to relay: the token for STOP over HTTP, origins of pages that may read responses, effect of signals."""
 
     token: str
     origins: tuple[str, ...]
@@ -50,7 +50,7 @@ class RelaySettings(_Message, frozen=True, kw_only=True, tag="settings"):
 
 
 class NewStopLine(_Message, frozen=True, kw_only=True, tag="new_line"):
-    """Engine to relay: the descriptor that comes along is the relay's end of the stop line of `device`."""
+    """Engine to relay: the attached descriptor is the relay's end of the stop line of `device`."""
 
     device: str
 
@@ -63,30 +63,30 @@ class StopCommand(_Message, frozen=True, kw_only=True, tag="order"):
 
 
 class StopCommandReply(_Message, frozen=True, kw_only=True, tag="ordered"):
-    """Relay to engine: every line has been told."""
+    """Relay to engine: the stop has been sent to every line."""
 
     stop: int
     request: int
 
 
 class EngineProbe(_Message, frozen=True, kw_only=True, tag="probe"):
-    """Relay to engine: are you there? The event loop replies at once."""
+    """Relay to engine: liveness probe; the event loop replies at once."""
 
     number: int
 
 
 class ProbeReply(_Message, frozen=True, kw_only=True, tag="reply"):
-    """Engine to relay: the event loop runs, and has taken note of everything before this probe."""
+    """Engine to relay: the event loop runs and has received every message before this probe."""
 
     number: int
 
 
 class RelayReady(_Message, frozen=True, kw_only=True, tag="ready"):
-    """Relay to engine: it listens."""
+    """Relay to engine: the relay is ready."""
 
 
 class CloseRelay(_Message, frozen=True, kw_only=True, tag="close"):
-    """Engine to relay: everything rests and is closed; end without a stop."""
+    """Engine to relay: all devices are at rest and closed; end without a stop."""
 
 
 ToRelay = RelaySettings | NewStopLine | StopCommand | StopRelease | ProbeReply | CloseRelay
@@ -95,7 +95,7 @@ ToDevice = StopNotice | StopRelease
 
 
 class DeviceStop(msgspec.Struct, frozen=True, kw_only=True):
-    """How far one device is with a stop; `connected` is false once its process has ended."""
+    """The status of a stop at one device; `connected` is false once its process has ended."""
 
     name: str
     connected: bool
@@ -104,10 +104,10 @@ class DeviceStop(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StopStatus(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to STOP: `acknowledged` once every connected device has taken it. `stop` is 0 before the first.
+    """The response to STOP: `acknowledged` once every connected device has it; `stop` is 0 before the first.
 
-    `engine` is `informed` when its event loop has taken note, `silent` while it is blocked or frozen, `ended`
-    when its process is gone. `after_s` is the time from STOP to this answer.
+    `engine` is `informed` when its event loop has received the stop, `silent` while it is blocked or frozen, `ended`
+    when its process has ended. `after_s` is the time from STOP to this response.
     """
 
     stop: int
@@ -120,17 +120,17 @@ class StopStatus(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MessageReader:
-    """Cuts the bytes of a stream into messages of one union of types."""
+    """Splits a byte stream into messages of one union of types."""
 
     def __init__(self, types: object) -> None:
         self._decoder: msgspec.json.Decoder[object] = msgspec.json.Decoder(types)  # pyright: ignore[reportCallIssue, reportArgumentType, reportUnknownMemberType]
         self._waiting = bytearray()
 
     def feed(self, data: bytes) -> list[object]:
-        """Take more bytes and return the messages that are complete now.
+        """Append bytes and return the messages that are now complete.
 
         Raises:
-            msgspec.DecodeError: this is no message of these types; nothing after it can be trusted.
+            msgspec.DecodeError: a line is not a message of these types; the rest of the stream cannot be trusted.
         """
         self._waiting += data
         *lines, rest = self._waiting.split(b"\n")
@@ -140,10 +140,10 @@ class MessageReader:
         return [self._decoder.decode(line) for line in lines]
 
     def receive(self, connection: socket.socket) -> tuple[list[object], bool]:
-        """Read what has arrived on a socket that does not block.
+        """Read the available messages of a non-blocking socket.
 
         Returns:
-            The messages, and whether the stream is over: closed by the other end, cut, or no stream of messages.
+            The messages, and whether the stream has ended: closed by the other end, cut, or not a message stream.
         """
         try:
             data = connection.recv(_READ_BYTES)
@@ -155,5 +155,5 @@ class MessageReader:
 
 
 def encode_message(message: ToRelay | FromRelay | ToDevice | StopAcknowledgement) -> bytes:
-    """Return a message as its line."""
+    """Return a message as one line of JSON."""
     return msgspec.json.encode(message) + b"\n"

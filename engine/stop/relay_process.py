@@ -1,6 +1,6 @@
-"""The relay's own process: waits for STOP from HTTP and signals and has it dispatched.
+"""The relay's own process: receives STOP over HTTP and by signals and dispatches it.
 
-One thread, one event loop that runs nothing else: no document, request or subscriber of the engine reaches it.
+One thread, one event loop that runs nothing else: no document, request or subscriber of the engine can delay it.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ async def _serve(engine: socket.socket, signals: socket.socket, listener: socket
 
 
 def main() -> None:
-    """Run the relay on the descriptors of engine, signals and, where STOP is taken over HTTP, the bound socket."""
-    # A terminal's Ctrl-C reaches the whole process group; what it means is told through the signals' socket.
+    """Run the relay on the descriptors of engine, signals and, for STOP over HTTP, the bound socket."""
+    # A terminal's Ctrl-C reaches the whole process group; the relay acts on the signals' socket only.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     engine_fd, signals_fd, *http_fd = (int(argument) for argument in sys.argv[1:])
     with suppress(AttributeError, OSError):
-        # Where the system permits no other schedule, the ordinary one has to do.
+        # When the system does not permit this scheduling policy, the default one remains.
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
     gc.freeze()
     engine, signals = socket.socket(fileno=engine_fd), socket.socket(fileno=signals_fd)

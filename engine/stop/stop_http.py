@@ -1,4 +1,4 @@
-"""STOP over HTTP: one small request, answered whatever else connects. Knows POST /stop and POST /stop/status."""
+"""STOP over HTTP: POST /stop and POST /stop/status, served regardless of other connections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DEFAULT_REASON = "stopped by the operator"
 
 
 class StopRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """A request: plain JSON whatever its content type says, so that a page needs no preflight."""
+    """A request: JSON with any content type, so that a page needs no CORS preflight."""
 
     token: str
     reason: str = _DEFAULT_REASON
@@ -34,17 +34,17 @@ class _Refused(Exception):
 
 
 def new_http_protocol(dispatcher: StopDispatcher) -> Callable[[], asyncio.Protocol]:
-    """Return the maker of protocols for a server; together they hold a bounded number of connections."""
-    open_ones: OrderedDict[_Http, None] = OrderedDict()
-    return lambda: _Http(dispatcher, open_ones)
+    """Return a protocol factory for a server; its protocols share a limit on the number of connections."""
+    connections: OrderedDict[_Http, None] = OrderedDict()
+    return lambda: _Http(dispatcher, connections)
 
 
 class _Http(asyncio.Protocol):
-    """One connection, one request. The oldest makes room when there are too many: a flood delays no STOP."""
+    """One connection, one request. Above the limit the oldest connection is aborted: a flood delays no STOP."""
 
-    def __init__(self, dispatcher: StopDispatcher, open_ones: OrderedDict[_Http, None]) -> None:
+    def __init__(self, dispatcher: StopDispatcher, connections: OrderedDict[_Http, None]) -> None:
         self._dispatcher = dispatcher
-        self._open_ones = open_ones
+        self._connections = connections
         self._http = h11.Connection(h11.SERVER, max_incomplete_event_size=8192)
         self._request: h11.Request | None = None
         self._body = bytearray()
@@ -56,19 +56,19 @@ class _Http(asyncio.Protocol):
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         self._limit = asyncio.get_running_loop().call_later(REQUEST_S, transport.abort)
-        self._open_ones[self] = None
-        if len(self._open_ones) > MAX_CONNECTIONS:
-            oldest = next(iter(self._open_ones))
+        self._connections[self] = None
+        if len(self._connections) > MAX_CONNECTIONS:
+            oldest = next(iter(self._connections))
             oldest.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._open_ones.pop(self, None)
+        self._connections.pop(self, None)
         if self._limit is not None:
             self._limit.cancel()
 
     def abort(self) -> None:
-        """Close at once."""
-        self._open_ones.pop(self, None)
+        """Close the connection at once."""
+        self._connections.pop(self, None)
         if self._transport is not None:
             self._transport.abort()
 
@@ -77,14 +77,14 @@ class _Http(asyncio.Protocol):
             return
         try:
             self._http.receive_data(data)
-            if self._complete():
+            if self._is_complete():
                 self._task = asyncio.get_running_loop().create_task(self._answer())
         except h11.RemoteProtocolError as error:
-            self._send(error.error_status_hint, {"message": "this is no HTTP request"})
+            self._send(error.error_status_hint, {"message": "this is not an HTTP request"})
         except _Refused as refusal:
             self._send(refusal.status, {"message": refusal.message})
 
-    def _complete(self) -> bool:
+    def _is_complete(self) -> bool:
         while True:
             event = self._http.next_event()
             match event:
@@ -111,10 +111,10 @@ class _Http(asyncio.Protocol):
         request = self._request
         assert request is not None
         if request.method != b"POST":
-            raise _Refused(405, "POST stops")
+            raise _Refused(405, "use the method POST")
         origin = self._header(b"origin")
         if origin and origin not in self._dispatcher.origins:
-            raise _Refused(403, "requests from other pages are refused")
+            raise _Refused(403, "requests from pages of other origins are refused")
         body = self._read_body()
         match request.target:
             case b"/stop":
@@ -122,7 +122,7 @@ class _Http(asyncio.Protocol):
             case b"/stop/status":
                 return self._status()
             case _:
-                raise _Refused(404, "there are /stop and /stop/status")
+                raise _Refused(404, "no such path: use /stop or /stop/status")
 
     async def _status(self) -> StopStatus:
         return self._dispatcher.status()
@@ -131,14 +131,14 @@ class _Http(asyncio.Protocol):
         scheme, _, bearer = self._header(b"authorization").partition(" ")
         try:
             if scheme.lower() == "bearer":
-                given = msgspec.json.decode(bytes(self._body) or b"{}", type=dict[str, object])
-                body = msgspec.convert({**given, "token": bearer.strip()}, StopRequest)
+                fields = msgspec.json.decode(bytes(self._body) or b"{}", type=dict[str, object])
+                body = msgspec.convert({**fields, "token": bearer.strip()}, StopRequest)
             else:
                 body = msgspec.json.decode(bytes(self._body), type=StopRequest)
         except (msgspec.DecodeError, RecursionError) as error:
             raise _Refused(400, 'the body must be {"token": …, "reason": …}') from error
         if not (self._dispatcher.token and hmac.compare_digest(body.token.encode(), self._dispatcher.token.encode())):
-            raise _Refused(401, "this token does not stop this cell: see stop_token in the server's server.json")
+            raise _Refused(401, "the token is not valid for this cell: see stop_token in the server's server.json")
         return body
 
     def _header(self, name: bytes) -> str:
@@ -147,7 +147,7 @@ class _Http(asyncio.Protocol):
         return values[0] if len(values) == 1 else ""
 
     def _send(self, status: int, body: StopStatus | dict[str, str]) -> None:
-        """Answer and close; the connection may be gone."""
+        """Send the response and close; the connection may already be closed."""
         if self._transport is None or self._transport.is_closing():
             return
         payload = msgspec.json.encode(body)

@@ -1,4 +1,4 @@
-"""The device's end of a stop line: what the process of a controller or driver looks at in every cycle."""
+"""The device's end of a stop line, polled by the process of a controller or driver in every cycle."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ CUT = "the stop line is cut: the stop relay has ended"
 
 
 class StopLine:
-    """A latch that STOP closes and only the engine's release opens.
+    """A latch that STOP sets and only a release by the engine clears.
 
-    Belongs to the thread of the control loop. `poll` never waits. A line that is cut counts as a stop, which
-    nothing releases: a broken wire must not leave a machine that cannot be stopped.
+    Belongs to the thread of the control loop. `poll` never blocks. A cut line counts as a stop that
+    cannot be released: a broken connection must not leave a machine that cannot be stopped.
 
     Args:
         connection: The device's end, from `StopRelay.new_line`.
@@ -34,28 +34,28 @@ class StopLine:
         self._connection = connection
         self._reader = MessageReader(ToDevice)
         self._stop = 0
-        self._rest_told = True
+        self._rest_reported = True
         self._cut = False
         self.reason = ""
-        """Why the latch is closed; empty while it is open."""
+        """Why the line is latched; empty while it is not."""
 
     @property
     def latched(self) -> bool:
-        """Whether no motion may start or go on."""
+        """Whether no motion may start or continue."""
         return bool(self.reason)
 
     @property
     def cut(self) -> bool:
-        """Whether the other end is gone: no STOP can come any more, so the process is to end, once all rests."""
+        """Whether the other end is closed: no STOP can arrive, so the process must end once everything is at rest."""
         return self._cut
 
     @property
     def awaits_rest(self) -> bool:
-        """Whether somebody still waits to hear, by `report_at_rest`, that everything has come to rest."""
-        return not self._rest_told
+        """Whether the newest stop still awaits `report_at_rest`."""
+        return not self._rest_reported
 
     def poll(self) -> str:
-        """Read the line; the reason when a stop has arrived since the last call: bring everything to rest now."""
+        """Read the line; return the reason of a stop that arrived since the last call: bring everything to rest now."""
         if self._cut:
             return ""
         stopped = ""
@@ -66,21 +66,21 @@ class StopLine:
         except BlockingIOError:
             return stopped
         except (OSError, msgspec.DecodeError):
-            # What is cut or speaks nonsense can no longer be trusted to bring a stop.
+            # A line that is cut or carries invalid data cannot be trusted to deliver a stop.
             pass
         self._cut, self.reason = True, CUT
         return CUT
 
     def report_at_rest(self) -> None:
-        """Say, once for each stop, that everything has come to rest; called in every cycle in which it has."""
-        if not self._rest_told:
-            self._rest_told = True
+        """Report once for each stop that everything is at rest; call it in every cycle at rest."""
+        if not self._rest_reported:
+            self._rest_reported = True
             self._send(StopAcknowledgement(stop=self._stop, at_rest=True))
 
     def _take(self, message: object) -> str:
         match message:
             case StopNotice():
-                self._stop, self._rest_told = message.stop, False
+                self._stop, self._rest_reported = message.stop, False
                 self.reason = message.reason or "STOP"
                 self._send(StopAcknowledgement(stop=message.stop, at_rest=False))
                 return self.reason
@@ -94,5 +94,5 @@ class StopLine:
         try:
             self._connection.send(encode_message(message))
         except OSError:
-            # Whoever does not read any more has no need of it; the next `poll` finds the line cut.
+            # The other end is closed; the next `poll` finds the line cut.
             return

@@ -1,7 +1,7 @@
-"""The store: named entries (joint configurations, poses, DMPs, records) behind one contract.
+"""The store: named entries (joint configurations, poses, DMPs, records) behind one interface.
 
-`SqliteStore.open(path)` is the embedded default, `open_store(address)` also opens one on a MongoDB
-server (which needs pymongo); `register_store` puts a store on the bus.
+`SqliteStore.open(path)` is the embedded default, `open_store(address)` also opens a store on a MongoDB
+server (which needs pymongo); `register_store` serves a store on the bus.
 """
 
 from engine.messages.demonstrations import Trajectory

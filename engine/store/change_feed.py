@@ -1,4 +1,4 @@
-"""Reads the changes that other programs commit on its own thread and delivers them on the event loop."""
+"""Reads changes committed by other programs on its own thread and delivers them on the event loop."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from engine.store.rows import RevisionRow
 from engine.store.table import ChangeSource
 
 _RETRY_S = 1.0
-"""How long to wait before a feed that failed is asked again."""
+"""Time to wait before a failed feed is read again."""
 
 _log = logging.getLogger("flexcell.store")
 
 
 class ChangeFeed:
-    """Tells listeners the changes of a feed, except those that `writer` committed itself."""
+    """Notifies listeners of the changes of a feed, except those committed by `writer`."""
 
     def __init__(self, feed: ChangeSource, *, writer: str, loop: asyncio.AbstractEventLoop) -> None:
         self._feed = feed
@@ -31,21 +31,21 @@ class ChangeFeed:
         self._thread = Thread(target=self._run, name="store changes", daemon=True)
 
     def start(self) -> None:
-        """Begin to listen."""
+        """Start reading changes."""
         self._thread.start()
 
-    def tell(self, listener: ChangeListener) -> Callable[[], None]:
-        """Call `listener` on the event loop for each change; returns what ends it."""
+    def subscribe(self, listener: ChangeListener) -> Callable[[], None]:
+        """Call `listener` on the event loop for each change; returns a function that ends this."""
         token = object()
         self._listeners[token] = listener
 
-        def end() -> None:
+        def unsubscribe() -> None:
             self._listeners.pop(token, None)
 
-        return end
+        return unsubscribe
 
     def stop(self) -> None:
-        """End, and wait until the thread has let go of the database; never on the event loop."""
+        """End the thread and wait until it has closed the database; do not call it on the event loop."""
         self._stop.set()
         self._thread.join()
 
@@ -57,16 +57,16 @@ class ChangeFeed:
                 failed = False
             except StoreError as error:
                 if not failed:
-                    _log.warning("changes by other programs are not heard for now: %s", error)
+                    _log.warning("changes by other programs are not received for now: %s", error)
                 failed = True
                 self._stop.wait(_RETRY_S)
                 continue
             others = tuple(row for row in rows if row.writer != self._writer)
             if others and not self._stop.is_set():
-                self._loop.call_soon_threadsafe(self._tell, others)
+                self._loop.call_soon_threadsafe(self._notify, others)
         self._feed.close()
 
-    def _tell(self, rows: tuple[RevisionRow, ...]) -> None:
+    def _notify(self, rows: tuple[RevisionRow, ...]) -> None:
         for row in rows:
             for listener in tuple(self._listeners.values()):
                 listener(change_of(row))

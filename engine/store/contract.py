@@ -1,4 +1,4 @@
-"""What every store of named entries does, whichever database is behind it."""
+"""The interface of a store of named entries, independent of the database."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from engine.skills.entries import EntryRecord
 from engine.store.pydantic_models import PydanticModel
 
 Value = Mapping[str, object] | msgspec.Struct | PydanticModel
-"""An entry's value on its way in: its fields, or a message or pydantic model that has them."""
+"""The value of an entry to be written: its fields, or a message or pydantic model with these fields."""
 
 
 class EntryKey(msgspec.Struct, frozen=True, kw_only=True, order=True):
-    """An entry without its value: its tags, who changed it last and when (UTC, milliseconds since 1970)."""
+    """An entry without its value: tags, author and time (UTC, milliseconds since 1970) of the last change."""
 
     kind: str
     name: str
@@ -27,10 +27,10 @@ class EntryKey(msgspec.Struct, frozen=True, kw_only=True, order=True):
 
 
 class EntryChange(msgspec.Struct, frozen=True, kw_only=True):
-    """One committed change of an entry: by whom, when (UTC, milliseconds since 1970) and why.
+    """One committed change of an entry: author, time (UTC, milliseconds since 1970) and reason.
 
-    `value` is None where it was deleted. `restores` is the revision whose content an undo brought
-    back, 0 where there was no entry before; None where the change is no undo.
+    `value` is None for a deletion. `restores` is the revision whose content an undo restored,
+    0 when there was no entry before; None when the change is not an undo.
     """
 
     kind: str
@@ -50,22 +50,22 @@ ChangeListener = Callable[[EntryChange], None]
 class Store(Protocol):
     """Named entries: joint configurations, poses, DMPs and other typed records.
 
-    Kind and name together name an entry. Revisions count the changes of one entry from 1; a
-    deletion is a change, so a revision never comes twice. A method that is cancelled may still
-    have taken effect. All methods raise StoreError with the kind and name where a limit is
-    exceeded or the database fails. `by` says who changes an entry and `reason` why; both are free text.
+    Kind and name together identify an entry. Revisions count the changes of one entry from 1; a
+    deletion is a change, so a revision is never reused. A cancelled method may still have taken
+    effect. All methods raise StoreError with the kind and name when a limit is exceeded or the
+    database fails. `by` is the author of a change and `reason` its reason; both are free text.
     """
 
     @property
     def address(self) -> str:
-        """Where the entries are: the path of a file, or the address of a server, without secrets."""
+        """The location of the entries: a file path or a server address, without secrets."""
         ...
 
     async def get(self, kind: str, name: str) -> EntryRecord:
         """Return an entry.
 
         Raises:
-            EntryNotFound: there is none; the hint has the near names.
+            EntryNotFound: there is none; the hint suggests similar names.
         """
         ...
 
@@ -83,18 +83,18 @@ class Store(Protocol):
         """Write an entry durably and return it as stored.
 
         Args:
-            kind: One of the kinds the store knows.
+            kind: One of the kinds of the store.
             name: Lower case letters, digits and `_ / . -`.
-            value: The fields of its kind; checked.
+            value: The fields of its kind; validated.
             expected_revision: Write only when the stored entry has this revision; 0 means that
-                there must be none.
-            tags: Replace those it has; None keeps them.
-            by: Who writes it.
-            reason: Why.
+                there must be no entry.
+            tags: Replace the present tags; None keeps them.
+            by: The author.
+            reason: The reason.
 
         Raises:
-            StoreError: the value does not fit.
-            EntryConflict: another revision is there (the message says which).
+            StoreError: the value is invalid.
+            EntryConflict: another revision is stored; the message names it.
         """
         ...
 
@@ -112,88 +112,88 @@ class Store(Protocol):
 
         Args:
             kind: Only this kind.
-            prefix: Only names that begin so.
+            prefix: Only names that begin with it.
             tags: Only entries with all these tags.
-            text: Only entries where each word of it begins a word of the name or of a tag.
-            after: Only those behind this one: the last of the page before.
-            limit: At most so many.
+            text: Only entries where each of its words is the beginning of a word of the name or of a tag.
+            after: Only entries after this one: the last of the previous page.
+            limit: Maximum number of entries.
         """
         ...
 
     async def delete(
         self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
     ) -> None:
-        """Remove an entry; its history stays, and `undo` brings it back.
+        """Delete an entry; its history is kept, and `undo` restores it.
 
         Raises:
             EntryNotFound: there is none.
-            EntryConflict: another revision is there than expected.
+            EntryConflict: another revision than expected is stored.
         """
         ...
 
     async def undo(
         self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
     ) -> EntryChange:
-        """Bring back value and tags from before the last change, as a new revision, and return that.
+        """Restore value and tags from before the last change as a new revision, and return that change.
 
-        Undoing again goes one step further into the past. An entry that was not there before is deleted.
+        Each further undo goes one change back. An entry that did not exist before is deleted.
 
         Raises:
-            EntryNotFound: there never was such an entry.
-            EntryConflict: another revision is there than expected.
-            StoreError: nothing is left to undo.
+            EntryNotFound: the entry never existed.
+            EntryConflict: another revision than expected is stored.
+            StoreError: there is no change left to undo.
         """
         ...
 
     async def history(self, kind: str, name: str) -> tuple[EntryChange, ...]:
-        """Return every change of an entry, oldest first; empty when it never was."""
+        """Return every change of an entry, oldest first; empty when it never existed."""
         ...
 
     async def all_names(self) -> tuple[tuple[str, str], ...]:
-        """Return kind and name of every entry that ever was, also of deleted ones, sorted."""
+        """Return kind and name of every entry, including deleted ones, sorted."""
         ...
 
     async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
-        """Return entries with their values and tags, sorted by kind and name; `seed` takes them back."""
+        """Return entries with their values and tags, sorted by kind and name, as input for `seed`."""
         ...
 
     async def seed(
         self, entries: Iterable[EntryRecord], *, overwrite: bool = False, by: str = "", reason: str = ""
     ) -> tuple[EntryKey, ...]:
-        """Write the entries that are missing, all or none of them, and return those written.
+        """Write the missing entries, all or none of them, and return those written.
 
-        A MongoDB server without a replica set cannot write several entries at once: there, what
-        breaks off half way is completed by seeding again.
+        A MongoDB server without a replica set cannot write several entries atomically: there,
+        seed again after an interruption.
 
         Args:
-            entries: Their revisions are ignored; without tags they keep those they have.
-            overwrite: Write also those that are there with another value or other tags.
-            by: Who writes them.
-            reason: Why.
+            entries: Their revisions are ignored; an entry without tags keeps its present tags.
+            overwrite: Also write entries that are stored with another value or other tags.
+            by: The author.
+            reason: The reason.
         """
         ...
 
     async def import_histories(self, histories: Iterable[Sequence[EntryChange]]) -> int:
-        """Take over entries with their whole histories from another store; return how many changes were new.
+        """Import entries with their whole histories from another store; return the number of new changes.
 
         Raises:
-            EntryConflict: an entry has another history here.
+            EntryConflict: an entry has another history in this store.
         """
         ...
 
     def watch(self, listener: ChangeListener) -> Callable[[], None]:
-        """Call `listener` on the event loop after each change committed here; returns what ends it."""
+        """Call `listener` on the event loop after each change committed here; returns a function that ends this."""
         ...
 
     async def follow(self, listener: ChangeListener) -> Callable[[], None]:
-        """Watch, and from now on also hear what other programs commit; returns what ends it.
+        """Watch, and also receive the changes of other programs; returns a function that ends this.
 
-        A store opened `inline` follows nobody else.
+        A store opened `inline` receives only its own changes.
         """
         ...
 
     async def close(self) -> None:
-        """Release the database; may be called again."""
+        """Close the database; may be called again."""
         ...
 
     async def __aenter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""The typed kinds of named entries: what the value of each must look like."""
+"""The typed kinds of named entries and the validation of their values."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _UNIT_TOLERANCE = 1e-3
 class Joints(Message, frozen=True, kw_only=True):
     """A joint configuration in radians (metres for sliding joints), in the order of `names` or of the robot.
 
-    `model` is that of the robot it was taught with; empty where nobody said.
+    `model` is the model of the robot it was taught with; empty when unknown.
     """
 
     joints: Annotated[tuple[float, ...], msgspec.Meta(min_length=1)]
@@ -44,9 +44,9 @@ class Joints(Message, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class EntryKind:
-    """One kind: the type its values have (None for any object) and a check beyond the type.
+    """One kind: the type of its values (None for any object) and an additional check.
 
-    The type is a msgspec Struct or a pydantic model. `check` returns what is wrong in words, empty when nothing is.
+    The type is a msgspec Struct or a pydantic model. `check` returns the problem, empty when there is none.
     """
 
     type: type[msgspec.Struct] | type[PydanticModel] | None
@@ -54,15 +54,15 @@ class EntryKind:
 
 
 def _check_pose(value: msgspec.Struct) -> str:
-    return _fault_of_turn("the pose", value if isinstance(value, Pose) else None)
+    return _fault_of_quaternion("the pose", value if isinstance(value, Pose) else None)
 
 
 def _check_template(value: msgspec.Struct) -> str:
     assert isinstance(value, DetectionTemplate)
-    return _fault_of_turn("pose", value.pose) or _fault_of_turn("camera_pose", value.camera_pose)
+    return _fault_of_quaternion("pose", value.pose) or _fault_of_quaternion("camera_pose", value.camera_pose)
 
 
-def _fault_of_turn(what: str, pose: Pose | None) -> str:
+def _fault_of_quaternion(what: str, pose: Pose | None) -> str:
     norm = 1.0 if pose is None else math.hypot(*pose.xyzw)
     return "" if abs(norm - 1.0) <= _UNIT_TOLERANCE else f"the quaternion of {what} has length {norm:.4g} instead of 1"
 
@@ -78,14 +78,14 @@ STANDARD_KINDS: Mapping[str, EntryKind] = {
     "detection": EntryKind(DetectionTemplate, _check_template),
     RECORD: EntryKind(None),
 }
-"""The kinds every store knows; give a store a larger mapping to register more."""
+"""The kinds of every store; pass a larger mapping to a store to register more."""
 
 
 def verified_value(kinds: Mapping[str, EntryKind], kind: str, value: object, *, where: str) -> object:
-    """Return `value` as the type of its kind, defaults filled in; plain for a free record.
+    """Return `value` as the type of its kind with defaults filled in; as plain data for a free record.
 
     Raises:
-        StoreError: no such kind, or the value is not of it; the message names the field.
+        StoreError: there is no such kind, or the value is invalid; the message names the field.
     """
     known = kinds.get(kind)
     if known is None:
@@ -94,16 +94,16 @@ def verified_value(kinds: Mapping[str, EntryKind], kind: str, value: object, *, 
     if known.type is None:
         return plain
     if is_model_type(known.type):
-        return _modelled(known.type, kind, plain, where=where)
+        return _validated_by_model(known.type, kind, plain, where=where)
     assert issubclass(known.type, msgspec.Struct)
     try:
         typed = msgspec.convert(plain, known.type)
     except (msgspec.ValidationError, RecursionError) as error:
         raise StoreError(
-            f"this is no {kind}: {error}", where=where, hint=f"give the fields {_fields(known.type)}"
+            f"invalid {kind} entry: {error}", where=where, hint=f"the fields are {_fields(known.type)}"
         ) from error
     if known.check is not None and (fault := known.check(typed)):
-        raise StoreError(f"this is no {kind}: {fault}", where=where)
+        raise StoreError(f"invalid {kind} entry: {fault}", where=where)
     return typed
 
 
@@ -111,7 +111,7 @@ def decode_entry(record: EntryRecord, kind: type[T]) -> T:
     """Return the value of an entry as `kind`, such as `Pose` or `Joints`.
 
     Raises:
-        StoreError: the entry holds something else.
+        StoreError: the entry has another type.
     """
     try:
         if is_model_type(kind):
@@ -119,7 +119,7 @@ def decode_entry(record: EntryRecord, kind: type[T]) -> T:
         return msgspec.convert(record.value, kind)
     except ValueError as error:
         raise StoreError(
-            f"this entry does not read as {kind.__name__}: {first_fault(error)}", where=f"{record.kind} {record.name}"
+            f"this entry is not a {kind.__name__}: {first_fault(error)}", where=f"{record.kind} {record.name}"
         ) from error
 
 
@@ -129,14 +129,14 @@ def _plain(value: object) -> object:
     return value.model_dump(mode="json") if isinstance(value, PydanticModel) and not isinstance(value, type) else value
 
 
-def _modelled(model: type[PydanticModel], kind: str, plain: object, *, where: str) -> object:
-    """Return the value with what the model fills in, as plain data."""
+def _validated_by_model(model: type[PydanticModel], kind: str, plain: object, *, where: str) -> object:
+    """Return the value with the defaults of the model, as plain data."""
     try:
         return model.model_validate(plain).model_dump(mode="json")
     except (ValueError, RecursionError) as error:
         fault = first_fault(error) if isinstance(error, ValueError) else "it is nested too deeply"
         raise StoreError(
-            f"this is no {kind}: {fault}", where=where, hint=f"give the fields {', '.join(fields_of_model(model))}"
+            f"invalid {kind} entry: {fault}", where=where, hint=f"the fields are {', '.join(fields_of_model(model))}"
         ) from error
 
 

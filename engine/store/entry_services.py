@@ -1,4 +1,4 @@
-"""Answers the entry services on the bus from a store, and publishes its changes."""
+"""Serves the entry services of a store on the bus and publishes its changes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from engine.store.contract import EntryChange, Store
 
 NAMESPACE = "store"
 CHANGES = f"{NAMESPACE}/changes"
-"""The topic with each change, as `EntryChanged`."""
+"""The topic of changes, with messages `EntryChanged`."""
 
 
 def register_store(bus: SkillBus, store: Store) -> None:
-    """Advertise reading, writing, deleting, undoing and listing of entries, and of their past, under `store`."""
+    """Advertise the services that read, write, delete, undo and list entries and their history under `store`."""
 
     async def read(request: ReadEntry) -> EntryRecord:
         return await store.get(request.kind, request.name)
@@ -65,8 +65,8 @@ def register_store(bus: SkillBus, store: Store) -> None:
         )
 
     async def list_entries(request: ListEntries) -> EntryList:
-        found = await store.list(kind=request.kind, prefix=request.prefix, tags=request.tags, text=request.text)
-        return EntryList(entries=tuple((key.kind, key.name, key.revision) for key in found))
+        keys = await store.list(kind=request.kind, prefix=request.prefix, tags=request.tags, text=request.text)
+        return EntryList(entries=tuple((key.kind, key.name, key.revision) for key in keys))
 
     async def history(request: ReadHistory) -> EntryHistory:
         changes = await store.history(request.kind, request.name)
@@ -80,7 +80,7 @@ def register_store(bus: SkillBus, store: Store) -> None:
             raise EntryNotFound(
                 f"{request.kind} {request.name} {why} revision {request.revision}",
                 where=NAMESPACE,
-                hint="its history has the others",
+                hint="its history lists all revisions",
             )
         return EntryRecord(
             kind=found.kind, name=found.name, value=found.value, revision=found.revision, tags=found.tags
@@ -96,7 +96,7 @@ def register_store(bus: SkillBus, store: Store) -> None:
 
 
 async def publish_changes(bus: SkillBus, store: Store) -> Callable[[], None]:
-    """Publish each change of the store, also those by other programs, on `store/changes`; returns what ends it."""
+    """Publish each change of the store, also of other programs, on `store/changes`; returns a function to end it."""
     topic = bus.topic(CHANGES, EntryChanged)
     return await store.follow(lambda change: topic.publish(_changed(change)))
 

@@ -1,4 +1,4 @@
-"""What any store refuses before its database sees it: names, sizes, numbers no database keeps alike."""
+"""The limits of every store, independent of the database: names, sizes, numbers."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import msgspec
 from engine.errors import StoreError
 
 MAX_BYTES = 8 * 1024 * 1024
-"""Size limit of one value as JSON, half of what the strictest database takes."""
+"""Size limit of one value as JSON, half of the limit of the strictest database."""
 MAX_DEPTH = 64
-"""Lists and objects inside one another."""
+"""Maximum nesting of lists and objects."""
 MAX_TAGS = 32
-"""Tags of one entry."""
+"""Maximum number of tags of one entry."""
 MAX_NOTE = 1000
-"""Characters of `by` and of `reason`."""
+"""Maximum number of characters of `by` and of `reason`."""
 _NAME = re.compile(r"[a-z][a-z0-9_/.-]{0,127}")
 _NAME_START = re.compile(r"[a-z0-9_/.-]{0,128}")
 _TAG = re.compile(r"[a-z0-9][a-z0-9_/.-]{0,63}")
@@ -26,54 +26,54 @@ _ENCODER = msgspec.json.Encoder(order="deterministic")
 
 
 def verify_name(kind: str, name: str) -> None:
-    """Refuse a name that is not lower case letters, digits and `_ / . -`, starting with a letter, 128 at most."""
+    """Refuse a name that is not at most 128 lower case letters, digits and `_ / . -`, starting with a letter."""
     if _NAME.fullmatch(name) is None:
         raise StoreError(
             f"{name!r:.150} cannot be the name of an entry",
             where=kind,
-            hint="use a-z 0-9 _ / . - beginning with a letter, 128 characters at most",
+            hint="use at most 128 characters of a-z 0-9 _ / . -, starting with a letter",
         )
 
 
 def is_name_start(prefix: str) -> bool:
-    """Tell whether a name can begin so."""
+    """Return whether a name can begin with `prefix`."""
     return _NAME_START.fullmatch(prefix) is not None
 
 
 def verify_tags(tags: Iterable[str], *, where: str) -> tuple[str, ...]:
-    """Return tags sorted and each once; refuse too many, and one that is not lower case letters, digits and `_ / . -`.
+    """Return the tags sorted and without duplicates.
 
     Raises:
-        StoreError: with the tag.
+        StoreError: too many tags, or a tag that is not lower case letters, digits and `_ / . -`.
     """
-    found = tuple(sorted(set(tags)))
-    if len(found) > MAX_TAGS:
-        raise StoreError(f"{len(found)} tags are more than {MAX_TAGS}", where=where, hint="use fewer")
-    for tag in found:
+    distinct = tuple(sorted(set(tags)))
+    if len(distinct) > MAX_TAGS:
+        raise StoreError(f"{len(distinct)} tags are more than {MAX_TAGS}", where=where, hint="use fewer tags")
+    for tag in distinct:
         if _TAG.fullmatch(tag) is None:
             raise StoreError(
-                f"{tag!r:.100} cannot be a tag", where=where, hint="use a-z 0-9 _ / . -, 64 characters at most"
+                f"{tag!r:.100} cannot be a tag", where=where, hint="use at most 64 characters of a-z 0-9 _ / . -"
             )
-    return found
+    return distinct
 
 
 def verify_note(by: str, reason: str, *, where: str) -> None:
-    """Refuse a note that is too long or no text that can be stored."""
+    """Refuse a note that is too long or not valid text."""
     for name, text in (("by", by), ("reason", reason)):
         if len(text) > MAX_NOTE:
             raise StoreError(f"`{name}` has {len(text)} characters, more than {MAX_NOTE}", where=where)
         try:
             text.encode()
         except UnicodeEncodeError as error:
-            raise StoreError(f"`{name}` is no valid text: {error}", where=where) from error
+            raise StoreError(f"`{name}` is not valid text: {error}", where=where) from error
 
 
 def encode_value(value: object, *, where: str) -> str:
-    """Return the value as JSON with sorted keys, or refuse it naming the place inside.
+    """Return the value as JSON with sorted keys; an error names the position in the value.
 
     Raises:
-        StoreError: it is no object, or holds a non-finite float, an integer beyond 64 bits, a
-            key that is not text, something JSON has no form for, or is too deep or too large.
+        StoreError: the value is not an object, has a non-finite float, an integer beyond 64 bits, a
+            key that is not text, or data without a JSON form, or is too deep or too large.
     """
     plain = _plain(value, where)
     if not isinstance(plain, dict):
@@ -88,22 +88,22 @@ def encode_value(value: object, *, where: str) -> str:
         raise StoreError(
             f"the value takes {len(data) / 1e6:.1f} MB, more than {MAX_BYTES / 1e6:.1f} MB",
             where=where,
-            hint="store it in parts",
+            hint="split it into several entries",
         )
     return data.decode()
 
 
 def decode_value(data: str, *, where: str) -> dict[str, object]:
-    """Read back what `encode_value` wrote.
+    """Decode the output of `encode_value`.
 
     Raises:
-        StoreError: it is something else: the store is damaged.
+        StoreError: the text is not a value: the store is damaged.
     """
     try:
         return msgspec.json.decode(data, type=dict[str, object])
     except (msgspec.DecodeError, RecursionError, UnicodeEncodeError) as error:
         raise StoreError(
-            f"its value in the store is damaged: {error}", where=where, hint="undo its last change, or write it anew"
+            f"its value in the store is damaged: {error}", where=where, hint="undo its last change, or write it again"
         ) from error
 
 
@@ -129,12 +129,12 @@ def _fault(value: object) -> str:
 
 def _fault_of_one(path: str, depth: int, item: object) -> str:
     if depth > MAX_DEPTH:
-        return f"{path:.80} lies deeper than {MAX_DEPTH} levels"
+        return f"{path:.80} is nested deeper than {MAX_DEPTH} levels"
     if isinstance(item, float) and not math.isfinite(item):
         return f"{path} is {item}, not a finite number"
     if isinstance(item, int) and not -(2**63) <= item < 2**63:
         return f"{path} is an integer beyond 64 bits"
     if isinstance(item, dict):
-        odd = [key for key in cast("dict[object, object]", item) if not isinstance(key, str)]
-        return f"{path} has the key {odd[0]!r:.40}, which is not text" if odd else ""
+        invalid = [key for key in cast("dict[object, object]", item) if not isinstance(key, str)]
+        return f"{path} has the key {invalid[0]!r:.40}, which is not text" if invalid else ""
     return ""

@@ -1,4 +1,4 @@
-"""Copies all entries with their histories from one store to another, and verifies that they arrived."""
+"""Copies all entries with their histories from one store to another and verifies the copy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _BATCH = 200
 
 
 class Migration(msgspec.Struct, frozen=True, kw_only=True):
-    """What was copied: `digest` is that of all changes, the same in both stores."""
+    """The result of a migration: `digest` is the SHA-256 of all changes, equal in both stores."""
 
     entries: int
     changes: int
@@ -23,18 +23,18 @@ class Migration(msgspec.Struct, frozen=True, kw_only=True):
 
 
 async def migrate(source: Store, target: Store, *, progress: Callable[[int, int], None] | None = None) -> Migration:
-    """Copy every entry of `source`, deleted ones too, with its whole history.
+    """Copy every entry of `source`, including deleted ones, with its whole history.
 
-    May be repeated: what is there already is only compared, and what was changed since is added.
+    May be repeated: existing changes are only compared, and new changes are added.
 
     Args:
-        source: Is only read.
-        target: Takes the entries; what it has besides stays.
-        progress: Called with the entries done and those there are.
+        source: Only read.
+        target: Receives the entries; its other entries are kept.
+        progress: Called with the number of copied entries and the total number.
 
     Raises:
         EntryConflict: an entry has another history in `target`.
-        StoreError: `target` does not give back what was written, or `source` was changed meanwhile.
+        StoreError: `target` does not return what was written, or `source` changed during the migration.
     """
     names = await source.all_names()
     new = 0
@@ -54,12 +54,16 @@ async def _verify(source: Store, target: Store, names: tuple[tuple[str, str], ..
         theirs, ours = await source.history(kind, name), await target.history(kind, name)
         if theirs != ours:
             raise StoreError(
-                f"after the migration it has {len(ours)} revisions there and {len(theirs)} here, or they differ",
+                f"the revisions differ: {len(ours)} in the target, {len(theirs)} in the source",
                 where=f"{kind} {name}",
-                hint="if it was changed meanwhile, migrate again",
+                hint="if the entry was changed during the migration, migrate again",
             )
         if ours[-1].value is not None and (await target.get(kind, name)).value != ours[-1].value:
-            raise StoreError("its last revision is not what it shows", where=f"{kind} {name}", hint="report this")
+            raise StoreError(
+                "the value of the entry differs from its last revision",
+                where=f"{kind} {name}",
+                hint="report this defect",
+            )
         digest.update(msgspec.json.encode(ours))
         count += len(ours)
     return count, digest.hexdigest()

@@ -1,4 +1,4 @@
-"""Entries that are pydantic models: told by what they can do, so that the engine does not need pydantic."""
+"""Entries that are pydantic models, recognized by their methods, so that the engine does not depend on pydantic."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ class PydanticModel(Protocol):
 
     @classmethod
     def model_validate(cls, obj: Any, /) -> Self:
-        """Make one of plain data; raises ValueError."""
+        """Create a model from plain data; raises ValueError."""
         ...
 
     def model_dump(self, *, mode: str) -> dict[str, Any]:
-        """Return it as plain data."""
+        """Return the model as plain data."""
         ...
 
 
 def is_model_type(kind: object) -> TypeGuard[type[PydanticModel]]:
-    """Tell a class of pydantic models."""
+    """Return whether `kind` is a class of pydantic models."""
     return isinstance(kind, type) and callable(getattr(kind, "model_validate", None)) and hasattr(kind, "model_dump")
 
 
 def fields_of_model(kind: type[PydanticModel]) -> tuple[str, ...]:
-    """Return the names of its fields."""
+    """Return the names of the fields of a model."""
     return tuple(getattr(kind, "model_fields", {}))
 
 
 def first_fault(error: ValueError) -> str:
-    """Return the first thing that is wrong, `size.rows: Input should be a valid integer`."""
+    """Return the first error, such as `size.rows: Input should be a valid integer`."""
     errors = getattr(error, "errors", None)
     if not callable(errors):
         return str(error)

@@ -1,4 +1,4 @@
-"""Turns the rows of a database into what a store shows, and back."""
+"""Converts rows of a database to entries and changes of a store, and back."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def key_of(row: RevisionRow) -> EntryKey:
 
 
 def change_of(row: RevisionRow) -> EntryChange:
-    """Return a change with the value it left."""
+    """Return a change with its value."""
     return EntryChange(
         kind=row.kind,
         name=row.name,

@@ -1,4 +1,4 @@
-"""What passes between a store and its database: rows with JSON values, who changes what and why, what is looked for."""
+"""Data exchanged between a store and its database: revision rows with JSON values, drafts, stamps and queries."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import msgspec
 class RevisionRow(msgspec.Struct, frozen=True, kw_only=True):
     """One revision of an entry as stored.
 
-    `value` is JSON with sorted keys, None for a deletion (and where values were not asked for).
-    `restores` is the revision whose content it brought back, 0 for none at all; None where it is no
-    undo. `writer` is the open store that committed it.
+    `value` is JSON with sorted keys, None for a deletion (and when values were not requested).
+    `restores` is the revision whose content it restored, 0 for no entry; None when it is not an
+    undo. `writer` identifies the open store that committed it.
     """
 
     kind: str
@@ -26,7 +26,7 @@ class RevisionRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ChangeStamp(msgspec.Struct, frozen=True, kw_only=True):
-    """Who changes an entry, when, why, and through which open store."""
+    """Author, reason, time and open store of a change."""
 
     by: str = ""
     reason: str = ""
@@ -35,7 +35,7 @@ class ChangeStamp(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EntryDraft(msgspec.Struct, frozen=True, kw_only=True):
-    """An entry to be written; `tags` is None to keep those it has."""
+    """An entry to be written; `tags` None keeps the present tags."""
 
     kind: str
     name: str
@@ -44,10 +44,10 @@ class EntryDraft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EntryQuery(msgspec.Struct, frozen=True, kw_only=True):
-    """Which entries are looked for; all conditions hold together, and the empty ones always.
+    """A query for entries; all conditions must hold, an empty one always holds.
 
     `words` are beginnings of words of the name or of tags. `after` is the kind and name of the last
-    entry seen, `limit` how many to return at most.
+    entry of the previous page, `limit` the maximum number of entries.
     """
 
     kind: str = ""
@@ -87,7 +87,7 @@ def deletion_row(last: RevisionRow, stamp: ChangeStamp, *, restores: int | None 
 
 
 def needs_seeding(draft: EntryDraft, last: RevisionRow | None, *, overwrite: bool) -> bool:
-    """Tell whether seeding writes a draft: it is missing, or differs and may be overwritten."""
+    """Return whether seeding writes a draft: it is missing, or differs and may be overwritten."""
     if last is None or last.value is None:
         return True
     return overwrite and (last.value != draft.value or (draft.tags is not None and last.tags != draft.tags))

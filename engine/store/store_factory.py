@@ -14,7 +14,7 @@ from engine.store.mongo.mongo_address import is_mongo_address
 from engine.store.sqlite.sqlite_store import SqliteStore
 
 DATABASE = "flexcell"
-"""The database on a server where none is named."""
+"""The default database on a server."""
 
 
 async def open_store(
@@ -23,13 +23,13 @@ async def open_store(
     """Open the store at an address.
 
     Args:
-        address: A path, or the address of a MongoDB server; `${NAME}` in it stands for an environment variable.
+        address: A path, or the address of a MongoDB server; `${NAME}` in it is replaced by an environment variable.
         database: The database on a server; by default the one in the address, else `flexcell`.
         inline: Work on the calling thread, for runs in virtual time.
-        patience_s: How long to wait for a server that does not answer.
+        patience_s: Time to wait for a server that does not answer.
 
     Raises:
-        StoreError: it cannot be opened, or needs a package that is not installed.
+        StoreError: the store cannot be opened, or needs a package that is not installed.
     """
     if not is_mongo_address(str(address)):
         return SqliteStore.open(address, inline=inline)
@@ -39,7 +39,7 @@ async def open_store(
     def connect() -> Store:
         return mongo.MongoStore.open(uri, database=named or DATABASE, inline=inline, patience_s=patience_s)
 
-    # Looking for a server may take seconds, during which the event loop has better things to do.
+    # Connecting to a server may take seconds and must not block the event loop.
     return connect() if inline else await asyncio.to_thread(connect)
 
 
@@ -61,7 +61,7 @@ def split_database(uri: str) -> tuple[str, str]:
     if not database:
         return uri, ""
     query = parts.query
-    # Logging in is against the database in the address, unless the options say otherwise.
+    # The database in the address is the authentication database, unless the options name another one.
     if "@" in parts.netloc and "authSource" not in query:
         query = f"{query}&authSource={database}" if query else f"authSource={database}"
     return urlunsplit((parts.scheme, parts.netloc, "/", query, "")), database

@@ -1,4 +1,4 @@
-"""What a database offers to a store: plain, blocking operations on rows, used by one thread at a time."""
+"""The database interface of a store: blocking operations on rows, used by one thread at a time."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from engine.suggestions import did_you_mean
 
 
 class ChangeSource(Protocol):
-    """The changes that anybody commits, from the moment it was opened; used by one thread of its own."""
+    """The changes committed by any program since the feed was opened; used by one thread."""
 
     def wait(self, stop: Event) -> tuple[RevisionRow, ...]:
-        """Return the next changes; none after a while without any, or soon after `stop` is set."""
+        """Return the next changes; none after a time without changes, or soon after `stop` is set."""
         ...
 
     def close(self) -> None:
-        """End it."""
+        """Close the feed."""
         ...
 
 
 class EntryTable(Protocol):
-    """Entries and all their revisions in a database; every method raises StoreError where it fails."""
+    """Entries and all their revisions in a database; every method raises StoreError when it fails."""
 
     @property
     def address(self) -> str:
-        """Where the database is, without secrets."""
+        """The location of the database, without secrets."""
         ...
 
     def get(self, kind: str, name: str) -> RevisionRow:
@@ -36,11 +36,11 @@ class EntryTable(Protocol):
         ...
 
     def select(self, selection: EntryQuery, *, values: bool) -> tuple[RevisionRow, ...]:
-        """Return entries sorted by kind and name; their values on request."""
+        """Return entries sorted by kind and name, with their values if `values`."""
         ...
 
     def all_names(self) -> tuple[tuple[str, str], ...]:
-        """Return kind and name of every entry that ever was, sorted."""
+        """Return kind and name of every entry, including deleted ones, sorted."""
         ...
 
     def changes(self, kind: str, name: str) -> tuple[RevisionRow, ...]:
@@ -52,40 +52,40 @@ class EntryTable(Protocol):
         ...
 
     def delete(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Remove an entry and return its last revision; raises EntryNotFound, EntryConflict."""
+        """Delete an entry and return its last revision; raises EntryNotFound, EntryConflict."""
         ...
 
     def undo(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Bring back what was before the last change; raises EntryNotFound, EntryConflict."""
+        """Restore the entry before its last change; raises EntryNotFound, EntryConflict."""
         ...
 
     def seed(self, drafts: Sequence[EntryDraft], stamp: ChangeStamp, *, overwrite: bool) -> tuple[RevisionRow, ...]:
-        """Write those that are missing or, with `overwrite`, differ; return what was written."""
+        """Write the drafts that are missing or, with `overwrite`, differ; return the written rows."""
         ...
 
     def import_histories(self, histories: Sequence[Sequence[RevisionRow]]) -> tuple[RevisionRow, ...]:
-        """Take over entries with their revisions; return those that were new. Raises EntryConflict."""
+        """Import entries with their revisions; return the new revisions. Raises EntryConflict."""
         ...
 
     def feed(self) -> ChangeSource | None:
-        """Open a feed of changes; None where nobody else can reach the database."""
+        """Open a feed of changes; None when no other program can access the database."""
         ...
 
     def close(self) -> None:
-        """Release the database."""
+        """Close the database."""
         ...
 
 
-def verify_revision(kind: str, name: str, there: RevisionRow | None, expected: int | None) -> None:
-    """Refuse a change where the entry has another revision than expected; `there` may be a deletion."""
-    revision = 0 if there is None or there.value is None else there.revision
+def verify_revision(kind: str, name: str, stored: RevisionRow | None, expected: int | None) -> None:
+    """Refuse a change when the entry has another revision than expected; `stored` may be a deletion."""
+    revision = 0 if stored is None or stored.value is None else stored.revision
     if expected is None or revision == expected:
         return
-    state = f"revision {revision} is there" if revision else "there is no such entry"
+    state = f"revision {revision} is stored" if revision else "there is no such entry"
     raise EntryConflict(
-        f"{state}, revision {expected} was expected" if expected else f"{state}, none was expected",
+        f"{state}, revision {expected} was expected" if expected else f"{state}, no entry was expected",
         where=f"{kind} {name}",
-        hint="read it again and retry",
+        hint="read the entry again and retry",
     )
 
 
@@ -93,17 +93,17 @@ def entry_not_found(kind: str, name: str, *, elsewhere: Sequence[str], names: Se
     """Return the error for a missing entry.
 
     Args:
-        kind: Of the missing one.
-        name: Of the missing one.
+        kind: Kind of the missing entry.
+        name: Name of the missing entry.
         elsewhere: The kinds that have an entry of this name.
-        names: Of the entries of its kind.
+        names: The names of the entries of its kind.
     """
     hint = f"there is a {elsewhere[0]} of this name" if elsewhere else did_you_mean(name, names)
     return EntryNotFound(f"there is no {kind} entry called {name}", where="store", hint=hint)
 
 
 def missing_revisions(have: Sequence[RevisionRow], given: Sequence[RevisionRow]) -> Sequence[RevisionRow]:
-    """Return what `given`, a whole history, has beyond `have`.
+    """Return the revisions of `given`, a whole history, that follow those of `have`.
 
     Raises:
         EntryConflict: `have` is not the beginning of `given`.
@@ -111,15 +111,15 @@ def missing_revisions(have: Sequence[RevisionRow], given: Sequence[RevisionRow])
     for mine, theirs in zip(have, given, strict=False):
         if _content(mine) != _content(theirs):
             raise EntryConflict(
-                f"another history is there: revision {mine.revision} differs",
+                f"the target has another history: revision {mine.revision} differs",
                 where=f"{mine.kind} {mine.name}",
                 hint="migrate into an empty store, or export and import the entries you want",
             )
     if len(have) > len(given):
         raise EntryConflict(
-            f"it has {len(have)} revisions here and {len(given)} there",
+            f"the target has {len(have)} revisions and the source {len(given)}",
             where=f"{have[0].kind} {have[0].name}",
-            hint="it was changed here; migrate the other way, or into an empty store",
+            hint="the entry was changed in the target; migrate in the other direction, or into an empty store",
         )
     return given[len(have) :]
 

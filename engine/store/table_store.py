@@ -1,4 +1,4 @@
-"""A store over the table of any database: checks what goes in, works off the event loop, tells its watchers."""
+"""A store over the table of any database: validates values, works off the event loop, notifies its listeners."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 class TableStore:
-    """The `Store` that every database has in common; one worker thread, or none when `inline`."""
+    """The `Store` implementation common to all databases; one worker thread, or none when `inline`."""
 
     def __init__(self, table: EntryTable, *, inline: bool, kinds: Mapping[str, EntryKind]) -> None:
         self._table = table
@@ -33,16 +33,16 @@ class TableStore:
         self._kinds = kinds
         self._listeners: dict[object, ChangeListener] = {}
         self._writer = uuid.uuid4().hex
-        self._following: ChangeFeed | None = None
+        self._change_feed: ChangeFeed | None = None
         self._closed = False
 
     @property
     def address(self) -> str:
-        """Where the entries are, without secrets."""
+        """The location of the entries, without secrets."""
         return self._table.address
 
     async def get(self, kind: str, name: str) -> EntryRecord:
-        """Return an entry; raises EntryNotFound with the near names."""
+        """Return an entry; raises EntryNotFound with similar names."""
         verify_name(kind, name)
         return await self._do(lambda: record_of(self._table.get(kind, name)))
 
@@ -57,7 +57,7 @@ class TableStore:
         by: str = "",
         reason: str = "",
     ) -> EntryRecord:
-        """Write an entry durably; raises StoreError when refused or when another revision is there."""
+        """Write an entry durably; raises StoreError when refused or when another revision is stored."""
         stamp = self._stamp(f"{kind} {name}", by, reason)
 
         def write() -> tuple[RevisionRow, ...]:
@@ -85,15 +85,15 @@ class TableStore:
             after=None if after is None else (after.kind, after.name),
             limit=limit,
         )
-        impossible = not is_name_start(prefix) or (text.strip() != "" and not selection.words)
-        if impossible:
+        has_no_match = not is_name_start(prefix) or (text.strip() != "" and not selection.words)
+        if has_no_match:
             return ()
         return await self._do(lambda: tuple(map(key_of, self._table.select(selection, values=False))))
 
     async def delete(
         self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
     ) -> None:
-        """Remove an entry; its history stays."""
+        """Delete an entry; its history is kept."""
         verify_name(kind, name)
         stamp = self._stamp(f"{kind} {name}", by, reason)
         await self._change(lambda: (self._table.delete(kind, name, stamp, expected_revision=expected_revision),))
@@ -101,7 +101,7 @@ class TableStore:
     async def undo(
         self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
     ) -> EntryChange:
-        """Bring back what was before the last change, as a new revision."""
+        """Restore the entry before its last change, as a new revision."""
         verify_name(kind, name)
         stamp = self._stamp(f"{kind} {name}", by, reason)
         rows = await self._change(lambda: (self._table.undo(kind, name, stamp, expected_revision=expected_revision),))
@@ -113,7 +113,7 @@ class TableStore:
         return await self._do(lambda: tuple(map(change_of, self._table.changes(kind, name))))
 
     async def all_names(self) -> tuple[tuple[str, str], ...]:
-        """Return kind and name of every entry that ever was, sorted."""
+        """Return kind and name of every entry, including deleted ones, sorted."""
         return await self._do(self._table.all_names)
 
     async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
@@ -124,22 +124,24 @@ class TableStore:
     async def seed(
         self, entries: Iterable[EntryRecord], *, overwrite: bool = False, by: str = "", reason: str = ""
     ) -> tuple[EntryKey, ...]:
-        """Write the entries that are missing (with `overwrite` also those that differ), all or none."""
-        given = tuple(entries)
+        """Write the missing entries (with `overwrite` also those that differ), all or none."""
+        records = tuple(entries)
         stamp = self._stamp("seed", by, reason)
 
         def write() -> tuple[RevisionRow, ...]:
-            drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in given]
+            drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in records]
             return self._table.seed(drafts, stamp, overwrite=overwrite)
 
         return tuple(map(key_of, await self._change(write)))
 
     async def import_histories(self, histories: Iterable[Sequence[EntryChange]]) -> int:
-        """Take over entries with their whole histories; raises EntryConflict where others are here."""
-        given = tuple(histories)
+        """Import entries with their whole histories; raises EntryConflict for an entry with another history."""
+        all_histories = tuple(histories)
 
         def write() -> tuple[RevisionRow, ...]:
-            return self._table.import_histories([[self._adopted(change) for change in history] for history in given])
+            return self._table.import_histories(
+                [[self._imported_row(change) for change in history] for history in all_histories]
+            )
 
         return len(await self._change(write))
 
@@ -148,37 +150,37 @@ class TableStore:
         token = object()
         self._listeners[token] = listener
 
-        def end() -> None:
+        def unwatch() -> None:
             self._listeners.pop(token, None)
 
-        return end
+        return unwatch
 
     async def follow(self, listener: ChangeListener) -> Callable[[], None]:
-        """Watch, and hear also what other programs commit from now on."""
-        end_watching = self.watch(listener)
+        """Watch, and also receive the changes of other programs."""
+        unwatch = self.watch(listener)
         if self._worker is None:
-            return end_watching
-        if self._following is None:
+            return unwatch
+        if self._change_feed is None:
             feed = await self._do(self._table.feed)
             if feed is None:
-                return end_watching
-            self._following = ChangeFeed(feed, writer=self._writer, loop=asyncio.get_running_loop())
-            self._following.start()
-        end_hearing = self._following.tell(listener)
+                return unwatch
+            self._change_feed = ChangeFeed(feed, writer=self._writer, loop=asyncio.get_running_loop())
+            self._change_feed.start()
+        unsubscribe = self._change_feed.subscribe(listener)
 
-        def end() -> None:
-            end_watching()
-            end_hearing()
+        def unfollow() -> None:
+            unwatch()
+            unsubscribe()
 
-        return end
+        return unfollow
 
     async def close(self) -> None:
-        """Finish what is under way and release the database; may be called again."""
+        """Finish active operations and close the database; may be called again."""
         if self._closed:
             return
         self._closed = True
-        if self._following is not None:
-            await asyncio.get_running_loop().run_in_executor(None, self._following.stop)
+        if self._change_feed is not None:
+            await asyncio.get_running_loop().run_in_executor(None, self._change_feed.stop)
         if self._worker is not None:
             await asyncio.get_running_loop().run_in_executor(self._worker, self._table.close)
             self._worker.shutdown()
@@ -205,12 +207,12 @@ class TableStore:
         verify_note(by, reason, where=where)
         return ChangeStamp(by=by, reason=reason, changed_unix_ms=time.time_ns() // 1_000_000, writer=self._writer)
 
-    def _adopted(self, change: EntryChange) -> RevisionRow:
+    def _imported_row(self, change: EntryChange) -> RevisionRow:
         verify_name(change.kind, change.name)
         where = f"{change.kind} {change.name}"
         verify_tags(change.tags, where=where)
         verify_note(change.by, change.reason, where=where)
-        # Values of the past are taken as they are: a kind may have been stricter, or unknown, then.
+        # Values of earlier revisions are not validated: the kind may have been different, or unknown, then.
         value = None if change.value is None else encode_value(change.value, where=where)
         return row_from(change, value, writer=self._writer)
 
@@ -224,19 +226,19 @@ class TableStore:
     async def _change(self, work: Callable[[], tuple[RevisionRow, ...]]) -> tuple[RevisionRow, ...]:
         loop = asyncio.get_running_loop()
 
-        def work_and_tell() -> tuple[RevisionRow, ...]:
+        def work_and_notify() -> tuple[RevisionRow, ...]:
             rows = work()
-            # Told from here, so that a caller cancelled in the meantime does not hide the change.
-            loop.call_soon_threadsafe(self._tell, rows)
+            # Notified from here, so that a change of a caller cancelled meanwhile is reported too.
+            loop.call_soon_threadsafe(self._notify, rows)
             return rows
 
         if self._worker is not None:
-            return await self._do(work_and_tell)
+            return await self._do(work_and_notify)
         rows = await self._do(work)
-        self._tell(rows)
+        self._notify(rows)
         return rows
 
-    def _tell(self, rows: tuple[RevisionRow, ...]) -> None:
+    def _notify(self, rows: tuple[RevisionRow, ...]) -> None:
         for row in rows:
             for listener in tuple(self._listeners.values()):
                 listener(change_of(row))

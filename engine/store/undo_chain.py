@@ -1,4 +1,4 @@
-"""What undoing a change brings back: each undo goes one step further into the past."""
+"""The target of an undo: each further undo goes one change back."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from engine.store.rows import ChangeStamp, EntryDraft, RevisionRow, deletion_row
 
 
 def undo_target(history: Sequence[RevisionRow]) -> tuple[int, RevisionRow | None]:
-    """Return the revision that the next undo restores, and its row; 0 and None where there was no entry before.
+    """Return the revision that the next undo restores, and its row; 0 and None when there was no entry before.
 
-    Undoing an undo goes on backwards instead of forwards again: the content of revision 4 that
-    restored revision 2 is followed by that of revision 1.
+    An undo after an undo goes further back, not forward: if revision 4 restored the content of
+    revision 2, the next undo restores that of revision 1.
 
     Raises:
-        StoreError: nothing is left to undo.
+        StoreError: there is no change left to undo.
     """
     by_revision = {row.revision: row for row in history}
-    here = _origin(history[-1].revision, by_revision) if history else 0
-    if here == 0:
-        place = f"{history[0].kind} {history[0].name}" if history else "store"
-        raise StoreError("nothing is left to undo", where=place, hint="its history shows every change")
-    target = _origin(here - 1, by_revision)
+    present = _origin(history[-1].revision, by_revision) if history else 0
+    if present == 0:
+        where = f"{history[0].kind} {history[0].name}" if history else "store"
+        raise StoreError("there is no change left to undo", where=where, hint="its history shows every change")
+    target = _origin(present - 1, by_revision)
+
     row = by_revision.get(target)
     return target, None if row is None or row.value is None else row
 

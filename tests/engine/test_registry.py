@@ -178,7 +178,7 @@ def test_a_name_that_two_packages_offer_is_nobodys(monkeypatch: pytest.MonkeyPat
     offer(monkeypatch, points)
     catalogue = load_states()
     assert list(catalogue) == ["their.Wait"]
-    with pytest.raises(RegistryError, match=r"two packages offer the state their\.Nod"):
+    with pytest.raises(RegistryError, match=r"two packages provide the state their\.Nod"):
         find_state(catalogue, "their.Nod")
 
 

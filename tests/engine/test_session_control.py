@@ -206,5 +206,5 @@ async def test_a_run_of_another_project_is_not_resumed(project: Path, tmp_path_f
     with started("run", file, "-q", "--journal", project / ".flexcell", cwd=project) as process:
         until(process, project, entered("root/second"))
     async with opened(project, real_states=True) as session:
-        with pytest.raises(DocumentError, match="this behavior is of another project"):
+        with pytest.raises(DocumentError, match="this behavior belongs to another project"):
             await session.resume(run_id_in(project))

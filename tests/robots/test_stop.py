@@ -144,7 +144,7 @@ async def test_a_robot_that_does_not_confirm_is_named_and_the_others_rest(tmp_pa
         cell.robots = {"hung": HungRobot(), **cell.robots}
         cell.bus.send_goal(AWAY, to="left")
         await until(lambda: speed_rad_s(cell.bus) > 0.1)
-        with pytest.raises(RobotError, match=r"hung: it does not confirm that it rests within 10 s.*emergency stop"):
+        with pytest.raises(RobotError, match=r"hung: the device did not confirm rest within 10 s.*emergency stop"):
             await cell.stop()
         assert speed_rad_s(cell.bus) < REST_RAD_S
 

@@ -1,4 +1,4 @@
-"""Addresses of MongoDB servers: secrets come from the environment, and never show in a message."""
+"""Addresses of MongoDB servers: secrets come from the environment and never appear in messages."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _USERINFO = re.compile(r"(?<=://)(?P<user>[^@/:]*)(?::(?P<password>[^@/]*))?@")
 
 
 def is_mongo_address(text: str) -> bool:
-    """Tell an address of a MongoDB server from the path of a file."""
+    """Return whether `text` is the address of a MongoDB server and not a file path."""
     return text.startswith(SCHEMES)
 
 
 def with_environment(uri: str, environment: Mapping[str, str] | None = None) -> str:
     """Return an address with each `${NAME}` replaced by that environment variable.
 
-    A variable that is the whole address is taken as it is; a part of one, such as a password, is
-    escaped, so that it may hold any character.
+    A variable that is the whole address is not escaped; a part of an address, such as a password, is
+    escaped, so that it may have any character.
 
     Raises:
         StoreError: a variable is not set.
@@ -36,7 +36,7 @@ def with_environment(uri: str, environment: Mapping[str, str] | None = None) -> 
             raise StoreError(
                 f"the environment variable {name} is not set",
                 where=public_address(uri),
-                hint="set it in the environment of flexcell; the cell names it so that the file holds no secret",
+                hint="set it in the environment of flexcell; the cell refers to it so that the file has no secret",
             )
         return values[name] if match[0] == uri else quote_plus(values[name])
 
@@ -54,7 +54,7 @@ def public_address(uri: str, database: str = "") -> str:
 
 
 def has_literal_password(uri: str) -> bool:
-    """Tell whether an address holds a password as it is, not the name of an environment variable."""
+    """Return whether an address has a literal password instead of an environment variable."""
     found = _USERINFO.search(uri)
     return found is not None and bool(found["password"]) and _VARIABLE.fullmatch(found["password"]) is None
 

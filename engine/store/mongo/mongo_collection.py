@@ -11,14 +11,14 @@ from engine.store.ros.ros_import import MAX_DOCUMENTS, plain_bson
 from engine.store.store_factory import split_database
 
 DATABASE = "message_store"
-"""Where `mongodb_store` keeps its entries unless told otherwise."""
+"""The default database of `mongodb_store`."""
 
 
 def read_collection(uri: str, *, collection: str, patience_s: float = 10.0) -> tuple[dict[str, Any], ...]:
     """Return the documents of a collection in the order of their insertion, as plain objects.
 
     Raises:
-        StoreError: the server cannot be reached, does not let us read, or holds too much.
+        StoreError: the server cannot be reached, refuses to be read, or has too many documents.
     """
     address, database = split_database(uri)
     server = connect(address, database=database or DATABASE, patience_s=patience_s, oldest=(4, 2))
@@ -31,7 +31,7 @@ def read_collection(uri: str, *, collection: str, patience_s: float = 10.0) -> t
         return documents
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
         raise StoreError(
-            f"its documents cannot be read: {error}", where=server.address, hint="export those that you need"
+            f"its documents cannot be read: {error}", where=server.address, hint="export the required documents only"
         ) from error
     finally:
         server.client.close()

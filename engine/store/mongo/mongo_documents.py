@@ -1,10 +1,10 @@
-"""The documents that entries and their revisions are in MongoDB.
+"""The MongoDB documents of entries and their revisions.
 
     entry:  {_id: "joints home", kind, name, revision, value: {…}, tags, words, changed, by, reason, …}
     change: {_id: "joints home 3", kind, name, revision, value: {…} or null, tags, changed, by, reason, …}
 
-A value is a plain document that any client of MongoDB can read. Only where BSON could not give it
-back as it was, or would make it too large, it is JSON text in `value_json`.
+A value is a plain document that any client of MongoDB can read. A value that BSON would change
+or make too large is stored as JSON text in `value_json`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from engine.store.search_terms import prefixes_of, terms_of
 
 Document = dict[str, Any]
 MAX_BSON_BYTES = 12 * 1024 * 1024
-"""From here a value is kept as JSON, well below the 16 MiB that MongoDB takes."""
+"""Size from which a value is stored as JSON, well below MongoDB's limit of 16 MiB."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 OPTIONS: CodecOptions[Document] = CodecOptions(tz_aware=True)
 
@@ -34,17 +34,17 @@ def entry_id(kind: str, name: str) -> str:
 
 
 def change_id(row: RevisionRow) -> str:
-    """Return the id of the document of a revision; two writers of one revision collide in it."""
+    """Return the id of the document of a revision; it is unique, so two writers of one revision collide."""
     return f"{row.kind} {row.name} {row.revision}"
 
 
 def change_document(row: RevisionRow, *, write: str) -> Document:
-    """Return a revision as a document; `write` tells the writer that finds it whether it is its own."""
+    """Return a revision as a document; `write` identifies the write operation that inserted it."""
     return {"_id": change_id(row), **_common(row), "write": write}
 
 
 def entry_document(row: RevisionRow) -> Document:
-    """Return an entry as a document; that of a deleted one stays, for its revision."""
+    """Return an entry as a document; the document of a deleted entry is kept for its revision."""
     words = terms_of(row.name, row.tags) if row.value is not None else ()
     return {
         "_id": entry_id(row.kind, row.name),
@@ -56,7 +56,7 @@ def entry_document(row: RevisionRow) -> Document:
 
 
 def row_from_document(document: Mapping[str, Any]) -> RevisionRow:
-    """Return what a document of either collection holds."""
+    """Return the revision in a document of either collection."""
     return RevisionRow(
         kind=document["kind"],
         name=document["name"],
@@ -94,14 +94,14 @@ def _stored_value(value: str | None, *, where: str) -> Document:
         data = bson.encode({"value": plain})
     except (BSONError, ValueError, OverflowError):
         return {"value_json": value}
-    # Keys such as $ref mean something to BSON, and come back as something else.
+    # Keys such as $ref have a meaning in BSON and are decoded to other types.
     if len(data) > MAX_BSON_BYTES or _plain(_read(data)["value"]) != plain:
         return {"value_json": value}
     return {"value": plain}
 
 
 def _read(data: bytes) -> Document:
-    # Its types name one that they do not give.
+    # The type stubs of bson refer to a type that they do not define.
     decode: Any = bson.decode  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
     return cast("Document", decode(data, OPTIONS))
 
@@ -115,7 +115,7 @@ def _value(document: Mapping[str, Any]) -> str | None:
 
 
 def _plain(value: Any) -> Any:
-    """Return lists, objects and numbers of BSON as those of Python."""
+    """Convert lists, objects and numbers of BSON to those of Python."""
     if isinstance(value, dict):
         return {key: _plain(inner) for key, inner in cast("dict[str, Any]", value).items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Says in words what went wrong between a store and its MongoDB server, and what to do about it."""
+"""Describes errors between a store and its MongoDB server, with advice."""
 
 from __future__ import annotations
 
@@ -22,46 +22,46 @@ _AUTHENTICATION_FAILED = 18
 _UNAUTHORIZED = 13
 _OUT_OF_DISK = 14031
 _DOCUMENT_TOO_LARGE = (10334, 17419, 17420)
-_TOO_LARGE = ("the entry is larger than MongoDB takes (16 MiB)", "store it in parts")
+_TOO_LARGE = ("the entry exceeds MongoDB's limit of 16 MiB", "split it into several entries")
 _REACH = (
     "check that mongod runs there and its disk has room, that the address and port are right, and that no firewall is"
     " between"
 )
-_IN_DOUBT = "a write that was under way may have taken effect: read the entry before writing it again"
+_IN_DOUBT = "the interrupted write may have taken effect: read the entry before writing it again"
 
 
 def is_retryable(error: PyMongoError) -> bool:
-    """Tell an error after which the same operation can be tried again over a new connection."""
+    """Return whether the operation can be repeated over a new connection after this error."""
     return isinstance(error, AutoReconnect) or error.has_error_label("RetryableWriteError")
 
 
 @contextmanager
 def translate_mongo_errors(what: str, *, address: str, user: str = "", writing: bool = False) -> Generator[None]:
-    """Turn errors of the driver into StoreError.
+    """Convert errors of the driver to StoreError.
 
     Args:
-        what: What failed: `cannot be read`.
+        what: The failed operation, such as `cannot be read`.
         address: The server and database, without secrets.
-        user: Who is logged in.
-        writing: Something is written, and may have been although it failed.
+        user: The logged-in user.
+        writing: Whether the operation writes, and may have taken effect although it failed.
     """
     try:
         yield
     except (PyMongoError, BSONError) as error:
-        message, hint = _words(error, user=user, writing=writing)
+        message, hint = _describe(error, user=user, writing=writing)
         raise StoreError(f"the store {what}: {message}", where=address, hint=hint) from error
 
 
-def _words(error: PyMongoError | BSONError, *, user: str, writing: bool) -> tuple[str, str]:
-    who = f"the user {user}" if user else "nobody (no user is given)"
+def _describe(error: PyMongoError | BSONError, *, user: str, writing: bool) -> tuple[str, str]:
+    who = f"the user {user}" if user else "an anonymous client (no user is given)"
     if isinstance(error, DocumentTooLarge):
         return _TOO_LARGE
     if isinstance(error, BSONError):
-        return f"{error}", "look at the values of the entry"
+        return f"{error}", "check the values of the entry"
     if isinstance(error, OperationFailure):
         return _refusal(error, who)
     if isinstance(error, InvalidURI):
-        return f"the address cannot be understood: {error}", "write it as mongodb://HOST:PORT"
+        return f"the address is invalid: {error}", "write it as mongodb://HOST:PORT"
     if isinstance(error, ConfigurationError):
         if "wire version" in str(error):
             return "the server is too old", "use MongoDB 5.0 or newer"
@@ -69,7 +69,7 @@ def _words(error: PyMongoError | BSONError, *, user: str, writing: bool) -> tupl
     if isinstance(error, ConnectionFailure) or error.timeout:
         reason = str(error).split(", Timeout:", 1)[0].split(" (configured timeouts", 1)[0]
         return f"the server cannot be reached: {reason}", f"{_REACH}; {_IN_DOUBT}" if writing else _REACH
-    return f"{error}", "look into the log of mongod"
+    return f"{error}", "check the log of mongod"
 
 
 def _refusal(error: OperationFailure, who: str) -> tuple[str, str]:
@@ -77,11 +77,11 @@ def _refusal(error: OperationFailure, who: str) -> tuple[str, str]:
     if error.code == _AUTHENTICATION_FAILED:
         return f"the server refuses the credentials of {who}", "check user, password and `?authSource=`"
     if error.code == _UNAUTHORIZED:
-        return f"{who} may not do this: {text}", "log in as a user with the role readWrite on this database"
+        return f"{who} has no permission: {text}", "log in as a user with the role readWrite on this database"
     if error.code == _OUT_OF_DISK or "No space left" in text:
         return "the disk of the server is full", "free some space on it"
     if error.code in _DOCUMENT_TOO_LARGE:
         return _TOO_LARGE
     if error.timeout:
         return f"the server does not answer in time: {text}", f"{_REACH}; {_IN_DOUBT}"
-    return text, "look into the log of mongod"
+    return text, "check the log of mongod"

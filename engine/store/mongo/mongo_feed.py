@@ -1,4 +1,4 @@
-"""Tells what anybody commits to a MongoDB store: a change stream, or a look now and then without a replica set."""
+"""Reads the changes committed to a MongoDB store: by a change stream, or by polling without a replica set."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from engine.store.rows import RevisionRow
 
 PERIOD_S = 0.3
 OVERLAP = timedelta(seconds=60)
-"""How far the clocks of writers may be apart, and how late a write may become visible, without being missed."""
+"""Tolerated clock difference of writers and delay of visible writes; changes within it are not missed."""
 _TIMEOUT_S = 10.0
 
 
 class MongoChangeStream:
-    """The changes of a replica set, in the order of their commits, without a gap over a broken connection."""
+    """The changes of a replica set in commit order, without a gap after a lost connection."""
 
     def __init__(self, changes: Collection[Document], *, address: str) -> None:
         self._changes = changes
@@ -31,7 +31,7 @@ class MongoChangeStream:
         self._token: Any = None
 
     def wait(self, stop: Event) -> tuple[RevisionRow, ...]:
-        """Return the next change, or none after a while."""
+        """Return the next change, or none after one period."""
         with translate_mongo_errors("cannot be followed", address=self._address):
             if self._stream is None or not self._stream.alive:
                 self._stream = self._open(self._token)
@@ -41,7 +41,7 @@ class MongoChangeStream:
         return () if found is None else (row_from_document(found["fullDocument"]),)
 
     def close(self) -> None:
-        """Let go of the stream."""
+        """Close the stream."""
         if self._stream is not None:
             self._stream.close()
 
@@ -54,7 +54,7 @@ class MongoChangeStream:
 
 
 class MongoChangePoller:
-    """The changes of a server that tells nobody: those of the last minute that were not there before."""
+    """The changes of a server without change streams: the new ones among those of the last minute."""
 
     def __init__(self, changes: Collection[Document], *, address: str) -> None:
         self._changes = changes

@@ -1,7 +1,7 @@
-"""The store on a MongoDB server, shared by all who reach it. Needs the package pymongo.
+"""The store on a MongoDB server, shared by all its clients. Needs the package pymongo.
 
 pymongo works on the store's thread, as SQLite does: in virtual time both work on the calling thread,
-which the asynchronous client of pymongo, with its timers and tasks, cannot.
+which the asynchronous client of pymongo, with its timers and tasks, does not support.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ class MongoStore(TableStore):
         """Connect to a server; blocks until it answers.
 
         Args:
-            uri: `mongodb://HOST:PORT`; `${NAME}` in it stands for an environment variable.
+            uri: `mongodb://HOST:PORT`; `${NAME}` in it is replaced by an environment variable.
             database: The database on it.
             inline: Work on the calling thread, so that a run in virtual time stays deterministic.
-            kinds: The kinds of entries it takes.
-            patience_s: How long to wait for a server that does not answer before an operation fails.
+            kinds: The kinds of entries.
+            patience_s: Time to wait for a server that does not answer before an operation fails.
 
         Raises:
             StoreError: the server cannot be reached, refuses the credentials or is too old.
@@ -44,7 +44,7 @@ class MongoStore(TableStore):
         try:
             table.prepare()
         except BaseException:
-            # However it failed, the threads of the driver must end.
+            # After any error the threads of the driver must end.
             table.close()
             raise
         return cls(table, inline=inline, kinds=kinds)

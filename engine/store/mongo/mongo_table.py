@@ -1,9 +1,9 @@
-"""Entries in a MongoDB database: the plain, blocking operations on its two collections.
+"""Entries in a MongoDB database: the blocking operations on its two collections.
 
-The collection `change` is the truth: whoever inserts the document of a revision has made that
-revision, since ids are unique. The collection `entry` shows the last revision of each entry and is
-brought up to date right after; a writer that died in between leaves that to whoever comes next. So a
-change of one entry needs no transaction, and works on a server without a replica set as well.
+The collection `change` is authoritative: the writer that inserts the document of a revision has made
+that revision, since ids are unique. The collection `entry` has the last revision of each entry and is
+updated directly afterwards; if a writer dies in between, the next writer updates it. So a change of
+one entry needs no transaction and also works on a server without a replica set.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ _NO_VALUES = {"value": 0, "value_json": 0}
 _DUPLICATE_KEY = 11000
 _NEAR = 1000
 _MANY_S = 120.0
-"""How long an operation on many entries may take."""
+"""Time limit of an operation on many entries."""
 
 
 class MongoTable:
-    """Entries on a MongoDB server; used by one thread at a time, its feeds by their own."""
+    """Entries on a MongoDB server; used by one thread at a time, each feed by its own thread."""
 
     def __init__(self, server: MongoServer, *, patience_s: float) -> None:
         self._server = server
@@ -59,41 +59,41 @@ class MongoTable:
         return self._server.address
 
     def prepare(self) -> None:
-        """Make the indexes where they are missing."""
+        """Create missing indexes."""
 
         def work() -> None:
             keys = (["kind", "name"], ["name", "kind"], ["starts", "kind", "name"])
             self._entries.create_indexes([IndexModel(each) for each in keys])
             self._changes.create_indexes([IndexModel(["kind", "name", "revision"], unique=True), IndexModel("changed")])
 
-        self._patiently(work, writing=True, limit_s=_MANY_S)
+        self._with_retries(work, writing=True, limit_s=_MANY_S)
 
     def get(self, kind: str, name: str) -> RevisionRow:
-        """Return an entry or raise EntryNotFound with the near names."""
-        return self._patiently(lambda: self._found(kind, name))
+        """Return an entry or raise EntryNotFound with similar names."""
+        return self._with_retries(lambda: self._found(kind, name))
 
     def select(self, selection: EntryQuery, *, values: bool) -> tuple[RevisionRow, ...]:
-        """Return entries sorted by kind and name; without values on request."""
+        """Return entries sorted by kind and name, with their values if `values`."""
 
         def work() -> tuple[RevisionRow, ...]:
             cursor = self._entries.find(_filter(selection), None if values else _NO_VALUES)
             cursor = cursor.sort(["kind", "name"]).limit(selection.limit or 0)
             return tuple(row_from_document(document) for document in cursor)
 
-        return () if selection.limit == 0 else self._patiently(work, limit_s=_MANY_S)
+        return () if selection.limit == 0 else self._with_retries(work, limit_s=_MANY_S)
 
     def all_names(self) -> tuple[tuple[str, str], ...]:
-        """Return kind and name of every entry that ever was, sorted."""
+        """Return kind and name of every entry, including deleted ones, sorted."""
 
         def work() -> tuple[tuple[str, str], ...]:
             found = self._entries.find({}, {"kind": 1, "name": 1}).sort(["kind", "name"])
             return tuple((str(document["kind"]), str(document["name"])) for document in found)
 
-        return self._patiently(work, limit_s=_MANY_S)
+        return self._with_retries(work, limit_s=_MANY_S)
 
     def changes(self, kind: str, name: str) -> tuple[RevisionRow, ...]:
         """Return every revision of an entry, oldest first."""
-        return self._patiently(lambda: self._history(kind, name), limit_s=_MANY_S)
+        return self._with_retries(lambda: self._history(kind, name), limit_s=_MANY_S)
 
     def put(self, draft: EntryDraft, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
         """Write an entry."""
@@ -106,7 +106,7 @@ class MongoTable:
         return self._change(decide)
 
     def delete(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Remove an entry and return its last revision."""
+        """Delete an entry and return its last revision."""
 
         def decide() -> RevisionRow:
             last = self._last(kind, name)
@@ -118,7 +118,7 @@ class MongoTable:
         return self._change(decide)
 
     def undo(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Bring back what was before the last change."""
+        """Restore the entry before its last change."""
 
         def decide() -> RevisionRow:
             history = self._history(kind, name)
@@ -130,46 +130,46 @@ class MongoTable:
         return self._change(decide)
 
     def seed(self, drafts: Sequence[EntryDraft], stamp: ChangeStamp, *, overwrite: bool) -> tuple[RevisionRow, ...]:
-        """Write those that are missing or, with `overwrite`, differ; in a transaction where the server has them."""
+        """Write the drafts that are missing or, with `overwrite`, differ; in a transaction where supported."""
         write = uuid.uuid4().hex
 
         def work(session: ClientSession | None) -> tuple[RevisionRow, ...]:
             ids = [entry_id(draft.kind, draft.name) for draft in drafts]
-            there = {
+            stored = {
                 document["_id"]: (row_from_document(document), document.get("write"))
                 for document in self._entries.find({"_id": {"$in": ids}}, session=session)
             }
-            written = [row for row, by in there.values() if by == write]  # by a try that broke off
+            written = [row for row, by in stored.values() if by == write]  # by an interrupted attempt
             new: dict[str, RevisionRow] = {}
             for key, draft in zip(ids, drafts, strict=True):
-                last, by = there.get(key, (None, None))
+                last, by = stored.get(key, (None, None))
                 last = new.get(key, last)
                 if by != write and needs_seeding(draft, last, overwrite=overwrite):
                     new[key] = next_row(draft, last, stamp)
             self._insert(list(new.values()), write, session)
             return (*written, *new.values())
 
-        return self._together(work)
+        return self._atomically(work)
 
     def import_histories(self, histories: Sequence[Sequence[RevisionRow]]) -> tuple[RevisionRow, ...]:
-        """Take over entries with their revisions; return those that were new."""
+        """Import entries with their revisions; return the new revisions."""
         write = uuid.uuid4().hex
         new: dict[str, RevisionRow] = {}
 
         def work(session: ClientSession | None) -> tuple[RevisionRow, ...]:
-            due: list[RevisionRow] = []
+            missing: list[RevisionRow] = []
             for history in (each for each in histories if each):
                 have = self._stored_history(history[0].kind, history[0].name, session)
-                due += missing_revisions(have, history)
+                missing += missing_revisions(have, history)
                 if session is None and have:
-                    # A try that broke off may have got no further than the revisions.
+                    # An interrupted attempt may have written the revisions only.
                     self._show(have[-1], write)
-            # What an earlier try without a transaction has written counts as well.
-            new.update({change_id(row): row for row in due})
-            self._insert(due, write, session)
+            # Revisions written by an earlier attempt without a transaction are new too.
+            new.update({change_id(row): row for row in missing})
+            self._insert(missing, write, session)
             return tuple(new.values())
 
-        return self._together(work)
+        return self._atomically(work)
 
     def feed(self) -> ChangeSource | None:
         """Open a feed of changes."""
@@ -181,12 +181,12 @@ class MongoTable:
         self._server.client.close()
 
     def _change(self, decide: Callable[[], RevisionRow]) -> RevisionRow:
-        """Make the revision that `decide` returns for the present state; decide again when another was faster."""
+        """Write the revision that `decide` returns for the present state; decide again after a concurrent write."""
         write = uuid.uuid4().hex
         claimed: list[RevisionRow] = []
 
         def work() -> RevisionRow:
-            # After a broken connection nobody knows whether the claim arrived: its mark tells.
+            # After a lost connection the mark `write` shows whether the claim arrived.
             if claimed and self._changes.find_one({"_id": change_id(claimed[-1]), "write": write}) is not None:
                 self._show(claimed[-1], write)
                 return claimed[-1]
@@ -197,10 +197,10 @@ class MongoTable:
                     self._show(row, write)
                     return row
 
-        return self._patiently(work, writing=True)
+        return self._with_retries(work, writing=True)
 
     def _claim(self, row: RevisionRow, write: str) -> bool:
-        """Insert a revision; False when another writer has made this revision."""
+        """Insert a revision; return False when another writer has inserted it."""
         try:
             self._changes.insert_one(change_document(row, write=write))
         except DuplicateKeyError:
@@ -212,12 +212,12 @@ class MongoTable:
         return True
 
     def _show(self, row: RevisionRow, write: str) -> None:
-        """Bring the entry up to a revision, unless it is there or further."""
+        """Update the entry to a revision, unless it has that or a newer one."""
         newer = {"_id": entry_id(row.kind, row.name), "revision": {"$lt": row.revision}}
         try:
             self._entries.replace_one(newer, {**entry_document(row), "write": write}, upsert=True)
         except DuplicateKeyError:
-            # None is older: the entry has this revision or a newer one.
+            # No older document: the entry has this revision or a newer one.
             return
 
     def _insert(self, rows: Sequence[RevisionRow], write: str, session: ClientSession | None) -> None:
@@ -233,8 +233,8 @@ class MongoTable:
         ]
         self._entries.bulk_write(shown, session=session, ordered=session is not None)
 
-    def _together(self, work: Callable[[ClientSession | None], T]) -> T:
-        """Do `work` in one transaction, or step by step on a server without; again when a writer came between."""
+    def _atomically(self, work: Callable[[ClientSession | None], T]) -> T:
+        """Run `work` in one transaction, or without one if unsupported; repeat it after a concurrent write."""
 
         def once() -> T:
             if not self._server.replicated:
@@ -252,7 +252,7 @@ class MongoTable:
                         raise
                     self._show_changes(collided)
 
-        return self._patiently(until_alone, writing=True, limit_s=_MANY_S)
+        return self._with_retries(until_alone, writing=True, limit_s=_MANY_S)
 
     def _show_changes(self, ids: Sequence[str]) -> None:
         for document in self._changes.find({"_id": {"$in": list(ids)}}):
@@ -265,7 +265,7 @@ class MongoTable:
         return row_from_document(document)
 
     def _last(self, kind: str, name: str) -> RevisionRow | None:
-        """Return the last revision of an entry; its value, unless None, is not read."""
+        """Return the last revision of an entry without reading its value, which is None for a deletion."""
         document = self._entries.find_one({"_id": entry_id(kind, name)}, _NO_VALUES)
         if document is None:
             return None
@@ -292,8 +292,8 @@ class MongoTable:
             kind, name, elsewhere=[each["kind"] for each in others], names=[each["name"] for each in names]
         )
 
-    def _patiently(self, work: Callable[[], T], *, writing: bool = False, limit_s: float | None = None) -> T:
-        """Do `work`, and again when the connection breaks, until the patience is over."""
+    def _with_retries(self, work: Callable[[], T], *, writing: bool = False, limit_s: float | None = None) -> T:
+        """Run `work`, and repeat it after a lost connection until the time limit."""
         limit_s = self._patience_s if limit_s is None else max(limit_s, self._patience_s)
         deadline_s = time.monotonic() + limit_s
         what = "cannot be written" if writing else "cannot be read"
@@ -318,7 +318,7 @@ def _filter(selection: EntryQuery) -> Document:
     if selection.after is not None:
         kind, name = selection.after
         parts.append({"$or": [{"kind": {"$gt": kind}}, {"kind": kind, "name": {"$gt": name}}]})
-    # Equal to a beginning of a word, an index gives the entries in their order, however many they are.
+    # An equality condition on word prefixes lets an index return the entries in order, independent of their number.
     parts += [{"starts": tag_term(tag)} for tag in selection.tags]
     parts += [{"starts": word[:MAX_PREFIX]} for word in selection.words]
     long = [word for word in selection.words if len(word) > MAX_PREFIX]
@@ -327,6 +327,6 @@ def _filter(selection: EntryQuery) -> Document:
 
 
 def _write_errors(error: BulkWriteError) -> list[dict[str, Any]]:
-    """Return the collisions of ids in a bulk write; none when anything else went wrong as well."""
+    """Return the id collisions of a bulk write; none when another error occurred too."""
     found: list[dict[str, Any]] = list((error.details or {}).get("writeErrors", ()))
     return found if all(each.get("code") == _DUPLICATE_KEY for each in found) else []

@@ -1,7 +1,7 @@
-"""Named entries in the document shape of the ROS package `mongodb_store`, both ways.
+"""Converts named entries to and from documents of the ROS package `mongodb_store`.
 
-Such a document is a ROS message, field by field, beside a `_meta` with its name and type; under ROS 2
-the message lies in a field `message`. ReconCycle stores joint configurations as
+Such a document has the fields of a ROS message and a `_meta` with its name and type; under ROS 2
+the message is in a field `message`. ReconCycle stores joint configurations as
 `sensor_msgs/JointState`, poses as `geometry_msgs` and primitives as `robot_module_msgs` (RCY 2.2).
 """
 
@@ -24,9 +24,9 @@ _BAD = re.compile(r"[^a-z0-9_/.-]+")
 
 
 class RosEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """An entry read from a document, with the name and the message type it had there.
+    """An entry read from a document, with the name and the message type of the document.
 
-    `kept` says why it is a plain record although its type is a known one; empty otherwise.
+    `kept` is the reason why an entry of a known type is a plain record; empty otherwise.
     """
 
     record: EntryRecord
@@ -36,12 +36,12 @@ class RosEntry(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def entries_from_ros(documents: Iterable[Document]) -> tuple[RosEntry, ...]:
-    """Return the entries that documents hold; of several with one name and kind the last, as `mongodb_store` does.
+    """Return the entries in documents; of several with one name and kind the last, as `mongodb_store` does.
 
     Messages of other types become entries of kind `record`, with `ros_type` and `message`.
 
     Raises:
-        StoreError: a document has no name or type, or two names differ only in what flexcell's names cannot have.
+        StoreError: a document has no name or type, or two names become the same name in flexcell.
     """
     found: dict[tuple[str, str], RosEntry] = {}
     for number, document in enumerate(documents, 1):
@@ -51,7 +51,7 @@ def entries_from_ros(documents: Iterable[Document]) -> tuple[RosEntry, ...]:
             raise StoreError(
                 f"the names {found[key].ros_name!r} and {entry.ros_name!r} both become {entry.record.name!r}",
                 where=f"document {number}",
-                hint="rename one of them there",
+                hint="rename one of them in the source",
             )
         found[key] = entry
     return tuple(found.values())
@@ -60,7 +60,7 @@ def entries_from_ros(documents: Iterable[Document]) -> tuple[RosEntry, ...]:
 def ros_document(record: EntryRecord, *, inserted_by: str = "flexcell") -> dict[str, Any]:
     """Return an entry as a document of `mongodb_store`, as ROS 1 writes it.
 
-    What has no message type of its own, such as a free record, is a `std_msgs/String` with its JSON.
+    A value without a message type, such as a free record, becomes a `std_msgs/String` with its JSON.
     """
     ros_type, message = to_message(record)
     package, name = ros_type.split("/")
@@ -82,14 +82,16 @@ def _entry(document: Document, number: int) -> RosEntry:
     ros_name = str(meta.get("name", ""))
     if not ros_type or not ros_name:
         raise StoreError(
-            "it has no `_meta` with `name` and `stored_type`",
+            "the document has no `_meta` with `name` and `stored_type`",
             where=f"document {number}",
             hint="only named entries of mongodb_store can be read: `insert_named`",
         )
     try:
         found = plain_bson(document["message"] if "message" in document else _without_meta(document))
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
-        raise StoreError(f"it cannot be read: {error}", where=f"document {number}", hint="leave it out") from error
+        raise StoreError(
+            f"the document cannot be read: {error}", where=f"document {number}", hint="exclude it"
+        ) from error
     kind, value, kept = _value(ros_type, _object(found), str(_object(meta.get("flexcell")).get("kind", "")))
     record = EntryRecord(kind=kind, name=_name(ros_name), value=value, revision=0)
     return RosEntry(record=record, ros_name=ros_name, ros_type=ros_type, kept=kept)
@@ -104,7 +106,7 @@ def _value(ros_type: str, message: Mapping[str, Any], known: str) -> tuple[str, 
         kind, value = found
         verified_value(STANDARD_KINDS, kind, value, where=ros_type)
     except (StoreError, KeyError, TypeError, ValueError) as error:
-        # Data that is no such entry is not lost: it stays a record, and the reader hears why.
+        # Data that is not a valid entry is not lost: it is kept as a record, with the reason.
         reason = f"the field {error} is missing" if isinstance(error, KeyError) else str(error)
         return "record", free, reason
     return kind, value, ""

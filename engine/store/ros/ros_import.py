@@ -1,4 +1,4 @@
-"""Reads documents of `mongodb_store` from files and servers, and makes their values plain."""
+"""Reads documents of `mongodb_store` from files and servers and converts their values to plain data."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from engine.errors import StoreError
 from engine.store.limits import MAX_DEPTH
 
 MAX_FILE = 256 * 2**20
-"""Bytes of a file."""
+"""Size limit of a file in bytes."""
 MAX_DOCUMENTS = 100_000
-"""Documents of a file."""
+"""Maximum number of documents in a file or collection."""
 
 _NUMBERS = {"$numberInt": int, "$numberLong": int, "$numberDouble": float, "$numberDecimal": float}
 
@@ -28,7 +28,7 @@ def read_ros_file(path: Path) -> tuple[dict[str, Any], ...]:
     """Return the documents in a file of `mongoexport` (JSON lines or an array) or `mongodump` (`.bson`).
 
     Raises:
-        StoreError: it cannot be read, is neither, is too large, or holds too much.
+        StoreError: the file cannot be read, has another format, is too large, or has too many documents.
     """
     try:
         with path.open("rb") as file:
@@ -41,28 +41,28 @@ def read_ros_file(path: Path) -> tuple[dict[str, Any], ...]:
             raise ValueError(f"there are more than {MAX_DOCUMENTS} documents")
         return documents
     except (OSError, ValueError, TypeError, OverflowError, RecursionError) as error:
-        # Values of MongoDB's extended JSON may hold anything where a number is due.
+        # Values of MongoDB's extended JSON may have any type in place of a number.
         raise StoreError(
             f"the documents cannot be read: {error}", where=path, hint="give the output of mongoexport or mongodump"
         ) from error
 
 
 def read_ros_documents(documents: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Return documents as they come from a server as plain objects."""
+    """Yield documents of a server as plain objects."""
     for document in documents:
         yield cast("dict[str, Any]", plain_bson(document))
 
 
 def plain_bson(value: Any, *, depth: int = 0) -> Any:
-    """Return a value of BSON or of MongoDB's extended JSON with numbers, text, lists and objects only.
+    """Convert a value of BSON or of MongoDB's extended JSON to numbers, text, lists and objects.
 
-    Bytes become `{base64: …}`, times ISO text, ids text; numbers that are not finite become text.
+    Bytes become `{base64: …}`, times ISO text, ids text; non-finite numbers become text.
 
     Raises:
-        ValueError: it is nested too deeply, or is no value of either.
+        ValueError: the value is nested too deeply, or is not a value of either format.
     """
     if depth > MAX_DEPTH:
-        raise ValueError(f"a value lies deeper than {MAX_DEPTH} levels")
+        raise ValueError(f"a value is nested deeper than {MAX_DEPTH} levels")
     if isinstance(value, Mapping):
         return _plain_object(cast("Mapping[str, Any]", value), depth)
     if isinstance(value, (list, tuple)):
@@ -104,7 +104,7 @@ def _json_documents(text: str) -> Iterator[dict[str, Any]]:
         found, at = decoder.raw_decode(text, at)
         for document in cast("list[Any]", found) if isinstance(found, list) else [found]:
             if not isinstance(document, dict):
-                raise ValueError(f"{document!r:.60} is no document")
+                raise ValueError(f"{document!r:.60} is not a document")
             yield cast("dict[str, Any]", plain_bson(document))
 
 

@@ -1,4 +1,4 @@
-"""The values of entries as ROS messages, and the other way round: field names and units are those of ROS (SI)."""
+"""Converts values of entries to and from ROS messages, with field names and units of ROS (SI)."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _GAIN_TOLERANCE = 1e-3
 
 
 def from_message(ros_type: str, message: Fields, *, kind: str = "") -> tuple[str, Value] | None:
-    """Return kind and value of the entry that a message is; None for a type that has none of its own.
+    """Return kind and value of the entry in a message; None for a type without a kind of entry.
 
     Raises:
-        KeyError, TypeError, ValueError: a field is missing or of no use.
+        KeyError, TypeError, ValueError: a field is missing or invalid.
     """
     if ros_type == "std_msgs/String":
         return (kind, msgspec.json.decode(message["data"], type=dict[str, object])) if kind else None
@@ -38,7 +38,7 @@ def from_message(ros_type: str, message: Fields, *, kind: str = "") -> tuple[str
 
 
 def to_message(record: EntryRecord) -> tuple[str, dict[str, Any]]:
-    """Return the type and the fields of the message that an entry is."""
+    """Return the message type and the fields of an entry."""
     value = cast("Fields", record.value)
     if record.kind == "joints":
         return "sensor_msgs/JointState", _joint_state(value["joints"], value.get("names", ()))
@@ -96,7 +96,7 @@ def _joint_dmp(message: Fields) -> Value:
 def _cart_dmp(message: Fields) -> Value:
     rows = _rows(message["w"])
     if len(rows) != 6:
-        raise ValueError(f"w has {len(rows)} rows where 6 are due")
+        raise ValueError(f"w has {len(rows)} rows, not 6")
     speed = cast("Fields", message.get("dp0") or {})
     dy0 = [*_values("xyz", speed.get("linear")), *_values("xyz", speed.get("angular"))]
     frame = str(cast("Fields", message.get("header") or {}).get("frame_id", "")) or "world"
@@ -113,7 +113,7 @@ def _cart_dmp(message: Fields) -> Value:
 def _dmp(message: Fields) -> Value:
     a_z, b_z = float(message["a_z"]), float(message.get("b_z") or 0.0)
     if b_z and not math.isclose(b_z, a_z / 4.0, rel_tol=_GAIN_TOLERANCE):
-        raise ValueError(f"b_z is {b_z:g} and not a_z / 4 = {a_z / 4.0:g}, as it is here")
+        raise ValueError(f"b_z is {b_z:g}, but flexcell requires a_z / 4 = {a_z / 4.0:g}")
     return {
         "N": int(message["N"] if "N" in message else message["n"]),
         "a_z": a_z,

@@ -1,4 +1,4 @@
-"""Tells what anybody commits to a store file, by looking whether it has changed."""
+"""Reads the changes committed to a store file by polling it."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from engine.store.rows import RevisionRow
 from engine.store.sqlite.store_schema import CHANGE, SCHEMA, row_of
 
 PERIOD_S = 0.2
-"""How often the file is looked at."""
+"""Polling period of the file."""
 
 
 class SqliteChangeSource:
-    """The changes of a store file from now on."""
+    """The changes of a store file since the source was opened."""
 
     def __init__(self, path: Path, *, busy_timeout_s: float) -> None:
         self._path = path
         self._busy_timeout_s = busy_timeout_s
         self._connection: sqlite3.Connection | None = None
-        # Opened for this question only: the feed itself is read by another thread.
+        # Opened for this query only: another thread reads the feed.
         connection = read_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         try:
-            self._seen = int(connection.execute("SELECT coalesce(max(seq), 0) FROM change").fetchone()[0])
+            self._last_seq = int(connection.execute("SELECT coalesce(max(seq), 0) FROM change").fetchone()[0])
         finally:
             connection.close()
         self._version: int | None = None
 
     def wait(self, stop: Event) -> tuple[RevisionRow, ...]:
-        """Return the changes committed since the last call, or none after a while."""
+        """Return the changes committed since the last call, or none after one period."""
         if self._version is not None and stop.wait(PERIOD_S):
             return ()
         try:
@@ -40,7 +40,7 @@ class SqliteChangeSource:
             raise StoreError(f"its changes cannot be read: {error}", where=self._path, hint=advice(error)) from error
 
     def close(self) -> None:
-        """Release the file."""
+        """Close the file."""
         if self._connection is not None:
             self._connection.close()
 
@@ -52,7 +52,7 @@ class SqliteChangeSource:
             return ()
         self._version = version
         query = CHANGE.replace("SELECT ", "SELECT r.seq, ", 1)
-        found = self._connection.execute(f"{query} WHERE r.seq > ? ORDER BY r.seq", (self._seen,)).fetchall()
+        found = self._connection.execute(f"{query} WHERE r.seq > ? ORDER BY r.seq", (self._last_seq,)).fetchall()
         if found:
-            self._seen = int(found[-1][0])
+            self._last_seq = int(found[-1][0])
         return tuple(row_of(columns[1:]) for columns in found)

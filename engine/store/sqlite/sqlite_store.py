@@ -29,11 +29,11 @@ class SqliteStore(TableStore):
         """Open or create a store.
 
         Args:
-            path: The file; directories above it are made.
+            path: The file; missing parent directories are created.
             inline: Work on the calling thread, so that a run in virtual time stays
                 deterministic; otherwise one worker thread keeps the event loop free.
-            kinds: The kinds of entries it takes.
-            busy_timeout_s: How long to wait for another process that holds the file locked.
+            kinds: The kinds of entries.
+            busy_timeout_s: Time to wait for another process that holds the file locked.
 
         Raises:
             StoreError: the file cannot be opened.

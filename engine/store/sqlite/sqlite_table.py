@@ -1,4 +1,4 @@
-"""The SQLite tables of the store and the plain, blocking operations on them."""
+"""The SQLite tables of the store and the blocking operations on them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ON CONFLICT(kind, name) DO UPDATE SET revision = excluded.revision, value = excl
 """
 _MEMORY = ":memory:"
 _NEAR = 1000
-"""Names that are looked at for a near one."""
+"""Maximum number of names compared for a suggestion."""
 
 
 class SqliteTable:
@@ -36,7 +36,7 @@ class SqliteTable:
 
     @classmethod
     def open(cls, path: Path, *, busy_timeout_s: float) -> SqliteTable:
-        """Open or create the file; raises StoreError with the path and what to do."""
+        """Open or create the file; raises StoreError with the path and a hint."""
         try:
             connection = open_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         except (sqlite3.Error, OSError) as error:
@@ -49,16 +49,16 @@ class SqliteTable:
         return str(self.path)
 
     def get(self, kind: str, name: str) -> RevisionRow:
-        """Return an entry or raise EntryNotFound with the near names."""
-        with self._explained("cannot be read"):
+        """Return an entry or raise EntryNotFound with similar names."""
+        with self._translated_errors("cannot be read"):
             found = self._find(kind, name)
         if found is None:
             raise self._not_found(kind, name)
         return found
 
     def select(self, selection: EntryQuery, *, values: bool) -> tuple[RevisionRow, ...]:
-        """Return entries sorted by kind and name; without values on request."""
-        with self._explained("cannot be read"):
+        """Return entries sorted by kind and name, with their values if `values`."""
+        with self._translated_errors("cannot be read"):
             where, given = conditions(selection, rarest=self._rarest(word_ranges(selection)))
             rows = self._connection.execute(
                 f"{ENTRY if values else KEY}{where} ORDER BY r.kind, r.name LIMIT ?", (*given, limit_of(selection))
@@ -66,25 +66,25 @@ class SqliteTable:
             return tuple(row_of(row) for row in rows)
 
     def all_names(self) -> tuple[tuple[str, str], ...]:
-        """Return kind and name of every entry that ever was, sorted."""
-        with self._explained("cannot be read"):
+        """Return kind and name of every entry, including deleted ones, sorted."""
+        with self._translated_errors("cannot be read"):
             rows = self._connection.execute("SELECT DISTINCT kind, name FROM change ORDER BY kind, name")
             return tuple((str(kind), str(name)) for kind, name in rows)
 
     def changes(self, kind: str, name: str) -> tuple[RevisionRow, ...]:
         """Return every revision of an entry, oldest first."""
-        with self._explained("cannot be read"):
+        with self._translated_errors("cannot be read"):
             return self._history(kind, name)
 
     def put(self, draft: EntryDraft, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Write an entry in a transaction of its own."""
+        """Write an entry in its own transaction."""
         with self._transaction():
             last = self._last(draft.kind, draft.name)
             verify_revision(draft.kind, draft.name, last, expected_revision)
             return self._commit(next_row(draft, last, stamp))
 
     def delete(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Remove an entry and return its last revision."""
+        """Delete an entry and return its last revision."""
         with self._transaction():
             last = self._last(kind, name)
             if last is None or last.value is None:
@@ -93,7 +93,7 @@ class SqliteTable:
             return self._commit(deletion_row(last, stamp))
 
     def undo(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
-        """Bring back what was before the last change."""
+        """Restore the entry before its last change."""
         with self._transaction():
             history = self._history(kind, name)
             if not history:
@@ -102,7 +102,7 @@ class SqliteTable:
             return self._commit(undo_row(history, stamp))
 
     def seed(self, drafts: Sequence[EntryDraft], stamp: ChangeStamp, *, overwrite: bool) -> tuple[RevisionRow, ...]:
-        """Write those that are missing or, with `overwrite`, differ; all in one transaction."""
+        """Write the drafts that are missing or, with `overwrite`, differ; all in one transaction."""
         written: list[RevisionRow] = []
         with self._transaction():
             for draft in drafts:
@@ -112,7 +112,7 @@ class SqliteTable:
         return tuple(written)
 
     def import_histories(self, histories: Sequence[Sequence[RevisionRow]]) -> tuple[RevisionRow, ...]:
-        """Take over entries with their revisions, all in one transaction; return those that were new."""
+        """Import entries with their revisions in one transaction; return the new revisions."""
         with self._transaction():
             new = [
                 row
@@ -128,11 +128,11 @@ class SqliteTable:
         """Open a feed of changes; None for a database in memory."""
         if str(self.path) == _MEMORY:
             return None
-        with self._explained("cannot be read"):
+        with self._translated_errors("cannot be read"):
             return SqliteChangeSource(self.path, busy_timeout_s=self._busy_timeout_s)
 
     def close(self) -> None:
-        """Release the file."""
+        """Close the file."""
         self._connection.close()
 
     def _find(self, kind: str, name: str) -> RevisionRow | None:
@@ -180,7 +180,7 @@ class SqliteTable:
         return row
 
     def _rarest(self, ranges: Sequence[tuple[str, str]]) -> tuple[str, str] | None:
-        """Return the range that the fewest entries have a word in; None of none."""
+        """Return the range with the fewest entries; None when there is no range."""
         if len(ranges) < 2:
             return ranges[0] if ranges else None
         counted: list[tuple[int, tuple[str, str]]] = []
@@ -190,9 +190,9 @@ class SqliteTable:
         return min(counted)[1]
 
     def _not_found(self, kind: str, name: str) -> EntryNotFound:
-        with self._explained("cannot be read"):
+        with self._translated_errors("cannot be read"):
             others = self._connection.execute("SELECT kind FROM entry WHERE name = ?", (name,)).fetchall()
-            # Names that begin alike come first, so that they are there however many others are.
+            # Names with the same beginning come first, so that the limit does not drop them.
             names = self._connection.execute(
                 "SELECT name FROM entry WHERE kind = ? ORDER BY substr(name, 1, 2) <> ?, name LIMIT ?",
                 (kind, name[:2], _NEAR),
@@ -203,18 +203,18 @@ class SqliteTable:
 
     @contextmanager
     def _transaction(self) -> Generator[None]:
-        with self._explained("cannot be written"):
+        with self._translated_errors("cannot be written"):
             self._connection.execute("BEGIN IMMEDIATE")
             try:
                 yield
                 self._connection.execute("COMMIT")
             finally:
-                # Whatever went wrong, the next transaction must find none open.
+                # After any error no transaction may stay open.
                 if self._connection.in_transaction:
                     self._connection.rollback()
 
     @contextmanager
-    def _explained(self, what: str) -> Generator[None]:
+    def _translated_errors(self, what: str) -> Generator[None]:
         try:
             yield
         except sqlite3.Error as error:

@@ -1,4 +1,4 @@
-"""The tables of a store file, and the queries that read rows from them."""
+"""The tables of a store file, and the queries that read their rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CREATE TABLE IF NOT EXISTS change(
     seq INTEGER PRIMARY KEY AUTOINCREMENT, kind TEXT NOT NULL, name TEXT NOT NULL,
     revision INTEGER NOT NULL, value TEXT, UNIQUE (kind, name, revision)) STRICT;
 """,
-        # Entries of a file of version 1 have no words yet; a name that is too long to be one gets none.
+        # Entries of a file of version 1 have no words yet; a name above the length limit gets none.
         """
 CREATE TABLE IF NOT EXISTS note(
     kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, tags TEXT NOT NULL,
@@ -49,7 +49,7 @@ ENTRY = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM entry r {_JOI
 KEY = f"SELECT r.kind, r.name, r.revision, NULL, {_NOTE} FROM entry r {_JOIN}"
 CHANGE = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM change r {_JOIN}"
 MANY = 20_000
-"""Words are counted no further to find the rarest."""
+"""Limit of the count of a word when the rarest one is determined."""
 
 
 class _Columns(msgspec.Struct, frozen=True, array_like=True):
@@ -66,71 +66,71 @@ class _Columns(msgspec.Struct, frozen=True, array_like=True):
 
 
 def row_of(columns: Sequence[Any]) -> RevisionRow:
-    """Return what one of the queries found.
+    """Return the revision in a row of one of the queries.
 
     Raises:
-        DamagedFile: it is no entry.
+        DamagedFile: the row is not a revision.
     """
     try:
-        found = msgspec.convert(columns, _Columns)
-        tags = msgspec.json.decode(found.tags, type=tuple[str, ...]) if found.tags else ()
+        row = msgspec.convert(columns, _Columns)
+        tags = msgspec.json.decode(row.tags, type=tuple[str, ...]) if row.tags else ()
     except (msgspec.DecodeError, UnicodeEncodeError) as error:
-        raise DamagedFile(f"a row is none of an entry: {error}") from error
+        raise DamagedFile(f"a row is not an entry: {error}") from error
     return RevisionRow(
-        kind=found.kind,
-        name=found.name,
-        revision=found.revision,
-        value=found.value,
+        kind=row.kind,
+        name=row.name,
+        revision=row.revision,
+        value=row.value,
         tags=tags,
-        changed_unix_ms=found.changed_unix_ms or 0,
-        by=found.author or "",
-        reason=found.reason or "",
-        restores=found.restores,
-        writer=found.writer or "",
+        changed_unix_ms=row.changed_unix_ms or 0,
+        by=row.author or "",
+        reason=row.reason or "",
+        restores=row.restores,
+        writer=row.writer or "",
     )
 
 
 def word_ranges(selection: EntryQuery) -> tuple[tuple[str, str], ...]:
-    """Return for each tag and word that is asked for the range its words lie in, the end excluded."""
+    """Return the half-open range of words for each tag and word of a query."""
     tags = [(tag_term(tag), f"{tag_term(tag)}\x00") for tag in selection.tags]
     return (*tags, *((word, word + AFTER_PREFIX) for word in selection.words))
 
 
 def conditions(selection: EntryQuery, *, rarest: tuple[str, str] | None) -> tuple[str, list[object]]:
-    """Return the WHERE clause of a selection with its arguments; `rarest` is the word range that is searched."""
+    """Return the WHERE clause of a query with its arguments; `rarest` is the word range to search first."""
     if rarest is None:
-        where, given = _plain_conditions(selection, "r")
-        return (f" WHERE {where}" if where else ""), given
-    # The index of words leads to the few entries of a page, whichever part of all entries has the word.
-    parts, given = ["w.word >= ? AND w.word < ?"], list[object](rarest)
+        where, arguments = _plain_conditions(selection, "r")
+        return (f" WHERE {where}" if where else ""), arguments
+    # The index of words finds the entries of a page without a scan of all entries.
+    parts, arguments = ["w.word >= ? AND w.word < ?"], list[object](rarest)
     where, more = _plain_conditions(selection, "w")
     parts += [where] if where else []
-    given += more
+    arguments += more
     for span in word_ranges(selection):
         if span != rarest:
             parts.append(
                 "EXISTS (SELECT 1 FROM word v WHERE v.kind = w.kind AND v.name = w.name AND v.word >= ? AND v.word < ?)"
             )
-            given += span
+            arguments += span
     found = f"SELECT DISTINCT w.kind, w.name FROM word w WHERE {' AND '.join(parts)} ORDER BY w.kind, w.name LIMIT ?"
-    return f" WHERE (r.kind, r.name) IN ({found})", [*given, limit_of(selection)]
+    return f" WHERE (r.kind, r.name) IN ({found})", [*arguments, limit_of(selection)]
 
 
 def limit_of(selection: EntryQuery) -> int:
-    """Return how many rows are asked for, as SQLite takes it."""
+    """Return the row limit of a query for SQLite, -1 for none."""
     return -1 if selection.limit is None else selection.limit
 
 
 def _plain_conditions(selection: EntryQuery, table: str) -> tuple[str, list[object]]:
     parts: list[str] = []
-    given: list[object] = []
+    arguments: list[object] = []
     if selection.kind:
         parts.append(f"{table}.kind = ?")
-        given.append(selection.kind)
+        arguments.append(selection.kind)
     if selection.prefix:
         parts.append(f"{table}.name >= ? AND {table}.name < ?")
-        given += [selection.prefix, selection.prefix + AFTER_PREFIX]
+        arguments += [selection.prefix, selection.prefix + AFTER_PREFIX]
     if selection.after is not None:
         parts.append(f"({table}.kind, {table}.name) > (?, ?)")
-        given += selection.after
-    return " AND ".join(parts), given
+        arguments += selection.after
+    return " AND ".join(parts), arguments

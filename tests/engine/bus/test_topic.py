@@ -29,7 +29,7 @@ async def test_latest_is_what_was_published_last() -> None:
 async def test_a_message_of_another_type_is_refused() -> None:
     """The topic's type is its contract."""
     topic = SkillBus(new_clock()).topic("t", GripperState)
-    with pytest.raises(BusError, match="PartPoses was published where GripperState is due"):
+    with pytest.raises(BusError, match="PartPoses was published where GripperState is expected"):
         topic.publish(PartPoses(time_s=0.0, poses={}))  # pyright: ignore[reportArgumentType]
 
 

@@ -36,8 +36,8 @@ async def test_a_damaged_run_is_listed_and_its_events_are_not_shown(tmp_path: Pa
     said = CliRunner().invoke(app, ["--journal", str(tmp_path)])
     assert said.exit_code == 0
     assert [line.split()[2] for line in said.stdout.splitlines()] == ["status", "damaged", "interrupted"]
-    assert said.stderr == "flexcell: first: what the journal says of run first as a whole is damaged\n"
-    for name, place in (("first", "run first as a whole"), ("second", "event 2 of run second")):
+    assert said.stderr == "flexcell: first: the record of run first is damaged\n"
+    for name, place in (("first", "the record of run first"), ("second", "event 2 of run second")):
         shown = CliRunner().invoke(app, ["show", name, "--events", "--journal", str(tmp_path)])
         assert shown.stdout == ""
         with pytest.raises(JournalError, match=rf"journal\.db: .*{place} is damaged"):

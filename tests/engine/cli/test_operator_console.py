@@ -211,7 +211,7 @@ def test_breakpoints_beside_the_behavior_are_used_with_an_operator_only(nested: 
 
 @pytest.mark.parametrize(
     ("policy", "code", "reason"),
-    [("continue", 0, ""), ("stop", 1, "the operator was lost"), ("hold", 3, "nothing can happen any more")],
+    [("continue", 0, ""), ("stop", 1, "the operator was lost"), ("hold", 3, "virtual time cannot advance")],
 )
 def test_the_end_of_input_is_the_operators_leaving(nested: Path, policy: str, code: int, reason: str) -> None:
     """Held for ever, virtual time cannot pass: that is an error, not a hang."""

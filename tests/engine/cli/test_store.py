@@ -60,7 +60,9 @@ def test_a_life_of_an_entry_reads_the_same_on_both_stores(server: Mongod, tmp_pa
             ]
         )
     assert told[0] == told[1]
-    assert told[0][1] == ("error: joints home: revision 1 is there, revision 7 was expected (read it again and retry)")
+    assert told[0][1] == (
+        "error: joints home: revision 1 is stored, revision 7 was expected (read the entry again and retry)"
+    )
     assert told[0][3] == "joints home revision 3 undone to revision 1 WHEN by ana: worse\n"
     assert told[0][4].splitlines()[1:] == ["tags: fast", "joints: [1.0, 2.0]", 'model: ""', "names: []"]
     history = [

@@ -81,7 +81,7 @@ async def test_a_row_of_a_store_that_is_none_is_a_damaged_file(tmp_path: Path) -
     async with SqliteStore.open(tmp_path / "s.db") as store:
         await store.put("record", "a", {"n": 1})
         changed(tmp_path / "s.db", "UPDATE note SET tags = '[1, {'")
-        with pytest.raises(StoreError, match=r"s\.db: the store cannot be read: a row is none of an entry"):
+        with pytest.raises(StoreError, match=r"s\.db: the store cannot be read: a row is not an entry"):
             await store.get("record", "a")
         changed(tmp_path / "s.db", "UPDATE note SET tags = '[]'; UPDATE entry SET value = '{\"n\": '")
         with pytest.raises(StoreError, match="record a"):
@@ -98,7 +98,7 @@ def test_a_file_of_an_older_version_is_the_same_as_a_new_one_afterwards(tmp_path
 def test_a_file_of_an_older_version_with_more_in_it_is_not_upgraded(tmp_path: Path) -> None:
     changed(tmp_path / "n.db", "CREATE TABLE note(text TEXT NOT NULL) STRICT; CREATE VIEW v AS SELECT 1")
     changed(tmp_path / "n.db", "PRAGMA user_version=1")
-    with pytest.raises(ForeignSchema, match="its view v is none of format 1"):
+    with pytest.raises(ForeignSchema, match="its view v is not part of format 1"):
         open_sqlite(tmp_path / "n.db", schema=NOTES, busy_timeout_s=1.0)
 
 

@@ -95,7 +95,7 @@ STEP_7 = "UPDATE {} SET data = CAST(replace(CAST(data AS TEXT), 'step 7', 'step 
             "UPDATE block SET run = 'second', seq = 21 WHERE run = 'first' AND seq = 20",
             r"run first has 19 events in the journal, and 20 were written",
         ),
-        ("UPDATE checksum SET since = 5 WHERE run = 'first'", "says of run first as a whole is damaged"),
+        ("UPDATE checksum SET since = 5 WHERE run = 'first'", "the record of run first is damaged"),
     ],
 )  # fmt: skip
 async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, statement: str, said: str) -> None:

@@ -66,9 +66,9 @@ def test_large_events_share_a_block_only_up_to_its_size() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b'{"event":"log"}\n', "event 1 in it: this is not an event"),
-        (b"", "other events in it than those up to 2"),
-        (msgspec.json.Encoder().encode_lines([said(1), said(3)]), "other events in it than those up to 2"),
+        (b'{"event":"log"}\n', "event 1 of the block: this is not an event"),
+        (b"", "the block does not hold the events 1 to 2"),
+        (msgspec.json.Encoder().encode_lines([said(1), said(3)]), "the block does not hold the events 1 to 2"),
     ],
 )
 def test_a_row_with_the_right_checksum_may_hold_no_events_all_the_same(data: bytes, message: str) -> None:

@@ -188,7 +188,7 @@ async def test_the_same_sequence_number_twice_is_refused(tmp_path: Path, inline:
         run.append(said(1, "first"))
         await run.commit()
         run.append(said(1, "again"))
-        with pytest.raises(JournalError, match="event 1 is stored already"):
+        with pytest.raises(JournalError, match="event 1 is already stored"):
             await run.commit()
     assert read_events(tmp_path, "run-1") == (said(1, "first"),)
 
@@ -201,7 +201,7 @@ async def test_an_event_whose_predecessor_is_missing_is_refused(tmp_path: Path, 
         run.append(said(1))
         run.append(said(3))
         other.append(said(1))
-        with pytest.raises(JournalError, match="event 3 came where event 2 was due"):
+        with pytest.raises(JournalError, match="event 3 arrived where event 2 was expected"):
             await run.commit()
         await other.commit()
     assert [record.last_seq for record in list_runs(tmp_path)] == [0, 1]
@@ -276,7 +276,7 @@ async def test_a_defect_in_the_writer_reaches_the_waiting_commit(
         monkeypatch.setattr(JournalDatabase, "store", broken)
         for seq in (1, 2):
             run.append(said(seq))
-            with pytest.raises(JournalError, match="the journal writer broke: ZeroDivisionError: oops"):
+            with pytest.raises(JournalError, match="the journal writer failed: ZeroDivisionError: oops"):
                 await asyncio.wait_for(run.commit(), 30)
 
 
@@ -284,7 +284,7 @@ def test_a_run_begins_once(tmp_path: Path) -> None:
     """The same id again is refused and told to resume."""
     with Journal.open(tmp_path) as journal:
         begun(journal)
-        with pytest.raises(JournalError, match=r"run run-1 is there already \(resume it\)"):
+        with pytest.raises(JournalError, match=r"run run-1 already exists \(resume it\)"):
             begun(journal)
 
 

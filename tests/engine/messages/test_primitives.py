@@ -58,14 +58,14 @@ def test_a_cartesian_dmp_survives_being_stored(dmp: CartDmp) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"w4": [1]}, r"w4 has 1 values where 2 are due \(N = 2\)"),
-        ({"sigma": [0.1]}, r"sigma has 1 values where 2 are due \(N = 2\)"),
-        ({"goal": [1, 0, 0]}, "goal has 3 values where 7 are due"),
-        ({"dy0": [1, 0, 0]}, "dy0 has 3 values where 6 are due"),
+        ({"w4": [1]}, r"w4 has 1 values, not 2 \(N = 2\)"),
+        ({"sigma": [0.1]}, r"sigma has 1 values, not 2 \(N = 2\)"),
+        ({"goal": [1, 0, 0]}, "goal has 3 values, not 7"),
+        ({"dy0": [1, 0, 0]}, "dy0 has 3 values, not 6"),
         ({"goal": [1, 0, 0, 0, 0, 0, 2]}, "the quaternion of goal has length 2 instead of 1"),
-        ({"tasktrans": [1, 0, 0]}, "tasktrans has 3 values where 16 are due"),
-        ({"tasktrans": [2 * value for value in TURNED]}, "tasktrans has no rotation"),
-        ({"tasktrans": [-value for value in TURNED[:12]] + [0, 0, 0, 1]}, "tasktrans mirrors"),
+        ({"tasktrans": [1, 0, 0]}, "tasktrans has 3 values, not 16"),
+        ({"tasktrans": [2 * value for value in TURNED]}, "of tasktrans are not a rotation matrix"),
+        ({"tasktrans": [-value for value in TURNED[:12]] + [0, 0, 0, 1]}, "tasktrans is a reflection"),
         ({"tasktrans": [*TURNED[:12], 0, 0, 1, 1]}, "the last row of tasktrans is not 0 0 0 1"),
         ({"tau": 0}, "Expected `float` > 0.0"),
         ({"sigma": [0.1, -0.1]}, "Expected `float` > 0.0"),
@@ -94,7 +94,7 @@ def test_a_task_transformation_moves_the_start() -> None:
     assert msgspec.convert(PLAIN, CartDmp).start == Pose(xyz=(0.0, 0.0, 0.0))
     joint = msgspec.convert({**_joint_fields(), "y0": [1.0, 2.0], "tasktrans": [0, 1, -1, 0]}, JointDmp)
     assert joint.start == (2.0, -1.0)
-    with pytest.raises(msgspec.ValidationError, match="tasktrans has 3 values where 4 are due"):
+    with pytest.raises(msgspec.ValidationError, match="tasktrans has 3 values, not 4"):
         msgspec.convert({**_joint_fields(), "tasktrans": [0, 1, -1]}, JointDmp)
 
 
@@ -118,14 +118,14 @@ def test_every_rotation_of_a_task_transformation_turns_the_start(vector: tuple[f
 
 def test_offsets_and_forces_are_checked_by_their_kernels() -> None:
     """Each row has as many weights as there are centres."""
-    with pytest.raises(ValueError, match=r"w3o has 1 values where 2 are due \(2 kernels in c_o\)"):
+    with pytest.raises(ValueError, match=r"w3o has 1 values, not 2 \(2 kernels in c_o\)"):
         CartOffsets(
             c_o=(1.0, 0.5), sigma_o=(0.1, 0.1),
             w1o=(0.0, 0.0), w2o=(0.0, 0.0), w3o=(0.0,), w4o=(0.0, 0.0), w5o=(0.0, 0.0), w6o=(0.0, 0.0),
         )  # fmt: skip
     force = ForceReference.constant(force_n=(0.0, 0.0, 10.0))
     assert (force.N_f, force.w3f, force.w6f) == (1, (10.0,), (0.0,))
-    with pytest.raises(msgspec.ValidationError, match="c_f has 1 values where 2 are due"):
+    with pytest.raises(msgspec.ValidationError, match="c_f has 1 values, not 2"):
         msgspec.convert({**msgspec.to_builtins(force), "N_f": 2}, ForceReference)
 
 

@@ -215,7 +215,9 @@ def test_a_run_with_faults_replays_with_what_they_did(tmp_path: Path) -> None:
 def test_a_run_in_which_nothing_could_happen_any_more_replays(tmp_path: Path) -> None:
     text = "root: {machine: {initial: w, states: {w: {state: test.Hang, transitions: {never: bad}}}}}"
     stuck = VirtualTimeDeadlock(
-        "nothing can happen any more at t=1.000 s", where="root", hint="waiting for ever: root/w"
+        "virtual time cannot advance at t=1.000 s: every task waits and no timer is set",
+        where="root",
+        hint="waiting: root/w",
     )
     acts: dict[float, Act] = {1.0: lambda run: run.fail(stuck)}
     recording = recorded(text, tmp_path / "r.mcap", acts=acts)

@@ -68,7 +68,7 @@ async def test_a_write_on_a_stale_revision_says_which_is_there(opener: Opener, t
     async with opener(tmp_path) as store:
         await store.put("record", "state", {"n": 1})
         await store.put("record", "state", {"n": 2}, expected_revision=1)
-        with pytest.raises(StoreError, match="record state: revision 2 is there, revision 1 was expected"):
+        with pytest.raises(StoreError, match="record state: revision 2 is stored, revision 1 was expected"):
             await store.put("record", "state", {"n": 3}, expected_revision=1)
         assert (await store.get("record", "state")).value == {"n": 2}
 
@@ -77,7 +77,7 @@ async def test_revision_zero_means_that_there_must_be_none(opener: Opener, tmp_p
     """Creating twice is refused; updating what is not there as well."""
     async with opener(tmp_path) as store:
         await store.put("record", "state", {}, expected_revision=0)
-        with pytest.raises(StoreError, match="revision 1 is there, none was expected"):
+        with pytest.raises(StoreError, match="revision 1 is stored, no entry was expected"):
             await store.put("record", "state", {}, expected_revision=0)
         with pytest.raises(StoreError, match="there is no such entry, revision 4 was expected"):
             await store.put("record", "other", {}, expected_revision=4)
@@ -110,7 +110,7 @@ async def test_eight_writers_at_once_lose_no_update_and_hear_of_each_conflict(op
             await store.close()
     assert counted == EntryRecord(kind="record", name="counter", value={"n": 40}, revision=41)
     assert [change.value for change in history] == [{"n": n} for n in range(41)]
-    assert all("is there, revision" in str(conflict) for conflict in conflicts)
+    assert all("is stored, revision" in str(conflict) for conflict in conflicts)
 
 
 async def test_eight_writers_that_expect_nothing_all_leave_their_mark(opener: Opener, tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ async def test_deleting_a_stale_revision_is_refused(opener: Opener, tmp_path: Pa
     """A deletion compares as a write does."""
     async with opener(tmp_path) as store:
         await store.put("record", "state", {"n": 1})
-        with pytest.raises(StoreError, match="revision 1 is there, revision 7 was expected"):
+        with pytest.raises(StoreError, match="revision 1 is stored, revision 7 was expected"):
             await store.delete("record", "state", expected_revision=7)
         assert (await store.get("record", "state")).revision == 1
 
@@ -203,7 +203,7 @@ async def test_a_seed_with_one_bad_entry_writes_none(opener: Opener, tmp_path: P
     good = EntryRecord(kind="record", name="good", value={}, revision=0)
     bad = EntryRecord(kind="joints", name="bad", value={"joints": ["x"]}, revision=0)
     async with opener(tmp_path) as store:
-        with pytest.raises(StoreError, match="joints bad: this is no joints"):
+        with pytest.raises(StoreError, match="joints bad: invalid joints entry"):
             await store.seed([good, bad])
         assert await store.list() == ()
 
@@ -373,7 +373,8 @@ async def test_a_value_of_more_than_eight_megabytes_is_refused_in_words(opener: 
     async with opener(tmp_path) as store:
         for size in (16 * 1024 * 1024, 8 * 1024 * 1024):
             with pytest.raises(
-                StoreError, match=r"record big: the value takes .* MB, more than 8\.4 MB \(store it in parts\)"
+                StoreError,
+                match=r"record big: the value takes .* MB, more than 8\.4 MB \(split it into several entries\)",
             ):
                 await store.put("record", "big", {"text": "x" * size})
         assert await store.list() == ()

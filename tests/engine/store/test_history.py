@@ -59,7 +59,7 @@ async def test_undo_goes_back_one_change_at_a_time_to_before_the_first(opener: O
         await store.put("record", "a", {"n": 2}, tags=["two"])
         await store.put("record", "a", {"n": 3})
         undone = [await store.undo("record", "a", by="ana", reason="no") for _ in range(3)]
-        with pytest.raises(StoreError, match="record a: nothing is left to undo"):
+        with pytest.raises(StoreError, match="record a: there is no change left to undo"):
             await store.undo("record", "a")
         assert [(c.revision, c.value, c.tags, c.restores) for c in undone] == [
             (4, {"n": 2}, ("two",), 2),
@@ -85,7 +85,7 @@ async def test_undo_refuses_a_stale_revision_and_an_entry_that_never_was(opener:
     """It compares as a write does."""
     async with opener(tmp_path) as store:
         await store.put("record", "a", {"n": 1})
-        with pytest.raises(EntryConflict, match="revision 1 is there, revision 9 was expected"):
+        with pytest.raises(EntryConflict, match="revision 1 is stored, revision 9 was expected"):
             await store.undo("record", "a", expected_revision=9)
         with pytest.raises(EntryNotFound):
             await store.undo("record", "b")
@@ -116,6 +116,6 @@ async def test_an_entry_with_another_history_is_not_adopted(opener: Opener, tmp_
         for store, n in ((one, 1), (two, 2)):
             await store.put("record", "b", {"n": n})
         await one.put("record", "a", {})
-        with pytest.raises(EntryConflict, match="record b: another history is there: revision 1 differs"):
+        with pytest.raises(EntryConflict, match="record b: the target has another history: revision 1 differs"):
             await two.import_histories([await one.history(*key) for key in await one.all_names()])
         assert [key.name for key in await two.list()] == ["b"]

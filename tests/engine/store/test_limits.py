@@ -50,7 +50,7 @@ CIRCLE.append(CIRCLE)
         ({"circle": CIRCLE}, "cannot be written as JSON"),
         (nested(MAX_DEPTH), "deeper than 64 levels"),
         ([1], "must be an object with fields, not list"),
-        ({"blob": "x" * MAX_BYTES}, r"takes 8\.4 MB, more than 8\.4 MB \(store it in parts\)"),
+        ({"blob": "x" * MAX_BYTES}, r"takes 8\.4 MB, more than 8\.4 MB \(split it into several entries\)"),
     ],
     ids=["large", "small", "key", "object", "surrogate", "circle", "deep", "list", "size"],
 )

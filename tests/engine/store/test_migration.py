@@ -64,7 +64,7 @@ async def test_an_entry_that_was_changed_on_both_sides_stops_the_migration(mongo
         await migrate(here, there)
         await here.put("record", "a", {"here": 2})
         await there.put("record", "a", {"there": 2})
-        with pytest.raises(EntryConflict, match="record a: another history is there: revision 2 differs"):
+        with pytest.raises(EntryConflict, match="record a: the target has another history: revision 2 differs"):
             await migrate(here, there)
         assert (await there.get("record", "a")).value == {"there": 2}
 
@@ -79,5 +79,5 @@ async def test_a_target_that_does_not_keep_what_it_takes_is_found_out(tmp_path: 
     async with SqliteStore.open(tmp_path / "here.db") as here:
         await here.put("record", "a", {"n": 1})
         async with Forgetful.open(tmp_path / "there.db") as there:
-            with pytest.raises(StoreError, match="record a: after the migration it has 0 revisions there and 1 here"):
+            with pytest.raises(StoreError, match="record a: the revisions differ: 0 in the target, 1 in the source"):
                 await migrate(here, there)

@@ -170,7 +170,7 @@ async def test_a_network_that_stays_cut_is_told_and_reading_goes_on_afterwards(
             with pytest.raises(
                 StoreError,
                 match=rf"127\.0\.0\.1:{proxy.port}/t.* cannot be written: the server cannot be reached: .*"
-                r"\(check that mongod runs there.*; a write that was under way may have taken effect",
+                r"\(check that mongod runs there.*; the interrupted write may have taken effect",
             ):
                 await store.put("record", "a", {"n": 2})
             with pytest.raises(StoreError, match="cannot be read: the server cannot be reached"):

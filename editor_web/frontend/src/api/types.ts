@@ -138,7 +138,7 @@ export interface ButtonInput {
   readonly value: boolean
 }
 
-/** One capture in the buffer: when, by which trigger, of which robot, and what it is. `form` is what it is saved as where nothing else is asked for. `samples` and `duration_s` are 0 for a single configuration; `length_rad` is the way of all joints together, `peak_rad_s` the greatest speed of a joint. `saved_as` names the entries that were made of it. */
+/** One capture in the buffer: its time, trigger, robot and kind. `form` is the default kind of entry to save it as. `samples` and `duration_s` are 0 for a single configuration; `length_rad` is the path length of all joints together, `peak_rad_s` the greatest speed of a joint. `saved_as` names the entries saved from it. */
 export interface CaptureSummary {
   readonly id: number
   readonly taken_at_s: number
@@ -153,7 +153,7 @@ export interface CaptureSummary {
   readonly remark: string
 }
 
-/** How far a learned Cartesian DMP is from its recording: over all samples, the worst one, the goal at the end. */
+/** The error of a learned Cartesian DMP against its recording: RMS, maximum, and at the goal. */
 export interface CartFit {
   readonly kernels: number
   readonly rms_m: number
@@ -588,7 +588,7 @@ export interface JogVelocity {
   readonly velocity: readonly number[]
 }
 
-/** How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end. `joint` is the one with the greatest error, counted from 0. `rms_m` and `max_m` are how far that puts the tool centre point off, None where nobody knew the arm. */
+/** The error of a learned joint DMP against its recording: RMS, maximum, and at the goal. `joint` is the index of the joint with the greatest error, from 0. `rms_m` and `max_m` are the resulting errors of the tool centre point, None when the arm is unknown. */
 export interface JointFit {
   readonly kernels: number
   readonly rms_rad: number
@@ -1213,7 +1213,7 @@ export interface TargetsBody {
   readonly page: string
 }
 
-/** What the Helping Hand does, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last word, such as why a capture was refused. */
+/** The status of the Helping Hand, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last message, such as why a capture was refused. */
 export interface TeachStatus {
   readonly triggers: readonly TriggerStatus[]
   readonly captures: readonly CaptureSummary[]
@@ -1261,7 +1261,7 @@ export interface ToolLive {
   readonly held: boolean
 }
 
-/** An entry as an arm would carry it out: one row a time. `joints` are radians in the order of `joint_names`, empty where the arm cannot follow; `poses` are x y z (m) and a unit quaternion x y z w of the tool centre point in the world. `times_s` is 0 for a single configuration. `remark` says why there are no joints. */
+/** The motion of an arm along an entry, one row per time. `joints` are radians in the order of `joint_names`, empty when the arm cannot follow; `poses` are x y z (m) and a unit quaternion x y z w of the tool centre point in the world. `times_s` is 0 for a single configuration. `remark` is the reason for missing joints. */
 export interface Trace {
   readonly times_s: readonly number[]
   readonly joint_names: readonly string[]
@@ -1283,7 +1283,7 @@ export interface TransitionRef {
   readonly outcome: string
 }
 
-/** What fires, and what then happens to which robot; the fields of RCY figure 12. The topic's field `field` (the only boolean one, or `value` or `data`, where it is empty) is compared with `trig_value`: `rising_edge` fires when they begin to be equal, `falling_edge` when they end to be, `hold` lasts as long as they are. `joint_dmp_N` is the number of kernels of the primitive, 0 lets the fit decide. `tf_save` captures where `source_frame` is in `target_frame`, `gripper_save` how far the gripper is open and whether it holds something. */
+/** A trigger with its callback and robot; the fields of RCY figure 12. The topic's field `field` (when empty, the only boolean one, or `value` or `data`) is compared with `trig_value`: `rising_edge` fires when they become equal, `falling_edge` when they become unequal, `hold` is active while they are equal. `joint_dmp_N` is the number of kernels of the primitive, 0 selects it by the fit. `tf_save` captures the pose of `source_frame` in `target_frame`, `gripper_save` the opening of the gripper and whether it holds a part. */
 export interface Trigger {
   readonly trig_name: string
   readonly robot_ns: string
@@ -1297,7 +1297,7 @@ export interface Trigger {
   readonly target_frame: string
 }
 
-/** A trigger, the type of its topic's messages, and whether its button is pressed just now. `fault` says why it cannot fire, as where the messages have no such field; empty where it can. */
+/** A trigger, the type of its topic's messages, and whether its button is pressed. `fault` is the reason why it cannot fire, such as a missing field of the messages; empty when it can. */
 export interface TriggerStatus {
   readonly trigger: Trigger
   readonly message_type: string
@@ -1305,7 +1305,7 @@ export interface TriggerStatus {
   readonly fault: string
 }
 
-/** What was used of a recording: from `start_s` to `end_s`, counted from its first sample. */
+/** The used interval of a recording: from `start_s` to `end_s` after its first sample. */
 export interface TrimInterval {
   readonly start_s: number
   readonly end_s: number

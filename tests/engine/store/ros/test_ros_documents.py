@@ -182,8 +182,8 @@ def test_a_message_of_another_type_stays_a_record() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"b_z": 5.0}, "b_z is 5 and not a_z / 4 = 12"),
-        ({"w": [{"data": [1.0]}]}, "w has 1 values where 2 are due"),
+        ({"b_z": 5.0}, "b_z is 5, but flexcell requires a_z / 4 = 12"),
+        ({"w": [{"data": [1.0]}]}, "w has 1 values, not 2"),
         ({"c": None}, "NoneType"),
         ({"tau": -1.0}, "tau"),
     ],
@@ -216,7 +216,7 @@ def test_names_that_are_none_here_are_changed_and_collisions_refused() -> None:
 
 def test_a_document_that_is_no_named_entry_is_refused_by_number() -> None:
     """Such as one of another collection."""
-    with pytest.raises(StoreError, match=r"document 2: it has no `_meta` with `name` and `stored_type`"):
+    with pytest.raises(StoreError, match=r"document 2: the document has no `_meta` with `name` and `stored_type`"):
         entries_from_ros([stored("a", "std_msgs/Bool", {"data": True}), {"x": 1}])
 
 
@@ -301,7 +301,7 @@ def test_the_database_of_mongodb_store_is_read_from_its_server(replicated_mongo:
         ('{"x": {"$numberInt": ["1"]}}', "int"),
         ('{"x": {"$numberInt": "' + "9" * 10_000 + '"}}', "digits"),
         ("{}" * (MAX_DOCUMENTS + 1), f"more than {MAX_DOCUMENTS} documents"),
-        ("[1]", "1 is no document"),
+        ("[1]", "1 is not a document"),
     ],
 )
 def test_a_file_that_holds_too_much_is_refused(tmp_path: Path, text: str, said: str) -> None:
@@ -323,5 +323,5 @@ def test_a_document_whose_meta_is_something_else_is_no_accident(meta: object) ->
     if isinstance(meta, dict):
         assert entries_from_ros([document])[0].record.kind == "record"
     else:
-        with pytest.raises(StoreError, match="it has no `_meta`"):
+        with pytest.raises(StoreError, match="the document has no `_meta`"):
             entries_from_ros([document])
