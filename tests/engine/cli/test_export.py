@@ -65,7 +65,7 @@ def test_the_same_behavior_runs_from_python_and_from_yaml(folder: Path) -> None:
     [
         ("export", "cell_work.py", "this file makes rest, work, wrong (name one: cell_work.py:NAME)"),
         ("export", "cell_work.py:wrk", "this file makes no behavior named `wrk`"),
-        ("export", "cell_work.yaml", "this is no Python file (give FILE.py:NAME)"),
+        ("export", "cell_work.yaml", "this is not a Python file (give FILE.py:NAME)"),
         ("export", "cell_work.py:wrong", "cell_work.py:13:38: error:"),
         ("run", "cell_work.py:wrong", "cell_work.py:13:38: error:"),
         ("run", "absent.py:x", "absent.py:1:1: there is no such file"),

@@ -139,7 +139,7 @@ def test_what_is_wrong_with_a_file_to_be_written_is_said_before_the_run(project:
     assert flexcell(*asked, "new/folder/r.xml", cwd=project).code == 0
     assert (project / "new" / "folder" / "r.xml").read_bytes().startswith(b"<?xml")
     (project / "e.jsonl").unlink()
-    for junit, message in (("new", "this is a folder"), ("wait.yaml/r.xml", "cannot be written")):
+    for junit, message in (("new", "the output path is a folder"), ("wait.yaml/r.xml", "cannot be written")):
         said = flexcell(*asked, junit, cwd=project)
         assert (said.code, (project / "e.jsonl").exists()) == (2, False)
         assert message in said.err

@@ -42,7 +42,7 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
         "speed": 0.4, "line_speed_m_s": 0.1, "approach_m": 0.2, "width_m": 0.05,
     }  # fmt: skip
     assert said("home", "--out", "sub/taught.yaml").startswith(
-        "error: sub/taught.yaml: the file is there (another name"
+        "error: sub/taught.yaml: the file exists (give another name"
     )
     assert said("home", "--out", "sub/taught.yaml", "--replace") == "1. Move to home\n"
 
@@ -50,7 +50,7 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("steps", "says"),
     [
-        (("hme",), "there is no entry hme that a motion can be made of (did you mean home?)"),
+        (("hme",), "there is no entry hme that defines a motion (did you mean home?)"),
         (("pose:home",), "there is no entry pose:home"),
         (("home=grap",), "there is no role grap (did you mean grasp?)"),
         (("home=follow",), "joints home cannot be `follow`"),
