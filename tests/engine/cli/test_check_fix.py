@@ -67,7 +67,7 @@ def test_slips_are_fixed_and_told_and_everything_else_stays(file: Path) -> None:
     said = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert said.out.splitlines() == [
         "x.yaml:11:16: fixed: there is no state `flow.Wiat`: Run `flow.Wait` [unknown-state]",
-        "x.yaml:12:16: fixed: `flow.Wait` has no parameter `duraton_s`: Give it to `duration_s` [unknown-parameter]",
+        "x.yaml:12:16: fixed: `flow.Wait` has no parameter `duraton_s`: Rename it to `duration_s` [unknown-parameter]",
     ]
     assert (said.code, said.err, file.read_text(encoding="utf-8")) == (0, "1 checked: 0 errors, 0 warnings\n", GOOD)
     before = (file.stat().st_mtime_ns, file.stat().st_ino)

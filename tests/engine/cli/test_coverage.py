@@ -67,7 +67,7 @@ def test_bad_usage_is_exit_code_2_and_one_line(behavior: Path) -> None:
     _run(other, "--journal", "none", "--events", "other.jsonl")
     for arguments, message in (
         (("report", "nowhere.json"), "nowhere.json: cannot read this file"),
-        (("report", "choose.yaml"), "choose.yaml: this is no coverage file"),
+        (("report", "choose.yaml"), "choose.yaml: this is not a coverage file"),
         (("collect", "choose.yaml", "choose.yaml"), "choose.yaml:1: this is not an event"),
         (("collect", "choose.yaml", "other.jsonl"), "other.jsonl: this is a run of choose, document"),
     ):

@@ -212,8 +212,8 @@ def test_a_run_that_a_process_drives_is_left_alone_or_taken_over(tmp_path: Path)
         refused = flexcell("resume", run, cwd=tmp_path)
         assert (refused.code, refused.err) == (
             2,
-            f"flexcell: {run}: process {before.pid} drives this run "
-            "(stop that process first; `--take-over` leaves it unable to go on)\n",
+            f"flexcell: {run}: process {before.pid} executes this run "
+            "(stop that process first, or use `--take-over`, which stops its run)\n",
         )
         with started("resume", run, "--take-over", "-q", cwd=tmp_path) as after:
             out, _ = before.communicate(timeout=60)
