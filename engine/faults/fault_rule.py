@@ -38,7 +38,7 @@ class FaultRule:
         """The failure of a fault of kind `error`."""
         failure = self.fault.failure
         if failure is None:
-            raise ValueError(f"{self.label} is no error")
+            raise ValueError(f"{self.label} is not of kind error")
         return failure
 
     @property
@@ -66,7 +66,7 @@ class FaultRule:
         if fault.crashes_at is not None:
             return f"the run has no event {fault.crashes_at}"
         if not self._matched:
-            return f"no state at {fault.at} asked {fault.address} for anything"
+            return f"no state at {fault.at} sent a request to {fault.address}"
         if not self._in_turn:
             return f"no state made a request number {fault.request} that it matches"
         if fault.probability < 1.0:

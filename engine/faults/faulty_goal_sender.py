@@ -56,16 +56,16 @@ def send_faulty_goal(rule: FaultRule, sending: RepeatableGoal, scene: FaultConte
 def _late(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     sent = sending()
     delay_s = rule.fault.late_s
-    _apply(rule, sending, scene, f"its end is told {delay_s:g} s late")
+    _apply(rule, sending, scene, f"its end is reported {delay_s:g} s late")
     return _playing(plays.delay_end(sent, delay_s, scene.clock), sending, sent)
 
 
 def _hang(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     sent = sending()
     if rule.ignores_cancel:
-        _apply(rule, sending, scene, "its end is never told and it hears no cancel")
+        _apply(rule, sending, scene, "its end is never reported and it ignores cancel requests")
         return _playing(plays.ignore_all(), sending, sent, ignores_cancel=True)
-    _apply(rule, sending, scene, "its end is never told")
+    _apply(rule, sending, scene, "its end is never reported")
     return _playing(plays.withhold_end(sent), sending, sent)
 
 
@@ -91,7 +91,7 @@ def _twice(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> Fau
             return sending()
         except FlexcellError as error:
             # The state does not know of the copy; this line records the response of the bus.
-            scene.note(rule, sending.holder.branch, sending.address, f"the copy of the goal was refused: {error}")
+            scene.note(rule, sending.holder.branch, sending.address, f"the copy of the goal was rejected: {error}")
             return None
 
     if rule.fault.duplicate == "after_end":

@@ -41,7 +41,7 @@ async def apply_request_fault(rule: FaultRule, question: RepeatableRequest[R], s
 
 async def _late(rule: FaultRule, question: RepeatableRequest[R], scene: FaultContext) -> R:
     delay_s = rule.fault.late_s
-    scene.apply(rule, question.path, question.address, f"the answer is {delay_s:g} s late")
+    scene.apply(rule, question.path, question.address, f"the response is {delay_s:g} s late")
     try:
         answered = await question.ask()
     except FlexcellError:
@@ -93,7 +93,7 @@ async def _never(rule: FaultRule, question: RepeatableRequest[R], scene: FaultCo
     if rule.fault.lost == "request":
         scene.apply(rule, question.path, question.address, "the request is lost")
     else:
-        scene.apply(rule, question.path, question.address, "the answer is lost" if rule.fault.lost else "no answer")
+        scene.apply(rule, question.path, question.address, "the response is lost" if rule.fault.lost else "no response")
         # An error is a response too, and the response is lost.
         with suppress(FlexcellError):
             await question.ask()

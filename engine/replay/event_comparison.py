@@ -125,12 +125,12 @@ def _is_same_time(recorded: Event, replayed: Event) -> bool:
 
 
 def _unknown(recorded: Event | None, replayed: Event) -> str:
-    """Say of a request that the recording has no answer for it."""
+    """Return the difference text of a request that the recording does not contain."""
     if not isinstance(replayed, (GoalSent, ServiceCalled)):
         return ""
     if isinstance(recorded, (GoalSent, ServiceCalled)) and recorded.path == replayed.path:
         return ""
-    return "the recording does not know this request"
+    return "the recording does not contain this request"
 
 
 def _path(event: Event) -> str:

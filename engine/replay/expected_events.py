@@ -57,7 +57,7 @@ def replayed_events(recording: Recording) -> tuple[RecordedEvent, ...]:
     """
     story = tuple(each for each in recording.events if is_replayed(each.event))
     if not story:
-        raise RecordingError("there is no event in this recording", where=recording.path, hint="record it again")
+        raise RecordingError("this recording contains no events", where=recording.path, hint="record it again")
     if not isinstance(story[0].event, RunStarted):
         raise RecordingError(
             "this recording does not begin with the start of its run", where=recording.path, hint="record it again"
@@ -102,9 +102,9 @@ def _is_loss(event: OutsideEvent, after_s: float, supervision: RunOptions) -> bo
 def _require_replayable(event: AnyEvent, recording: Recording) -> None:
     match event:
         case RunResumed() | OperatorCommanded(command="start_from"):
-            why = "this run did not go on from its start"
+            why = "this run was not executed from its start"
         case BehaviorChanged(documents=documents) if not documents:
-            why = "the behavior of this run was changed while it went on, and the new version was not kept"
+            why = "the behavior of this run was changed during the run, and the new version was not kept"
         case _:
             return
     raise RecordingError(

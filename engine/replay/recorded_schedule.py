@@ -27,7 +27,7 @@ class ScheduledDelivery:
     at_s: float
     deliver: Callable[[], object]
     late: bool = False
-    """Whether everything else of its instant goes first, as long as nobody asks for it."""
+    """Whether all other events of its instant have priority while no one requests it."""
 
 
 class RecordedSchedule:
@@ -81,7 +81,7 @@ class RecordedSchedule:
         return now_s + max(0.0, ended_s - sent_s)
 
     def is_delayed(self, place: int) -> bool:
-        """Tell whether what has this place comes some turns of the loop later than it might."""
+        """Return whether the delivery with this index is delayed by some iterations of the loop."""
         return self._turns.get(place, 0) > 0
 
     def expect(

@@ -110,6 +110,6 @@ class ReplayedGoal:
 
 
 def wake_waiter(waiter: asyncio.Future[None]) -> None:
-    """Let who waits go on, unless it was cancelled meanwhile."""
+    """Wake the waiting task, unless it was cancelled."""
     if not waiter.done():
         waiter.set_result(None)
