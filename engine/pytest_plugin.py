@@ -1,11 +1,11 @@
-"""The pytest plugin `flexcell`: recordings become tests, and behaviors run from tests.
+"""The pytest plugin `flexcell`: replays recordings as tests, and runs behaviors in tests.
 
 Every `*.mcap` in the folders of the ini option `flexcell_recordings` or of `--flexcell-recordings`
 is a test that replays it; its failure is the first difference. Fixtures: `flexcell_run` runs a
 behavior file headless in virtual time, `flexcell_replay` replays a recording.
 
-The engine is imported where it is needed and not above: the plugin is loaded in every pytest of an
-environment that has this package, mostly for nothing. The project file counts that stands in the
+The engine is imported on use, not at the top: pytest loads the plugin in every
+environment that has this package, mostly without using it. The project file counts that stands in the
 root folder of pytest, or above it.
 """
 
@@ -20,7 +20,7 @@ _OPTION = "flexcell_recordings"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare where recordings are."""
+    """Declare the options for recording folders."""
     parser.addini(_OPTION, "folders with flexcell recordings that are replayed as tests", type="paths", default=[])
     parser.getgroup("flexcell").addoption(
         "--flexcell-recordings",
@@ -33,8 +33,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Name the marker, and collect the folders given on the command line."""
-    config.addinivalue_line("markers", "flexcell_replay: a recording that is replayed; set by itself")
+    """Register the marker, and collect the folders given on the command line."""
+    config.addinivalue_line("markers", "flexcell_replay: a recording that is replayed; set automatically")
     for folder in _given(config):
         if folder not in config.args:
             config.args.append(folder)

@@ -1,6 +1,6 @@
-"""What is left of runs: those of the journal and the recordings of a project, to be looked at again.
+"""Past runs of a project, from its journal and its recordings.
 
-`Archive` lists them and opens one as an `ArchivedRun`: its events and the behavior as it was then.
+`Archive` lists them and opens one as an `ArchivedRun`: its events and its version of the behavior.
 """
 
 from engine.archive.archive import Archive, ArchivedRun

@@ -1,4 +1,4 @@
-"""Opens what is left of a run, out of the journal or out of a recording, with the behavior as it was then."""
+"""Opens a past run from the journal or a recording, with its version of the behavior."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from engine.runtime.plan import Catalogue, Plan, new_plan
 
 @dataclass(frozen=True, kw_only=True)
 class ArchivedRun:
-    """One run to be looked at: what it was, its events, and the behavior as it began.
+    """One past run: its description, its events, and the behavior at its start.
 
-    `behavior` has no graph, and there is no plan, where nothing tells what was executed.
+    Without information on the executed behavior, `behavior` has no graph and there is no plan.
     """
 
     summary: PastRun
@@ -36,19 +36,19 @@ class ArchivedRun:
 
 @dataclass(frozen=True, kw_only=True)
 class _Executed:
-    """What a run executed, as far as that is known here."""
+    """The behavior that a run executed, as far as it is known."""
 
     view: BehaviorView
     plan: Plan | None = None
 
 
 class Archive:
-    """The past runs and recordings of one project; may be used from any thread.
+    """The past runs and recordings of one project; thread-safe.
 
     Args:
         project: The folder of the project.
-        catalogue: The states that are known, to draw the outcomes of nodes.
-        journal: The directory or file of the journal; there need not be one.
+        catalogue: The known states, for the outcomes of nodes.
+        journal: The folder or file of the journal; it may be missing.
     """
 
     def __init__(self, project: Path, catalogue: Catalogue, journal: Path) -> None:
@@ -60,7 +60,7 @@ class Archive:
         self._runs = PastRuns(self.journal, success=lambda run, document: self._of_run(run, document).view.success)
 
     def runs(self) -> tuple[PastRun, ...]:
-        """Return the runs of the journal, newest first; none where there is no journal.
+        """Return the runs of the journal, newest first; empty without a journal.
 
         Raises:
             JournalError: the journal cannot be read.
@@ -75,7 +75,7 @@ class Archive:
         """
         found = next((run for run in self.runs() if run.id == run_id), None)
         if found is None:
-            raise JournalError(f"there is no run {run_id!r}", hint="look at the list of past runs")
+            raise JournalError(f"there is no run {run_id!r}", hint="see the list of past runs")
         executed = self._of_run(run_id, found.document)
         return ArchivedRun(
             summary=found,
@@ -89,15 +89,15 @@ class Archive:
         return recording_files(self.project)
 
     def recording_file(self, path: str) -> Path:
-        """Return where a recording lies, by its path in the project.
+        """Return the file of a recording, by its path in the project.
 
         Raises:
-            RecordingError: there is none in the project.
+            RecordingError: there is no such recording in the project.
         """
         return recording_path(self.project, path)
 
     def recording_of(self, run_id: str) -> str:
-        """Return the path in the project of the recording that a server made of a run; empty for none."""
+        """Return the path in the project of the server's recording of a run; empty if there is none."""
         file = self.journal.parent / "recordings" / f"{Path(run_id).name}.mcap"
         inside = file.is_file() and file.resolve().is_relative_to(self.project)
         return file.resolve().relative_to(self.project).as_posix() if inside else ""
@@ -106,7 +106,7 @@ class Archive:
         """Open a recording by its path in the project.
 
         Raises:
-            RecordingError: it is not in the project, cannot be read, is damaged, or is no recording of a run.
+            RecordingError: it is not in the project, cannot be read, is damaged, or is not a recording of a run.
         """
         recording = load_recording(recording_path(self.project, path))
         told = recording.description
@@ -136,7 +136,7 @@ class Archive:
         )
 
     def _of_run(self, run_id: str, document: str) -> _Executed:
-        """Return what a run executed, read once for all runs of the same meaning."""
+        """Return the behavior that a run executed, read once for all runs with the same semantic hash."""
         with self._lock:
             known = self._executed.get(document)
         if known is not None:
@@ -144,7 +144,7 @@ class Archive:
         try:
             origin = read_origin(self.journal, run_id)
         except JournalError:
-            # What cannot be told of how it began takes only the graph away.
+            # If the behavior cannot be read, only the graph is missing.
             origin = None
         if origin is None or not origin.documents:
             return _Executed(view=_unknown(""))
@@ -163,12 +163,12 @@ class Archive:
             behavior = recorded_behavior(documents)
             view = self._drawn(behavior, documents.behavior)
         except FlexcellError:
-            # Its events can be looked at all the same.
+            # Its events can still be shown.
             return _Executed(view=_unknown(name))
         try:
             return _Executed(view=view, plan=new_plan(behavior, self._catalogue))
         except FlexcellError:
-            # A state that is not installed here any more; only the initial values of userdata are not known then.
+            # A state that is no longer installed: only the initial values of userdata are then unknown.
             return _Executed(view=view)
 
     def _drawn(self, behavior: Behavior, behavior_id: str) -> BehaviorView:

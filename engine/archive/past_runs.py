@@ -1,4 +1,4 @@
-"""The runs of a journal, each with how it ended; what is over is read once."""
+"""The runs of a journal with their results; each ended run is read once."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from engine.journal import JournalSnapshot, RunRecord, journal_path, open_snapsh
 
 
 class PastRun(msgspec.Struct, frozen=True, kw_only=True):
-    """A run as its journal tells it; `status` is running, finished, stopped or errored.
+    """A run in its journal; `status` is running, finished, stopped or errored.
 
-    `behavior` is what the behavior calls itself. `running` is a run that has no end in the journal: it is under way
-    somewhere, or its engine died.
+    `behavior` is the name of the behavior. A run with status `running` has no end in the journal: it is active
+    in another process, or its process died.
     """
 
     id: str
     behavior: str
     document: str
-    """The hash of what the behavior meant."""
+    """The semantic hash of the behavior."""
     status: str
     outcome: str | None
     success: bool
     cause: str
     started_at_s: float
     duration_s: float
-    """On the run's own clock."""
+    """Duration on the run's clock."""
     events: int
 
     @property
     def failed(self) -> bool:
-        """Whether it ended badly."""
+        """Whether it ended without success."""
         return self.status == "errored" or (self.status == "finished" and not self.success)
 
 
 class PastRuns:
-    """The runs of one journal; may be used from any thread.
+    """The runs of one journal; thread-safe.
 
     Args:
-        place: The directory or file of the journal; there need not be one.
-        success: Tells the outcomes that meant success to a behavior, by a run and its document hash; none if unknown.
+        place: The folder or file of the journal; it may be missing.
+        success: Returns the success outcomes of a behavior, by a run and its document hash; empty if unknown.
     """
 
     def __init__(self, place: Path, *, success: Callable[[str, str], tuple[str, ...]]) -> None:
@@ -55,7 +55,7 @@ class PastRuns:
         self._over: dict[tuple[str, int], PastRun] = {}
 
     def all(self) -> tuple[PastRun, ...]:
-        """Return all runs, newest first; none where there is no journal. A damaged one is errored, with that cause.
+        """Return all runs, newest first; empty without a journal. A damaged run is errored, with that cause.
 
         Raises:
             JournalError: the journal cannot be read.
@@ -66,7 +66,7 @@ class PastRuns:
             return tuple(self._run(journal, record) for record in reversed(journal.runs()))
 
     def _run(self, journal: JournalSnapshot, record: RunRecord) -> PastRun:
-        # A run that was resumed is another one: it has more events.
+        # A resumed run must be read again: it has more events.
         key = (record.id, record.epoch)
         with self._lock:
             known = self._over.get(key)
@@ -82,7 +82,7 @@ class PastRuns:
         try:
             last = journal.last_event(record.id)
         except JournalError as error:
-            # One damaged run is no reason to hide the others.
+            # A damaged run must not hide the others.
             return _past_run(record, status="errored", cause=error.message)
         if not isinstance(last, RunEnded):
             return _past_run(record, duration_s=last.time_s if last is not None else 0.0)
@@ -121,7 +121,7 @@ def _past_run(
 
 
 def is_success(end: RunEnded, meant: tuple[str, ...]) -> bool:
-    """Tell whether a run ended well: with an outcome that meant success; where that is not known, without a cause."""
+    """Return whether a run ended with a success outcome or, if these are unknown, without a cause."""
     if end.status != "finished":
         return False
     return end.outcome in meant if meant else end.cause is None

@@ -1,4 +1,4 @@
-"""The recordings of a project: found, named by what they say at their beginning, opened inside the project only."""
+"""The recordings of a project: listed with their descriptions, and opened inside the project only."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MOST_FOLDERS = 5000
 
 
 class RecordingFile(msgspec.Struct, frozen=True, kw_only=True):
-    """One recording of the project; `problem` says why it cannot be opened, empty where it can."""
+    """One recording of the project; `problem` says why it cannot be opened, else empty."""
 
     path: str
     """Relative to the project, with forward slashes."""
@@ -53,7 +53,9 @@ def recording_path(project: Path, name: str) -> Path:
     """
     place = PurePosixPath(name)
     root = project.resolve()
-    missing = RecordingError("there is no such recording in this project", where=name, hint="look at the list of them")
+    missing = RecordingError(
+        "there is no such recording in this project", where=name, hint="see the list of recordings"
+    )
     if "\0" in name or place.is_absolute() or ".." in place.parts or not _is_recording(place.name):
         raise missing
     try:
@@ -67,10 +69,10 @@ def recording_path(project: Path, name: str) -> Path:
 
 
 def read_description(path: Path) -> RecordingDescription:
-    """Read what a recording says at its beginning, and no more of it.
+    """Read only the description at the start of a recording.
 
     Raises:
-        RecordingError: it is no recording of a run, or is damaged there.
+        RecordingError: it is not a recording of a run, or its start is damaged.
     """
     try:
         with open_records(path) as records:
@@ -84,10 +86,10 @@ def read_description(path: Path) -> RecordingDescription:
     except OSError as error:
         raise RecordingError(f"cannot be read: {error.strerror or error}", where=path) from error
     except Exception as error:
-        # Parsing raises whatever it stumbles over; for the reader all of it is a damaged file.
+        # The parser raises various exceptions; for the reader each means a damaged file.
         what = " ".join(str(error).split()) or type(error).__name__
         raise RecordingError(f"this file is damaged: {what}", where=path, hint="record it again") from error
-    raise RecordingError("this is not a recording of a run", where=path, hint="give what --record wrote")
+    raise RecordingError("this is not a recording of a run", where=path, hint="give a file that --record wrote")
 
 
 def _is_recording(name: str) -> bool:
@@ -103,7 +105,7 @@ def _files(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
         try:
             entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
         except OSError:
-            continue  # what may not be read is not listed
+            continue  # unreadable files are not listed
         for entry in entries:
             if entry.is_dir(follow_symlinks=False):
                 hidden = entry.name.startswith(".") and entry.name not in _OPENED

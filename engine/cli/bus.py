@@ -1,4 +1,4 @@
-"""`flexcell bus`: looks at the skill bus of a running server, or of a cell opened for the moment."""
+"""`flexcell bus`: inspects the skill bus of a running server, or of a cell that the command opens itself."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from engine.errors import FlexcellError
 from engine.host.state_folder_names import STATE_FOLDER
 
 app = typer.Typer(
-    help="Look at the skill bus of a running server, or of a cell file with --cell.", no_args_is_help=True
+    help="Inspect and use the skill bus of a running server or, with --cell, of a cell.", no_args_is_help=True
 )
 
 Cell = Annotated[
-    Path | None, typer.Option("--cell", help="Open this cell for the moment instead of asking the running server.")
+    Path | None, typer.Option("--cell", help="Open this cell for the command instead of using the running server.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
@@ -58,12 +58,14 @@ def list_(cell: Cell = None, server: Folder = _STATE, json: AsJson = False) -> N
 
 @app.command("echo")
 def echo(
-    topic: Annotated[str, typer.Argument(help="Such as left/joint_state.")],
-    count: Annotated[int, typer.Option("-n", "--count", help="Stop after so many messages; 0: never.", min=0)] = 0,
+    topic: Annotated[str, typer.Argument(help="Topic, such as left/joint_state.")],
+    count: Annotated[
+        int, typer.Option("-n", "--count", help="Number of messages to print; 0: until Ctrl-C.", min=0)
+    ] = 0,
     cell: Cell = None,
     server: Folder = _STATE,
 ) -> None:
-    """Print the messages of a topic, one JSON object a line, the latest first."""
+    """Print the messages of a topic, one JSON object per line, beginning with the latest one."""
 
     async def main() -> None:
         async with _bus(cell, server) as bus:
@@ -80,8 +82,8 @@ def echo(
 
 @app.command("hz")
 def hz(
-    topic: Annotated[str, typer.Argument(help="Such as left/joint_state.")],
-    seconds: Annotated[float, typer.Option(help="How long to listen.", min=0.1)] = 2.0,
+    topic: Annotated[str, typer.Argument(help="Topic, such as left/joint_state.")],
+    seconds: Annotated[float, typer.Option(help="Duration of the measurement in seconds.", min=0.1)] = 2.0,
     cell: Cell = None,
     server: Folder = _STATE,
 ) -> None:
@@ -96,8 +98,8 @@ def hz(
                     async for _ in bus.echo(topic):
                         arrivals.append(loop.time())
             except TimeoutError:
-                pass  # the time to listen is over
-        # The first message is the latest one from before.
+                pass  # the measurement has ended
+        # The first message is the latest one published before the measurement.
         fresh = arrivals[1:]
         rate = (len(fresh) - 1) / (fresh[-1] - fresh[0]) if len(fresh) > 1 else 0.0
         sys.stdout.write(f"{rate:.1f} Hz, {len(fresh)} messages in {seconds:g} s\n")
@@ -107,22 +109,24 @@ def hz(
 
 @app.command("publish")
 def publish(
-    topic: Annotated[str, typer.Argument(help="Such as left/jog; `flexcell bus list` tells which take commands.")],
+    topic: Annotated[
+        str, typer.Argument(help="Topic that accepts commands, such as left/jog; see `flexcell bus list`.")
+    ],
     message: Annotated[str, typer.Argument(help="The message as a JSON object.")],
-    rate: Annotated[
-        float | None, typer.Option(help="Repeat it so often a second, as a held key does.", min=0.1)
-    ] = None,
-    seconds: Annotated[float | None, typer.Option("--for", help="End after so many seconds, with --rate.")] = None,
+    rate: Annotated[float | None, typer.Option(help="Repeat the message at this rate in Hz.", min=0.1)] = None,
+    seconds: Annotated[float | None, typer.Option("--for", help="With --rate: stop after this many seconds.")] = None,
     cell: Cell = None,
     server: Folder = _STATE,
 ) -> None:
-    """Publish a message on a topic that takes commands, once or at a rate until Ctrl-C. This may move the robot.
+    """Publish a message on a topic that accepts commands, once or at a rate until Ctrl-C. This may move a robot.
 
     `flexcell bus publish left/jog '{"velocity": [0, 0, -0.02, 0, 0, 0]}' --rate 20 --for 2`
     """
     typed = read_json(message, "the message")
     if seconds is not None and rate is None:
-        raise FlexcellError("--for says how long a message is repeated", hint="say how often, with --rate")
+        raise FlexcellError(
+            "--for requires --rate", hint="give the rate at which the message is repeated, such as --rate 20"
+        )
 
     async def main() -> None:
         async with _bus(cell, server) as bus:
@@ -135,7 +139,7 @@ def publish(
 
 
 async def repeat(act: Callable[[], Awaitable[None]], *, rate_hz: float, duration_s: float | None) -> None:
-    """Act at a rate; where that takes too long, beats are left out and not made up for."""
+    """Call `act` at a rate; if a call takes too long, the missed calls are skipped."""
     loop = asyncio.get_running_loop()
     start_s, beat = loop.time(), 0
     while duration_s is None or beat / rate_hz < duration_s:
@@ -146,12 +150,12 @@ async def repeat(act: Callable[[], Awaitable[None]], *, rate_hz: float, duration
 
 @app.command("call")
 def call(
-    address: Annotated[str, typer.Argument(help="Such as left/forward_kinematics.")],
+    address: Annotated[str, typer.Argument(help="Service, such as left/forward_kinematics.")],
     request: Annotated[str, typer.Argument(help="The request as a JSON object.")] = "{}",
     cell: Cell = None,
     server: Folder = _STATE,
 ) -> None:
-    """Ask a service and print its answer as JSON."""
+    """Call a service and print its response as JSON."""
 
     async def main() -> None:
         async with _bus(cell, server) as bus:
@@ -162,12 +166,12 @@ def call(
 
 @app.command("goal")
 def goal(
-    address: Annotated[str, typer.Argument(help="Such as left/joint_trap_vel.")],
+    address: Annotated[str, typer.Argument(help="Action, such as left/joint_trap_vel.")],
     request: Annotated[str, typer.Argument(help="The goal as a JSON object.")] = "{}",
     cell: Cell = None,
     server: Folder = _STATE,
 ) -> None:
-    """Send an action goal, wait for its end and print the result. This moves the robot."""
+    """Send an action goal, wait for its result and print it. This may move a robot."""
 
     async def main() -> ExitCode:
         async with _bus(cell, server) as bus:

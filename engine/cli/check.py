@@ -1,4 +1,4 @@
-"""`flexcell check`: static findings with file, line and column."""
+"""`flexcell check`: checks documents statically and reports findings with file, line and column."""
 
 from __future__ import annotations
 
@@ -46,104 +46,109 @@ def check(
         typer.Argument(help="Behavior, cell, entries or project documents, or FILE.py:NAME.", show_default=False),
     ] = None,
     format_: Annotated[
-        Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
+        Literal["text", "json", "github", "sarif"], typer.Option("--format", help="Output format of the findings.")
     ] = "text",
-    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
     cell: Annotated[
-        Path | None, typer.Option(help="The cell to check behaviors and entries for; the one they name by default.")
+        Path | None,
+        typer.Option(help="Cell to check behaviors and entries against; by default the cell that they name."),
     ] = None,
     store: Annotated[
         str,
         typer.Option(
-            help="Look for named entries in this store: a file, mongodb://…, or `cell` for that of the behavior's cell."
+            help="Store in which named entries must exist: a file, mongodb://…, or `cell` for the store of the"
+            " behavior's cell."
         ),
     ] = "",
     fix: Annotated[
         bool,
         typer.Option(
             "--fix",
-            help="Write those fixes of the editor into behavior documents that need no choice; name the others.",
+            help="Apply to behavior documents the fixes that need no choice; print the choices for the others.",
         ),
     ] = False,
     fix_likely: Annotated[
-        bool, typer.Option("--fix-likely", help="As --fix, and the first of several fixes. No node is deleted.")
+        bool,
+        typer.Option(
+            "--fix-likely", help="As --fix, but also apply the first of several possible fixes. No node is deleted."
+        ),
     ] = False,
     targets: Annotated[
         TargetLevel,
         typer.Option(
-            help="What targets count as that an arm of the cell cannot reach, or where it would be in itself or a"
-            " fixture as drawn; `off` does not look."
+            help="Severity of targets that an arm of the cell cannot reach, or at which it would collide with itself"
+            " or a fixture; `off` skips the check."
         ),
     ] = "warning",
     explain: Annotated[
-        str, typer.Option(help="Print what a kind of finding means and what to do about it.", metavar="CODE")
+        str, typer.Option(help="Print what a finding code means and how to resolve it.", metavar="CODE")
     ] = "",
 ) -> None:
-    """Check documents without running anything. Exit code 2 when there is an error in any."""
+    """Check documents without executing them. Exit code 2 if any document has an error."""
     if explain:
         sys.stdout.write(page_text(explain))
         return
     if not files:
-        raise typer.BadParameter("give the documents to check", param_hint="FILES")
+        raise typer.BadParameter("no documents given", param_hint="FILES")
     catalogues = {folder: load_states(folder) for folder in dict.fromkeys(file.parent for file in files)}
-    around = load_cell(cell) if cell is not None else None
-    chosen = "json" if json else format_
-    told = sys.stdout if chosen == "text" else sys.stderr
-    is_kept = not (fix or fix_likely) or _fix(files, catalogues, told, likely=fix_likely)
+    cell_spec = load_cell(cell) if cell is not None else None
+    output_format = "json" if json else format_
+    fix_output = sys.stdout if output_format == "text" else sys.stderr
+    is_written = not (fix or fix_likely) or _fix(files, catalogues, fix_output, likely=fix_likely)
     findings = [
         finding
         for file in files
-        for finding in findings_of(file, catalogues[file.parent], store, around, targets=targets)
+        for finding in findings_of(file, catalogues[file.parent], store, cell_spec, targets=targets)
     ]
-    if chosen == "json":
+    if output_format == "json":
         sys.stdout.write(as_json(findings) + "\n")
-    elif chosen == "sarif":
+    elif output_format == "sarif":
         sys.stdout.write(as_sarif(findings) + "\n")
-    elif chosen == "github":
+    elif output_format == "github":
         sys.stdout.writelines(as_github(finding) + "\n" for finding in findings)
     else:
         sys.stdout.writelines(f"{finding}\n" for finding in findings)
         sys.stderr.write(_summary(len(files), findings))
-    if not is_kept or any(finding.severity == "error" for finding in findings):
+    if not is_written or any(finding.severity == "error" for finding in findings):
         raise typer.Exit(ExitCode.BAD_INPUT)
 
 
-def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], told: TextIO, *, likely: bool) -> bool:
-    """Fix documents and tell what was done; False where one could not be written."""
+def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], output: TextIO, *, likely: bool) -> bool:
+    """Fix documents and print what was fixed; False if one could not be written."""
     from engine.cli.check_fix import fix_file, fix_lines
 
-    is_kept = True
+    is_written = True
     for file in files:
         try:
-            made = fix_file(file, catalogues[file.parent], likely=likely)
+            result = fix_file(file, catalogues[file.parent], likely=likely)
         except FlexcellError as error:
             sys.stderr.write(f"flexcell: {error}\n")
-            is_kept = False
+            is_written = False
             continue
-        if made is not None:
-            told.writelines(f"{line}\n" for line in fix_lines(file, made))
-    return is_kept
+        if result is not None:
+            output.writelines(f"{line}\n" for line in fix_lines(file, result))
+    return is_written
 
 
 def findings_of(
     file: Path, catalogue: Catalogue, store: str = "", cell: Cell | None = None, *, targets: TargetLevel = "warning"
 ) -> tuple[Finding, ...]:
-    """Return the findings of one document of any kind; each mistake in it is one.
+    """Return the findings of one document of any kind; each syntax or schema error is a finding.
 
     Args:
         file: The document.
         catalogue: The states by name.
-        store: Where named entries are looked for; by default among those that the cell is seeded with.
-        cell: The cell in which a behavior is to run, or of which entries are; by default the one that is named.
-        targets: What targets count as that an arm cannot be at.
+        store: Store in which named entries must exist; by default those that the cell is seeded with.
+        cell: Cell in which a behavior runs, or to which entries belong; by default the cell that is named.
+        targets: Severity of targets that an arm cannot reach or hold without collision.
     """
     try:
         if is_python_name(str(file)):
-            behavior = _made_in_python(file)
+            behavior = _load_python(file)
             known = _stored_names(behavior, store) if store else None
             context = cell_context(behavior, cell)
             findings = check_behavior(behavior, catalogue, known, cell=context)
-            return findings + _at_targets(behavior, catalogue, context, targets)
+            return findings + _target_findings(behavior, catalogue, context, targets)
         if file.name == PROJECT_FILE:
             load_project(file)
             return ()
@@ -165,14 +170,14 @@ def _of_behavior(
     known = _stored_names(behavior, store) if store and behavior is not None else None
     context = cell_context(behavior, cell) if behavior is not None else CellContext()
     findings = check_survey(survey, file, catalogue, known, cell=context)
-    more = _at_targets(behavior, catalogue, context, targets) if behavior is not None else ()
-    return tuple(sorted((*findings, *more), key=finding_sort_key)) if more else findings
+    target_findings = _target_findings(behavior, catalogue, context, targets) if behavior is not None else ()
+    return tuple(sorted((*findings, *target_findings), key=finding_sort_key)) if target_findings else findings
 
 
-# Imported where they are wanted: a check of a small document takes mostly what is imported for it.
+# Imported on use: for a small document, imports take most of the time of a check.
 
 
-def _made_in_python(file: Path) -> Behavior:
+def _load_python(file: Path) -> Behavior:
     from engine.authoring.python_file import load_python_behavior
 
     return load_python_behavior(str(file))
@@ -184,21 +189,21 @@ def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
     return stored_names(behavior, store)
 
 
-def _at_targets(
+def _target_findings(
     behavior: Behavior, catalogue: Catalogue, context: CellContext, level: TargetLevel
 ) -> tuple[Finding, ...]:
     if level == "off":
         return ()
-    found = check_targets(behavior, catalogue, cell=context)
-    # What keeps the arms from being put anywhere stays an error.
-    return tuple(replace(each, severity=level) if each.severity == "warning" else each for each in found)
+    findings = check_targets(behavior, catalogue, cell=context)
+    # A finding that prevents the check of all targets stays an error.
+    return tuple(replace(each, severity=level) if each.severity == "warning" else each for each in findings)
 
 
 def document_kind(file: Path) -> str:
-    """Tell behavior, cell and entries documents apart by their keys.
+    """Return the kind of a document, by its keys: behavior, cell or entries.
 
     Raises:
-        DocumentError: it cannot be read.
+        DocumentError: the document cannot be read, or is of no known kind.
     """
     recovered = load_recovering(file)
     data = recovered.source.data if recovered.source is not None else None
@@ -208,7 +213,7 @@ def document_kind(file: Path) -> str:
     if recovered.mistakes:
         raise recovered.mistakes[0]
     raise DocumentError(
-        "this is no behavior, cell or entries document",
+        "this is not a behavior, cell or entries document",
         where=Position(file=str(file), line=1, column=1),
         hint="a behavior has `root:`, a cell has `cell:`",
     )
@@ -218,5 +223,5 @@ def _summary(files: int, findings: list[Finding]) -> str:
     errors = sum(finding.severity == "error" for finding in findings)
     lines = [f"{files} checked: {errors} errors, {len(findings) - errors} warnings"]
     if findings:
-        lines.append(f"what a finding means: flexcell check --explain {findings[0].code}")
+        lines.append(f"to explain a finding: flexcell check --explain {findings[0].code}")
     return "\n".join(lines) + "\n"

@@ -17,35 +17,35 @@ from engine.library.behavior_library import FindingView
 
 
 def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> FixResult | None:
-    """Write into a behavior document the fixes that can be made without asking; None where it is none, or unreadable.
+    """Apply to a behavior document the fixes that need no choice; None for an unreadable or other document.
 
     Raises:
-        FlexcellError: the file cannot be written, or was changed meanwhile; it is as it was.
+        FlexcellError: the file cannot be written, or was changed during the fix; it is unchanged.
     """
     if is_python_name(str(file)) or not _is_behavior(file):
         return None
     content = _content(file)
     context = ProjectContext(catalogue, file.parent, Path(file.absolute().anchor))
     try:
-        made = fix_text(content.decode("utf-8"), file=file, context=context, likely=likely)
+        result = fix_text(content.decode("utf-8"), file=file, context=context, likely=likely)
     except UnicodeDecodeError:
-        return None  # the check says so
-    if made.fixed:
-        _write(file, content, made.text)
-    return made
+        return None  # the check reports it
+    if result.fixed:
+        _write(file, content, result.text)
+    return result
 
 
-def fix_lines(file: Path, made: FixResult) -> Iterator[str]:
-    """Say what was fixed, where it stood when its turn came, and what a person may choose from for what is left."""
-    for finding, fix in made.fixed:
-        yield f"{_place(file, finding)}: fixed: {finding.message}: {fix.title} [{finding.code}]"
-    for finding, fixes in made.left:
+def fix_lines(file: Path, result: FixResult) -> Iterator[str]:
+    """Return a line per fix applied, with the position at that time, and per finding that needs a choice."""
+    for finding, fix in result.fixed:
+        yield f"{_position(file, finding)}: fixed: {finding.message}: {fix.title} [{finding.code}]"
+    for finding, fixes in result.left:
         if fixes:
             titles = "; or: ".join(fix.title for fix in fixes)
-            yield f"{_place(file, finding)}: not fixed, to choose: {titles} [{finding.code}]"
+            yield f"{_position(file, finding)}: not fixed, choose one: {titles} [{finding.code}]"
 
 
-def _place(file: Path, finding: FindingView) -> str:
+def _position(file: Path, finding: FindingView) -> str:
     return f"{file}:{finding.line}:{finding.column}"
 
 
@@ -67,11 +67,11 @@ def _content(file: Path) -> bytes:
 
 def _write(file: Path, before: bytes, text: str) -> None:
     target = file.resolve()
-    hint = "nothing was fixed in it; make it writable, or check without `--fix`"
+    hint = "no fix was written; make the file writable, or check without `--fix`"
     if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
         raise FlexcellError("the file is read-only", where=file, hint=hint)
     if _content(target) != before:
-        raise FlexcellError("the file was changed meanwhile", where=file, hint="nothing was fixed in it; check again")
+        raise FlexcellError("the file was changed during the check", where=file, hint="no fix was written; check again")
     try:
         write_atomically(target, text)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The named entries that a run of a behavior would find in a real store, for `flexcell check --store`."""
+"""Lists the named entries that a run of a behavior finds in a store, for `flexcell check --store`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from engine.errors import DocumentError
 from engine.store import Store, open_store
 
 OWN = "cell"
-"""Stands for the store of the behavior's own cell."""
+"""Name of the store of the behavior's own cell."""
 
 
 def stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
-    """Return the names by kind of the entries in a store and of those that its cell seeds it with.
+    """Return, by kind, the names of the entries in a store and of those that the cell seeds it with.
 
     Args:
-        behavior: Whose cell it is.
+        behavior: The behavior that names the cell.
         store: A file, the address of a MongoDB server, or `cell`.
 
     Raises:
@@ -42,7 +42,7 @@ def stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
     named = cell.document.store
     if isinstance(named, MongoStoreSpec) or Path(named.path).is_file():
         return names_by_kind([*keys, *asyncio.run(_listed_of_cell(behavior))])
-    # A file that is not there yet will hold the seed.
+    # A store file that does not exist yet is created with the seed entries.
     return names_by_kind(keys)
 
 

@@ -1,4 +1,4 @@
-"""The commands, each loaded when it is asked for: every one needs another part of the engine."""
+"""The commands, each imported on first use: each needs a different part of the engine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
-_PLACES = {
+_IMPORT_PATHS = {
     "run": "engine.cli.run:run",
     "resume": "engine.cli.resume:resume",
     "stop": "engine.cli.main:stop",
@@ -29,18 +29,18 @@ _PLACES = {
     "teach": "engine.cli.teach:app",
     "schema": "engine.cli.schema:schema",
 }
-"""Where the function of a command, or the application of a group of them, is."""
+"""Import path of each command's function, or of the application of a command group."""
 
 
 def preload(names: Iterable[str]) -> None:
-    """Load the commands of these names; what is none is left for the command line to refuse."""
+    """Load the commands of these names; the command line itself rejects a name that is no command."""
     for name in names:
-        if name in _PLACES:
-            _loaded(name)
+        if name in _IMPORT_PATHS:
+            _load_command(name)
 
 
 class Commands(TyperGroup):
-    """All commands of `flexcell`, in the order of its help."""
+    """All commands of `flexcell`, in the order in which the help lists them."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -48,26 +48,26 @@ class Commands(TyperGroup):
 
 
 class _CommandsOnDemand(Mapping[str, Any]):
-    """The commands by name; a module is imported when its command is looked up."""
+    """The commands by name; looking up a command imports its module."""
 
     def __getitem__(self, name: str) -> Any:
-        return _loaded(name)
+        return _load_command(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_PLACES)
+        return iter(_IMPORT_PATHS)
 
     def __len__(self) -> int:
-        return len(_PLACES)
+        return len(_IMPORT_PATHS)
 
 
 @cache
-def _loaded(name: str) -> Any:
-    module, _, attribute = _PLACES[name].partition(":")
-    found = getattr(import_module(module), attribute)
-    if isinstance(found, typer.Typer):
-        group: Any = get_group(found)
+def _load_command(name: str) -> Any:
+    module, _, attribute = _IMPORT_PATHS[name].partition(":")
+    command = getattr(import_module(module), attribute)
+    if isinstance(command, typer.Typer):
+        group: Any = get_group(command)
         group.name = name
         return group
     single = typer.Typer(add_completion=False)
-    single.command(name)(found)
+    single.command(name)(command)
     return get_command(single)

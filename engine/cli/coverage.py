@@ -1,4 +1,4 @@
-"""`flexcell coverage`: what runs have covered of their behaviors, as reports and from event logs."""
+"""`flexcell coverage`: reports coverage of behaviors, and collects it from the logs of runs."""
 
 from __future__ import annotations
 
@@ -19,68 +19,72 @@ from engine.coverage.report import report as write_report
 from engine.errors import FlexcellError
 from engine.registry import load_states
 
-app = typer.Typer(help="Tell what runs have covered of their behaviors.", no_args_is_help=True)
+app = typer.Typer(help="Report which parts of behaviors were executed by runs.", no_args_is_help=True)
 
 
 @app.command("report")
 def report(
     files: Annotated[
-        list[Path], typer.Argument(help="Files that `flexcell run --coverage` wrote.", show_default=False)
+        list[Path], typer.Argument(help="Coverage files of `flexcell run --coverage`.", show_default=False)
     ],
     format_: Annotated[
         Literal["text", "html", "cobertura", "lcov", "json"],
-        typer.Option("--format", help="How it is written: html is one page, cobertura and lcov are for CI servers."),
+        typer.Option("--format", help="Output format: html is one page; cobertura and lcov are for CI servers."),
     ] = "text",
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write it here instead of on stdout.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write the report to this file instead of stdout.")
+    ] = None,
     fail_under: Annotated[
-        float | None, typer.Option(help="Exit code 1 when less than this many percent are covered.", min=0, max=100)
+        float | None, typer.Option(help="Exit code 1 if the coverage is below this percentage.", min=0, max=100)
     ] = None,
 ) -> None:
-    """Report the coverage of any number of runs, added up by behavior.
+    """Report the coverage of any number of runs, merged per behavior.
 
-    Covered are nodes that were entered, and ways out of them that were taken: transitions,
-    outcomes, conditions, timeouts, guards, error targets, statuses.
+    Counts nodes that were entered, and exits of nodes that were taken: transitions, outcomes,
+    conditions, timeouts, guards, error targets, statuses.
     """
     prepare(output)
     coverages = merge(tuple(coverage for file in files for coverage in read_coverage(file)))
     if not coverages:
-        raise FlexcellError("there is no coverage in these files", hint="fill them with `flexcell run --coverage`")
+        raise FlexcellError("these files contain no coverage", hint="write coverage with `flexcell run --coverage`")
     text = write_report(coverages, format_, time_s=time.time())
     if output is None:
         sys.stdout.write(text)
     else:
         write(output, text.encode())
-    _judge(coverages, fail_under)
+    _require_coverage(coverages, fail_under)
 
 
 @app.command("collect")
 def collect(
-    behavior: Annotated[Path, typer.Argument(help="The behavior that was run.", show_default=False)],
+    behavior: Annotated[Path, typer.Argument(help="Behavior that the runs executed.", show_default=False)],
     logs: Annotated[
         list[Path],
-        typer.Argument(help="Journal directories, recordings (.mcap) or event logs (.jsonl).", show_default=False),
+        typer.Argument(help="Journal folders, recordings (.mcap) or event logs (.jsonl).", show_default=False),
     ],
-    to: Annotated[Path, typer.Option(help="Add it to this file; it is made at first.")] = Path("coverage.json"),
+    to: Annotated[Path, typer.Option(help="Coverage file to add to; it is created if missing.")] = Path(
+        "coverage.json"
+    ),
 ) -> None:
-    """Count what earlier runs of a behavior have covered, from what was kept of them.
+    """Collect the coverage of earlier runs of a behavior from journals, recordings or event logs.
 
-    Runs of other behaviors, and of other versions of this one, are left out of a journal; as a
-    file of their own they are refused.
+    In a journal, runs of other behaviors and of other versions of this one are skipped; as
+    separate files they are an error.
     """
     catalogue = load_states(behavior)
-    found, _ = read_behavior(behavior, catalogue)
-    coverage = CoverageCollector(found, catalogue)
+    document, _ = read_behavior(behavior, catalogue)
+    coverage = CoverageCollector(document, catalogue)
     coverage.require_same(to)
-    left_out = 0
-    for place in logs:
-        runs = read_logs(place)
-        many = place.is_dir() or place.suffix == ".db"
-        of_this = [run for run in runs if run.document == found.meaning or not many]
-        left_out += len(runs) - len(of_this)
-        for run in of_this:
+    skipped = 0
+    for log in logs:
+        runs = read_logs(log)
+        is_journal = log.is_dir() or log.suffix == ".db"
+        matching = [run for run in runs if run.document == document.meaning or not is_journal]
+        skipped += len(runs) - len(matching)
+        for run in matching:
             _add(coverage, run)
     coverage.accumulate(to)
-    others = f", {left_out} of other documents left out" if left_out else ""
+    others = f", {skipped} of other documents skipped" if skipped else ""
     sys.stderr.write(f"{coverage.runs} runs added to {to}{others}: {coverage.percent:.1f} % covered by them\n")
 
 
@@ -91,8 +95,8 @@ def _add(coverage: CoverageCollector, run: RunEventLog) -> None:
         raise FlexcellError(error.message, where=run.name, hint=error.hint) from error
 
 
-def _judge(coverages: tuple[BehaviorCoverage, ...], fail_under: float | None) -> None:
+def _require_coverage(coverages: tuple[BehaviorCoverage, ...], fail_under: float | None) -> None:
     share = percent(sum(c.covered for c in coverages), sum(len(c.items) for c in coverages))
     if fail_under is not None and share < fail_under:
-        sys.stderr.write(f"flexcell: {share:.1f} % is covered, {fail_under:g} % is asked for\n")
+        sys.stderr.write(f"flexcell: coverage {share:.1f} % is below the required {fail_under:g} %\n")
         raise typer.Exit(ExitCode.OTHER_OUTCOME)

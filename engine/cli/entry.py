@@ -1,4 +1,4 @@
-"""The console script: STOP goes out before anything else is even imported."""
+"""The console script: sends STOP before it imports anything else."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Run the command line; `flexcell stop` in its plain forms, and `--version`, without loading the rest."""
+    """Run the command line; plain `flexcell stop` and `--version` run without loading the other commands."""
     if sys.argv[1:2] == ["stop"] and (options := _stop_options(sys.argv[2:])) is not None:
         from engine.cli.stop import stop_cell
 
@@ -23,15 +23,15 @@ def main() -> None:
     try:
         command_line()
     finally:
-        # Python would look through everything that a cell loaded for cycles before it ends, for 0.3 s of CPU.
+        # At exit, Python would search everything that a cell loaded for cycles, for 0.3 s of CPU time.
         gc.freeze()
 
 
 def _command_line() -> Callable[[], None]:
-    """Return the full command line, with the module of the command that is asked for.
+    """Return the full command line, with the module of the requested command loaded.
 
-    Nothing that is loaded becomes garbage: looking for it meanwhile, and again with each later look, takes a sixth of
-    what a small command takes.
+    Garbage collection is off during the imports, and the imported objects are frozen: none of them becomes garbage,
+    and collecting takes a sixth of the time of a small command.
     """
     gc.disable()
     try:
@@ -46,7 +46,7 @@ def _command_line() -> Callable[[], None]:
 
 
 def _stop_options(arguments: list[str]) -> tuple[Path, str] | None:
-    """Return state folder and reason; None for whatever only the full command line understands, such as --help."""
+    """Return state folder and reason; None for arguments that need the full command line, such as --help."""
     from engine.cli.stop import REASON
     from engine.host.state_folder_names import STATE_FOLDER
 

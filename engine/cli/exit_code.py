@@ -1,4 +1,4 @@
-"""The exit codes, which scripts and CI rely on."""
+"""The exit codes of the commands; scripts and CI depend on them."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from enum import IntEnum
 
 
 class ExitCode(IntEnum):
-    """What the process says when it ends."""
+    """Exit code of the process."""
 
     SUCCESS = 0
     """The outcome is one of `success`."""
     OTHER_OUTCOME = 1
     """Another outcome."""
     BAD_INPUT = 2
-    """Bad usage or document; nothing was started."""
+    """Invalid usage or document; nothing was started."""
     ERRORED = 3
     """The run ended with an error."""
     REPLAY_DIFFERS = 4
-    """A replay did not do what the recording did."""
+    """A replay differs from the recording."""
     INTERRUPTED = 130
     """Stopped by Ctrl-C or a signal; robots at rest, journal closed."""

@@ -1,4 +1,4 @@
-"""`flexcell export`: writes a behavior made in Python as a YAML document."""
+"""`flexcell export`: writes a behavior defined in Python as a YAML document."""
 
 from __future__ import annotations
 
@@ -18,16 +18,20 @@ from engine.registry import load_states
 
 def export(
     behavior: Annotated[
-        Path, typer.Argument(help="FILE.py:NAME, or FILE.py where it makes one behavior only.", show_default=False)
+        Path, typer.Argument(help="FILE.py:NAME, or FILE.py if it defines only one behavior.", show_default=False)
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Write it here, and the behaviors it refers to beside it; else on stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            help="Write the document to this file, and the behaviors that it references next to it; default: stdout.",
+        ),
     ] = None,
 ) -> None:
-    """Write a behavior made in Python as YAML. Exit code 2, and nothing written, when it has errors."""
+    """Write a behavior defined in Python as YAML. If it has errors, write nothing; exit code 2."""
     if not is_python_name(str(behavior)):
-        raise DocumentError("this is no Python file", where=str(behavior), hint="give FILE.py:NAME")
+        raise DocumentError("this is not a Python file", where=str(behavior), hint="give FILE.py:NAME")
     made, findings = read_behavior(behavior, load_states(behavior))
     sys.stderr.writelines(f"{finding}\n" for finding in findings)
     if any(finding.severity == "error" for finding in findings):

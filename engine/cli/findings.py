@@ -1,4 +1,4 @@
-"""Prints findings for machines: JSON, GitHub annotations, SARIF 2.1.0."""
+"""Formats findings for other programs: JSON, GitHub annotations, SARIF 2.1.0."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def as_json(findings: Sequence[Finding]) -> str:
 
 
 def as_github(finding: Finding) -> str:
-    """Return one finding as a workflow command, with the escapes that those ask for."""
+    """Return one finding as a GitHub workflow command, escaped as the format requires."""
     position = finding.position
     place = (
         f"file={_property(position.file)},line={position.line},col={position.column},title={_property(finding.code)}"
@@ -42,7 +42,7 @@ def as_github(finding: Finding) -> str:
 
 
 def as_sarif(findings: Sequence[Finding]) -> str:
-    """Return the findings as one SARIF 2.1.0 log, with the page of each kind of finding that occurs."""
+    """Return the findings as one SARIF 2.1.0 log, with the reference page of each finding code in it."""
     codes = sorted({finding.code for finding in findings})
     numbers = {code: number for number, code in enumerate(codes)}
     driver = {
@@ -53,7 +53,7 @@ def as_sarif(findings: Sequence[Finding]) -> str:
     }
     run = {
         "tool": {"driver": driver},
-        # Columns count characters; unless told, readers take them for UTF-16 code units.
+        # Columns count characters; by default, readers interpret them as UTF-16 code units.
         "columnKind": "unicodeCodePoints",
         "results": [_result(finding, numbers) for finding in findings],
     }
@@ -69,7 +69,7 @@ def _rule(code: str) -> dict[str, object]:
         "shortDescription": {"text": meaning},
         "defaultConfiguration": {"level": severity},
         "help": _help(code),
-        # `helpUri` must be absolute, and where the pages are served differs from project to project.
+        # `helpUri` must be absolute, but each project serves the pages at a different address.
         "properties": {"page": page_name(code)},
     }
 

@@ -1,4 +1,4 @@
-"""Reads what the commands are given: behaviors, cells, parameters, JSON values."""
+"""Reads the arguments of the commands: behaviors, cells, parameters, JSON values."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def read_behavior(
     Args:
         file: The behavior.
         catalogue: The states by name.
-        cell: Where it is to run; by default in the cell that it names.
-        given: Its parameters for this run, `name=value`.
+        cell: Cell in which it runs; by default the cell that it names.
+        given: Parameters of this run, `name=value`.
 
     Raises:
-        DocumentError: it cannot be read at all, or a parameter is not acceptable.
+        DocumentError: the behavior cannot be read, or a parameter is invalid.
     """
     name = str(file)
     behavior = load_python_behavior(name) if is_python_name(name) else load_behavior(file)
@@ -42,10 +42,10 @@ def read_behavior(
 def read_plan(
     file: Path, catalogue: Catalogue, *, cell: Cell | None = None, substitutes: Substitutes | None = None
 ) -> Plan:
-    """Load, check and plan a behavior while others go on, for the cell that it names or another one.
+    """Load, check and plan a behavior, for the cell that it names or for `cell`.
 
     Raises:
-        DocumentError: it cannot be read, or has errors; the first one is given.
+        DocumentError: the behavior cannot be read, or has errors; the first error is raised.
     """
     behavior, findings = read_behavior(file, catalogue, cell=cell)
     require_no_errors(findings)
@@ -58,23 +58,23 @@ def reload_plan(
     """Load, check and plan a behavior whose file may have changed since this process read it.
 
     Raises:
-        DocumentError: it cannot be read, or has errors.
-        ControlError: it is made in Python, which runs a file once.
+        DocumentError: the behavior cannot be read, or has errors.
+        ControlError: the behavior is defined in Python, which executes a file only once.
     """
     if is_python_name(str(file)):
-        hint = "save it as YAML with `flexcell export` and run that"
-        raise ControlError("a behavior made in Python cannot be read anew", where=file, hint=hint)
+        hint = "export it to YAML with `flexcell export` and run the YAML document"
+        raise ControlError("a behavior defined in Python cannot be reloaded", where=file, hint=hint)
     return read_plan(file, catalogue, cell=cell, substitutes=substitutes)
 
 
 def behavior_source(file: Path) -> str:
-    """Return the name given for a behavior so that it means the same in every directory."""
+    """Return the argument that names a behavior as an absolute path, valid in every working directory."""
     path, python, name = str(file).partition(".py:")
     return f"{Path(path).resolve()}{python}{name}"
 
 
 def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:
-    """Load the cell named on the command line, else the one the behavior names, else none."""
+    """Load the cell given on the command line, else the cell that the behavior names; None if there is neither."""
     if file is not None:
         return load_cell(file)
     if behavior is not None and behavior.cell_file is not None:
@@ -83,10 +83,10 @@ def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:
 
 
 def read_parameters(given: Sequence[str], declared: Mapping[str, ParameterSpec]) -> dict[str, object]:
-    """Read `name=value` pairs by the types that the behavior declares.
+    """Read `name=value` pairs, converted to the types that the behavior declares.
 
     Raises:
-        DocumentError: a pair is not `name=value`, names no parameter, or has a value of another type.
+        DocumentError: a pair is not `name=value`, names no parameter, or has a value of the wrong type.
     """
     values: dict[str, object] = {}
     for pair in given:
@@ -113,7 +113,7 @@ def read_json(text: str, where: str) -> object:
     """Read a JSON value given on the command line.
 
     Raises:
-        FlexcellError: it is not JSON; says where in the text.
+        FlexcellError: the text is not JSON; the message gives the position of the error.
     """
     try:
         return msgspec.json.decode(text)

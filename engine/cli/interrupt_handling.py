@@ -1,4 +1,4 @@
-"""What SIGINT and SIGTERM mean to a run: stop; then tell what is waited for; then leave at once."""
+"""Handles SIGINT and SIGTERM of a run: first stop, then print what the stop waits for, then exit immediately."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from engine.cli.exit_code import ExitCode
 from engine.runtime.run import Run
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_LEFT = b"flexcell: left at once, whatever moves; the journal holds what was committed: `flexcell runs`\n"
+_EXITED = b"flexcell: exited immediately, robots may still move; committed events are in the journal: `flexcell runs`\n"
 
 
 class InterruptHandler:
-    """Catches the signals while it is entered, whether they come before the run is made or while it goes on.
+    """Handles the signals while the context is entered, before the run exists and while it executes.
 
-    The handlers run between two instructions of the main thread, so a state that blocks the loop
-    does not keep the third signal from ending the process.
+    The handlers run between two instructions of the main thread, so the third signal ends the process
+    even if a state blocks the event loop.
 
     Args:
-        say: Tells the person who sends the signals.
+        say: Prints a message on the terminal.
     """
 
     def __init__(self, say: Callable[[str], None]) -> None:
@@ -35,14 +35,14 @@ class InterruptHandler:
         self._before: dict[signal.Signals, Any] = {}
 
     def watch_over(self, run: Run) -> None:
-        """Stop `run` at the next signal, or at once when there was one."""
+        """Stop `run` at the next signal, or immediately if one has arrived already."""
         self._run = run
         if self.reason:
             run.stop(self.reason)
 
     def __enter__(self) -> Self:
         for number in _SIGNALS:
-            self._before[number] = signal.signal(number, self._caught)
+            self._before[number] = signal.signal(number, self._on_signal)
         return self
 
     def __exit__(
@@ -51,12 +51,12 @@ class InterruptHandler:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
-    def _caught(self, number: int, frame: FrameType | None) -> None:
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
         self._count += 1
         if self._count > 2:
-            os.write(2, _LEFT)
+            os.write(2, _EXITED)
             os._exit(ExitCode.INTERRUPTED)
-        # One turn later: a run that is just beginning enters its first state and is seen to leave it.
+        # One loop iteration later: a run that is just starting enters its first state and records its exit.
         self._loop.call_soon_threadsafe(self._loop.call_soon, self._stop, signal.Signals(number).name)
 
     def _stop(self, name: str) -> None:
@@ -66,4 +66,4 @@ class InterruptHandler:
                 self._run.stop(self.reason)
             return
         busy = ", ".join(self._run.active_states) if self._run is not None and not self._run.ended else ""
-        self._say(f"waiting for {busy or 'the cell'} to come to rest; once more leaves at once")
+        self._say(f"waiting for {busy or 'the cell'} to come to rest; press Ctrl-C again to exit immediately")

@@ -1,4 +1,4 @@
-"""Writes JUnit XML (xunit2) as Jenkins, GitLab and GitHub read it."""
+"""Writes JUnit XML (xunit2), readable by Jenkins, GitLab and GitHub."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from xml.etree import ElementTree
 from engine.errors import FlexcellError
 
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML 1.0 cannot hold, not even escaped; a message of a state may hold any."""
+"""Characters that XML 1.0 cannot represent, not even escaped; a message of a state may contain any of them."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class JunitProblem:
-    """Why a case did not pass: a `failure` is another outcome than wanted, an `error` is no outcome."""
+    """Why a case did not pass: a `failure` is an unexpected outcome, an `error` is a run without outcome."""
 
     kind: Literal["failure", "error"]
     type: str
@@ -28,7 +28,7 @@ class JunitProblem:
 
 @dataclass(frozen=True, kw_only=True)
 class JunitCase:
-    """One test case; `classname` groups cases, with dots between its parts."""
+    """One test case; the dotted `classname` groups cases."""
 
     name: str
     classname: str
@@ -38,7 +38,7 @@ class JunitCase:
 
 @dataclass(frozen=True, kw_only=True)
 class JunitSuite:
-    """Cases that belong together, with properties that say what they were about."""
+    """A group of cases, with properties that describe it."""
 
     name: str
     file: str
@@ -50,7 +50,7 @@ def write_junit(path: Path, suites: Iterable[JunitSuite]) -> None:
     """Write the file.
 
     Raises:
-        FlexcellError: it cannot be written.
+        FlexcellError: the file cannot be written.
     """
     try:
         path.write_bytes(junit_xml(suites))
@@ -99,8 +99,8 @@ def _add_case(suite: ElementTree.Element, case: JunitCase) -> None:
     )
     problem = case.problem
     if problem is not None:
-        told = ElementTree.SubElement(element, problem.kind, type=problem.type, message=_legal(problem.message))
-        told.text = _legal(problem.text or problem.message)
+        report = ElementTree.SubElement(element, problem.kind, type=problem.type, message=_legal(problem.message))
+        report.text = _legal(problem.text or problem.message)
 
 
 def _count(cases: Sequence[JunitCase], kind: str) -> int:

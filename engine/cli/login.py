@@ -1,4 +1,4 @@
-"""`flexcell login`: an address that logs a browser in at the running server, once."""
+"""`flexcell login`: creates a one-time login address of the running server for a browser."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class _Link(msgspec.Struct):
 
 
 def login(
-    viewer: Annotated[bool, typer.Option("--viewer", help="For somebody who may look and change nothing.")] = False,
-    state: Annotated[Path, typer.Option(help="State folder of the running server.")] = Path(STATE_FOLDER),
+    viewer: Annotated[bool, typer.Option("--viewer", help="Create a read-only login.")] = False,
+    state: Annotated[Path, typer.Option(help="Folder in which the server keeps its state.")] = Path(STATE_FOLDER),
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
-    """Print an address that logs one browser in at the running server; it works once, within an hour."""
+    """Print an address that logs one browser in to the running server; valid once, within an hour."""
     url = new_login_url(ServerRecord.read(state), role="viewer" if viewer else "operator")
     typer.echo(url)
     if open_:
@@ -34,14 +34,14 @@ def login(
 
 
 def new_login_url(record: ServerRecord, *, role: str) -> str:
-    """Ask a running server for an address that logs a browser in, once.
+    """Request a one-time login address from a running server.
 
     Raises:
-        BusError: the server does not answer, or refuses.
+        BusError: the server does not response, or rejects the request.
     """
     headers = {"Authorization": f"Bearer {record.token}"}
     try:
-        answer = httpx.post(
+        response = httpx.post(
             f"{record.url}api/v1/login-links",
             json={"role": role},
             headers=headers,
@@ -50,7 +50,7 @@ def new_login_url(record: ServerRecord, *, role: str) -> str:
         )
     except httpx.TransportError as error:
         raise BusError(
-            f"the server does not answer: {error}", where=record.url, hint="start it with `flexcell serve`"
+            f"the server does not response: {error}", where=record.url, hint="start it with `flexcell serve`"
         ) from error
-    link = msgspec.json.decode(verify_response(answer).content, type=_Link)
+    link = msgspec.json.decode(verify_response(response).content, type=_Link)
     return f"{record.url}login?t={link.token}"

@@ -1,4 +1,4 @@
-"""The `flexcell` command: puts the commands together and turns errors into one line."""
+"""The `flexcell` command: assembles the commands and reports each error as one line."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ app = typer.Typer(
 
 def stop(
     state: Annotated[Path, typer.Option(help="Folder in which the server keeps its state.")] = Path(STATE_FOLDER),
-    reason: Annotated[str, typer.Option(help="Why; runs that end by it say so.")] = REASON,
+    reason: Annotated[str, typer.Option(help="Reason, recorded in every run that is stopped.")] = REASON,
 ) -> None:
-    """Stop every run and every motion of a running server, whatever the server does.
+    """Stop every run and every motion of a running server, even while the server is blocked.
 
-    Exit code 0: everything is at rest. 2: no server runs there. 3: somebody does not confirm it.
-    This is no safety function: see docs/concepts/safety.md.
+    Exit code 0: everything is at rest. 2: no server runs there. 3: a device or the server does not confirm.
+    This is not a safety function: see docs/concepts/safety.md.
     """
     raise typer.Exit(stop_cell(state, reason))
 
@@ -50,12 +50,12 @@ def options(
         bool, typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Take the options that hold for every command."""
+    """Handle the options of the top-level command."""
 
 
 def main() -> None:
-    """Run the command line; the console script."""
-    # Linear algebra libraries start a thread per core; small matrices only lose by it.
+    """Run the command line and exit with its code."""
+    # Linear algebra libraries start a thread per core, which slows down work on small matrices.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         verify_packages()
@@ -64,30 +64,30 @@ def main() -> None:
         sys.stderr.write(f"flexcell: {error}{_others(error)}\n")
         sys.exit(ExitCode.BAD_INPUT)
     except BrokenPipeError:
-        # The reader of our output, such as `head`, has left; there is nobody to tell.
+        # The reader of the output, such as `head`, has closed the pipe; no one can read a message.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(ExitCode.SUCCESS)
 
 
 def _others(error: FlexcellError) -> str:
-    """Say how many other mistakes a document has that was refused with its first."""
+    """Return how many further errors a rejected document has; the error itself names the first."""
     if not isinstance(error, DocumentError) or not error.others or not isinstance(error.where, Position):
         return ""
     return f"; {len(error.others)} more: flexcell check {error.where.file}"
 
 
 def verify_packages() -> None:
-    """Check that nothing on the import path shadows one of the five packages.
+    """Check that no package on the import path shadows one of the five packages.
 
     Raises:
-        FlexcellError: a package of the same name elsewhere would be imported instead of ours.
+        FlexcellError: another package of the same name would be imported instead.
     """
     home = Path(__file__).resolve().parents[2]
     for name in ("states", "robots", "editor_web", "behaviors"):
         spec = find_spec(name)
         if spec is None or not spec.origin or Path(spec.origin).resolve().parents[1] != home:
-            found = spec.origin if spec is not None else "nowhere"
+            origin = spec.origin if spec is not None else None
             raise FlexcellError(
-                f"the package `{name}` was found at {found}, not in {home}",
-                hint=f"rename your own `{name}` or take its folder off PYTHONPATH",
+                f"the package `{name}` resolves to {origin or 'nothing'}, not to a folder in {home}",
+                hint=f"rename your own `{name}` or remove its folder from PYTHONPATH",
             )

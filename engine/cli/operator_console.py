@@ -1,4 +1,4 @@
-"""An operator on the terminal: one command a line, and a line for whatever the run asks or waits for."""
+"""An operator on the terminal: reads one command per line, and prints what the run asks or waits for."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _MODES: tuple[StepMode, ...] = ("into", "over", "out")
 
 @dataclass(frozen=True)
 class _Command:
-    """One word that the operator can say."""
+    """One command of the operator."""
 
     usage: str
     meaning: str
@@ -35,18 +35,18 @@ class _Command:
 
 
 class _UsageError(Exception):
-    """The words after a command are not what it needs."""
+    """The arguments of a command are invalid."""
 
 
 class OperatorConsole:
-    """The operator of one run while it is entered; the end of input is the operator's leaving.
+    """The operator of one run while the context is entered; at the end of input the operator is lost.
 
     Args:
         run: The run, not yet executing.
-        say: Shows the operator a line.
-        reload: Reads the behavior anew, for a hot change.
-        policy: What becomes of the run when the input ends.
-        descriptor: Where commands come from; standard input by default.
+        say: Prints a line for the operator.
+        reload: Reloads the behavior, for a hot change.
+        policy: Defines what the run does when the input ends.
+        descriptor: File from which commands are read; standard input by default.
     """
 
     def __init__(
@@ -63,9 +63,9 @@ class OperatorConsole:
         self._reload = reload
         self._policy = policy
         known = descriptor if descriptor is not None else _standard_input()
-        self._input = LineInput(known, line=self.execute_line, end=self._ended)
+        self._input = LineInput(known, line=self.execute_line, end=self._on_input_end)
         self._waiting: asyncio.Task[None] | None = None
-        self._ordering: asyncio.Task[None] | None = None
+        self._stepping_back: asyncio.Task[None] | None = None
         self._rests = asyncio.Event()
 
     def __enter__(self) -> Self:
@@ -79,12 +79,12 @@ class OperatorConsole:
     ) -> None:
         self._input.close()
         self.run.recorder.unwatch(self._show)
-        for task in (self._waiting, self._ordering):
+        for task in (self._waiting, self._stepping_back):
             if task is not None:
                 task.cancel()
 
     def execute_line(self, line: str) -> None:
-        """Do what a line says, or say in one line why not."""
+        """Execute the command in a line, or print in one line why it cannot be executed."""
         words = line.split()
         if not words or self.run.ended:
             return
@@ -100,35 +100,35 @@ class OperatorConsole:
             self.say(str(error))
 
     def reload(self, *, preempt: bool) -> None:
-        """Let the behavior as its file is now take the place of the running one."""
+        """Replace the running behavior with the current content of its file."""
         plan = self._reload()
         report = self.run.change(plan, preempt=preempt, kept=version_snapshot(plan.source))
-        for change in report.changes or ("the file means the same as before",):
+        for change in report.changes or ("nothing, the behavior is the same",):
             self.say(f"changed: {change}")
 
     def back(self, path: str) -> None:
-        """Have what began last undone, in the branch of `path` where one is given; takes no further line until then."""
+        """Undo the last step, in the branch of `path` if one is given; read no further line until it is undone."""
         self._input.hold()
-        self._ordering = asyncio.get_running_loop().create_task(self._go_back(path), name="operator steps back")
+        self._stepping_back = asyncio.get_running_loop().create_task(self._go_back(path), name="operator steps back")
 
     async def _go_back(self, path: str) -> None:
         try:
             undone = await self.run.step_back(path)
-            self.say(f"undoing {', '.join(undone)}" if undone else "back, and nothing to undo")
+            self.say(f"undoing {', '.join(undone)}" if undone else "stepped back, nothing to undo")
         except FlexcellError as error:
             self.say(str(error))
         finally:
             self._input.release()
 
     def wait(self) -> None:
-        """Take no further line until the run rests: paused and confirmed, locked, or asking."""
+        """Read no further line until the run rests: paused and confirmed, locked, or asking."""
         self._input.hold()
         self._waiting = asyncio.get_running_loop().create_task(self._until_rest(), name="operator waits")
 
     async def _until_rest(self) -> None:
         while not self.run.ended:
             self._rests.clear()
-            # What was let go a moment ago must not be taken for resting.
+            # A node that was just released must not count as resting.
             await self.run.control.settled()
             if self._at_rest():
                 break
@@ -145,23 +145,23 @@ class OperatorConsole:
             self._rests.set()
         match event:
             case OutcomeRequested():
-                orders = f"answer {event.path} | force {event.path} OUTCOME | repeat {event.path}"
-                self.say(f"? {event.path} wants to end with {event.outcome} (requires {event.required}): {orders}")
+                commands = f"answer {event.path} | force {event.path} OUTCOME | repeat {event.path}"
+                self.say(f"? {event.path} requests outcome {event.outcome} (requires {event.required}): {commands}")
             case GateReached():
-                self.say(f"{event.path} waits {_place(event)}: {', '.join(event.reasons)}")
+                self.say(f"{event.path} waits {_gate_text(event)}: {', '.join(event.reasons)}")
             case PauseConfirmed():
-                moving = f", but cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
-                self.say(f"paused, everything rests{moving}")
+                moving = f", except (cannot be held): {', '.join(event.cannot)}" if event.cannot else ""
+                self.say(f"paused, everything is at rest{moving}")
             case RunSteppedBack():
                 failed = f"the step back failed: {describe_cause(event.cause)}" if event.cause is not None else ""
-                self.say(failed or f"back before {event.path}")
+                self.say(failed or f"stepped back to before {event.path}")
             case OperatorChanged(status="lost"):
-                then = {"hold": "it will be paused", "continue": "it goes on", "stop": "it will be stopped"}
-                self.say(f"the input ended and with it the operator: {then[self._policy.loss_policy]}")
+                actions = {"hold": "the run pauses", "continue": "the run continues", "stop": "the run stops"}
+                self.say(f"the input ended, the operator is lost: {actions[self._policy.loss_policy]}")
             case _:
                 pass
 
-    def _ended(self) -> None:
+    def _on_input_end(self) -> None:
         if self.run.ended:
             return
         if self._policy.loss_policy == "continue":
@@ -170,7 +170,7 @@ class OperatorConsole:
             self.run.control.lose_operator()
 
 
-def _place(event: GateReached) -> str:
+def _gate_text(event: GateReached) -> str:
     if event.point == "before":
         return "before its entry"
     return f"with its outcome {event.outcome}" if event.outcome else "after its end"
@@ -179,18 +179,18 @@ def _place(event: GateReached) -> str:
 def _standard_input() -> int | None:
     with suppress(AttributeError, OSError, ValueError):
         return sys.stdin.fileno()
-    return None  # closed, or replaced by something that is no file
+    return None  # closed, or replaced by an object that is not a file
 
 
 def _one(words: Sequence[str], what: str) -> str:
     if len(words) != 1:
-        raise _UsageError(f"one {what} is needed" if not words else f"{' '.join(words[1:])!r} is too much")
+        raise _UsageError(f"one {what} is required" if not words else f"unexpected {' '.join(words[1:])!r}")
     return words[0]
 
 
 def _none(words: Sequence[str]) -> None:
     if words:
-        raise _UsageError(f"{' '.join(words)!r} is too much")
+        raise _UsageError(f"unexpected {' '.join(words)!r}")
 
 
 def _pause(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -223,7 +223,7 @@ def _unlock(console: OperatorConsole, words: Sequence[str]) -> None:
 
 def _force(console: OperatorConsole, words: Sequence[str]) -> None:
     if len(words) != 2:
-        raise _UsageError("a path and an outcome are needed")
+        raise _UsageError("a path and an outcome are required")
     console.run.control.force(words[0], words[1])
 
 
@@ -235,14 +235,14 @@ def _answer(console: OperatorConsole, words: Sequence[str]) -> None:
     control = console.run.control
     asking = [each.path for each in control.view().waiting if "autonomy" in each.reasons]
     if not words and len(asking) != 1:
-        raise ControlError("nothing is asked" if not asking else f"which one: {', '.join(asking)}?")
+        raise ControlError("no question is open" if not asking else f"several questions are open: {', '.join(asking)}")
     control.answer(_one(words, "path") if words else asking[0])
 
 
 def _autonomy(console: OperatorConsole, words: Sequence[str]) -> None:
     level = _one(words, "level")
     if level not in LEVELS:
-        raise _UsageError(f"{level!r} is none of {', '.join(LEVELS)}")
+        raise _UsageError(f"{level!r} is not one of {', '.join(LEVELS)}")
     console.run.control.set_autonomy(level)
 
 
@@ -250,7 +250,7 @@ def _break(console: OperatorConsole, words: Sequence[str]) -> None:
     control = console.run.control
     if not words:
         for each in control.view().breakpoints or ("there are no breakpoints",):
-            console.say(_written(each) if isinstance(each, Breakpoint) else each)
+            console.say(_breakpoint_text(each) if isinstance(each, Breakpoint) else each)
         return
     control.set_breakpoints((*control.view().breakpoints, _breakpoint(words)))
 
@@ -265,7 +265,7 @@ def _clear(console: OperatorConsole, words: Sequence[str]) -> None:
 
 
 def _breakpoint(words: Sequence[str]) -> Breakpoint:
-    """Read `PATH [after] [hits N] [if EXPR]`, where the expression takes the rest up to `hits N` at its end."""
+    """Read `PATH [after] [hits N] [if EXPR]`, where the expression extends to the end or to a final `hits N`."""
     path, *left = words
     when, hits, condition = "before", 1, None
     if len(left) >= 2 and left[-2] == "hits":
@@ -279,19 +279,19 @@ def _breakpoint(words: Sequence[str]) -> Breakpoint:
         elif word == "if" and left:
             condition, left = " ".join(left), []
         else:
-            raise _UsageError(f"{word!r} is not understood")
-    made = Breakpoint(path=path, when="after" if when == "after" else "before", condition=condition, hits=hits)
-    _ = made.template  # compiled now, so that a wrong expression is refused here
-    return made
+            raise _UsageError(f"unexpected {word!r}")
+    breakpoint_ = Breakpoint(path=path, when="after" if when == "after" else "before", condition=condition, hits=hits)
+    _ = breakpoint_.template  # compiled now, so that an invalid expression is rejected here
+    return breakpoint_
 
 
 def _count(word: str) -> int:
     if not word.isdecimal() or int(word) < 1:
-        raise _UsageError(f"{word!r} is no count")
+        raise _UsageError(f"{word!r} is not a positive integer")
     return int(word)
 
 
-def _written(each: Breakpoint) -> str:
+def _breakpoint_text(each: Breakpoint) -> str:
     condition = f" if {each.condition}" if each.condition is not None else ""
     hits = f" hits {each.hits}" if each.hits > 1 else ""
     return f"break {each.path} {each.when}{condition}{hits}"
@@ -299,7 +299,7 @@ def _written(each: Breakpoint) -> str:
 
 def _reload(console: OperatorConsole, words: Sequence[str]) -> None:
     if words not in ([], ["preempt"]):
-        raise _UsageError(f"{' '.join(words)!r} is not understood")
+        raise _UsageError(f"unexpected {' '.join(words)!r}")
     console.reload(preempt=bool(words))
 
 
@@ -318,7 +318,7 @@ def _where(console: OperatorConsole, words: Sequence[str]) -> None:
     for path in view.locks:
         console.say(f"  lock {path}")
     for each in view.breakpoints:
-        console.say(f"  {_written(each)}")
+        console.say(f"  {_breakpoint_text(each)}")
 
 
 def _wait(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -327,7 +327,7 @@ def _wait(console: OperatorConsole, words: Sequence[str]) -> None:
 
 
 def _stop(console: OperatorConsole, words: Sequence[str]) -> None:
-    console.run.stop(" ".join(words) or "the operator said stop")
+    console.run.stop(" ".join(words) or "stopped by the operator")
 
 
 def _detach(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -341,22 +341,22 @@ def _help(console: OperatorConsole, words: Sequence[str]) -> None:
 
 
 COMMANDS: Mapping[str, _Command] = {
-    "pause": _Command("pause", "hold everything", _pause),
-    "resume": _Command("resume", "let it go on", _resume),
-    "step": _Command("step [into|over|out] [PATH]", "one step of a paused run", _step),
-    "back": _Command("back [PATH]", "undo what a paused run has begun last", _back),
-    "break": _Command("break [PATH [after] [if EXPR] [hits N]]", "pause there; alone: list them", _break),
+    "pause": _Command("pause", "pause the run", _pause),
+    "resume": _Command("resume", "resume the paused run", _resume),
+    "step": _Command("step [into|over|out] [PATH]", "execute one step of a paused run", _step),
+    "back": _Command("back [PATH]", "undo the last step of a paused run", _back),
+    "break": _Command("break [PATH [after] [if EXPR] [hits N]]", "set a breakpoint; without PATH: list them", _break),
     "clear": _Command("clear [PATH]", "remove breakpoints", _clear),
     "lock": _Command("lock PATH", "hold the outcome of a node", _lock),
-    "unlock": _Command("unlock PATH", "let it pass", _unlock),
-    "force": _Command("force PATH OUTCOME", "end a node so", _force),
+    "unlock": _Command("unlock PATH", "release the outcome of a node", _unlock),
+    "force": _Command("force PATH OUTCOME", "end a node with this outcome", _force),
     "repeat": _Command("repeat PATH", "run a node again", _repeat),
-    "answer": _Command("answer [PATH]", "agree to a requested outcome", _answer),
-    "autonomy": _Command("autonomy off|low|high|full", "what passes without being asked", _autonomy),
-    "reload": _Command("reload [preempt]", "go on with the file as it is now", _reload),
-    "where": _Command("where", "where the run is", _where),
-    "wait": _Command("wait", "take no further line until it rests or asks", _wait),
-    "detach": _Command("detach", "leave it to itself", _detach),
+    "answer": _Command("answer [PATH]", "accept a requested outcome", _answer),
+    "autonomy": _Command("autonomy off|low|high|full", "outcomes that pass without a question", _autonomy),
+    "reload": _Command("reload [preempt]", "continue with the current file", _reload),
+    "where": _Command("where", "show the state of the run", _where),
+    "wait": _Command("wait", "read no further line until the run rests or asks", _wait),
+    "detach": _Command("detach", "continue the run without operator", _detach),
     "stop": _Command("stop [REASON]", "stop the run", _stop),
-    "help": _Command("help", "this list", _help),
+    "help": _Command("help", "list the commands", _help),
 }

@@ -1,4 +1,4 @@
-"""The options by which `flexcell run` and `flexcell resume` put a run under an operator."""
+"""Operator options of `flexcell run` and `flexcell resume`."""
 
 from __future__ import annotations
 
@@ -15,26 +15,30 @@ from engine.runtime.run_options import RunOptions
 
 Autonomy = Annotated[
     AutonomyLevel | None,
-    typer.Option(help="Outcomes that require less pass without the operator; `full` passes all but what requires it."),
+    typer.Option(
+        help="Autonomy level: outcomes that require a lower level pass without the operator; at `full`, only those"
+        " that require `full` wait."
+    ),
 ]
 Operator = Annotated[
-    bool, typer.Option("--operator", help="Take commands from the terminal and ask there; `help` lists them.")
+    bool, typer.Option("--operator", help="Read operator commands from the terminal; `help` lists them.")
 ]
 Loss = Annotated[
-    LossPolicy, typer.Option("--operator-loss", help="When the input of --operator ends: what the run does then.")
+    LossPolicy, typer.Option("--operator-loss", help="Reaction of the run when the input of --operator ends.")
 ]
 Demand = Annotated[
-    bool, typer.Option("--demand-operator", help="Ask for outcomes also while no operator is there; they wait.")
+    bool,
+    typer.Option("--demand-operator", help="Outcomes that require an operator wait even while none is connected."),
 ]
 Breakpoints = Annotated[
-    bool, typer.Option("--breakpoints", help="Use the breakpoints beside the behavior also without --operator.")
+    bool, typer.Option("--breakpoints", help="Use the breakpoints file of the behavior even without --operator.")
 ]
-Paused = Annotated[bool, typer.Option("--paused", help="Begin paused.")]
+Paused = Annotated[bool, typer.Option("--paused", help="Start the run paused.")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorOptions:
-    """What the options said."""
+    """Values of the operator options."""
 
     autonomy: AutonomyLevel | None
     operator: bool
@@ -44,13 +48,13 @@ class OperatorOptions:
     paused: bool
 
     def supervision(self, file: Path, *, autonomy: AutonomyLevel = "full") -> RunOptions:
-        """Return how a run of the behavior in `file` is watched over, at `autonomy` where no option says it.
+        """Return the supervision of a run of the behavior in `file`; `autonomy` applies if no option sets it.
 
         Raises:
-            DocumentError: the breakpoints file is not valid.
+            DocumentError: the breakpoints file is invalid.
         """
         if self.autonomy is not None and not (self.operator or self.demand):
-            sys.stderr.write("flexcell: without --operator or --demand-operator every outcome passes\n")
+            sys.stderr.write("flexcell: --autonomy has no effect without --operator or --demand-operator\n")
         wanted = (self.operator or self.breakpoints) and not is_python_name(str(file))
         return RunOptions(
             autonomy=self.autonomy or autonomy,

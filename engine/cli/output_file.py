@@ -1,4 +1,4 @@
-"""Files that a command writes at its end; what can be known to be wrong with them is said at its beginning."""
+"""Output files of commands: checked for writability before the work, written after it."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from engine.errors import FlexcellError
 
 
 def prepare(*paths: Path | None) -> None:
-    """Make the folders of files that are to be written, and require that they can be; None asks for no file.
+    """Create the folders of output files and verify that the files can be written; None is no file.
 
     Raises:
-        FlexcellError: one cannot be written.
+        FlexcellError: a file cannot be written.
     """
     for path in paths:
         if path is None:
             continue
         if path.is_dir():
-            raise FlexcellError("this is a folder, and a file is to be written", where=path, hint="name a file in it")
+            raise FlexcellError("the output path is a folder", where=path, hint="give the path of a file")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise _cannot_be_written(path, error) from error
         if not os.access(path if path.exists() else path.parent, os.W_OK):
-            hint = "give another place, or the right to write there"
+            hint = "give another path, or grant write permission"
             raise FlexcellError("this file cannot be written: permission denied", where=path, hint=hint)
 
 
 def write(path: Path, data: bytes) -> None:
-    """Write such a file.
+    """Write an output file.
 
     Raises:
-        FlexcellError: it cannot be written.
+        FlexcellError: the file cannot be written.
     """
     try:
         path.write_bytes(data)
@@ -42,4 +42,4 @@ def write(path: Path, data: bytes) -> None:
 
 def _cannot_be_written(path: Path, error: OSError) -> FlexcellError:
     reason = error.strerror or str(error)
-    return FlexcellError(f"this file cannot be written: {reason}", where=path, hint="give another place")
+    return FlexcellError(f"this file cannot be written: {reason}", where=path, hint="give another path")

@@ -1,4 +1,4 @@
-"""Shows a run on a terminal while it happens: one line a step on stderr."""
+"""Prints the progress of a run on stderr, one line per step."""
 
 from __future__ import annotations
 
@@ -22,47 +22,49 @@ _LEVELS = {"debug": "dim", "info": "default", "warning": "yellow", "error": "bol
 
 
 class ProgressPrinter:
-    """Writes the events a person wants to see; hand `show` to `Run.watch`."""
+    """Prints the events that matter to a person; pass `show` to `Run.watch`."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._started_s: dict[tuple[str, int], float] = {}
 
     def show(self, event: Event) -> None:
-        """Write a line for an event, or nothing."""
+        """Print a line for an event, or nothing."""
         match event:
             case NodeEntered(kind="state"):
                 self._started_s[event.path, event.visit] = event.time_s
             case NodeExited():
-                self._exited(event)
+                self._show_exit(event)
             case MessageLogged():
-                self._line(event, f"[{_LEVELS.get(event.level, 'default')}]{escape(event.message)}[/]", event.path)
+                self._print_line(
+                    event, f"[{_LEVELS.get(event.level, 'default')}]{escape(event.message)}[/]", event.path
+                )
             case FaultInjected():
-                self._line(event, f"[magenta]{escape(f'{event.fault}: {event.detail}')}[/]", event.path)
+                self._print_line(event, f"[magenta]{escape(f'{event.fault}: {event.detail}')}[/]", event.path)
             case NodeRetried():
-                self._line(event, f"[yellow]again, attempt {event.attempt}[/]", event.path)
+                self._print_line(event, f"[yellow]retry, attempt {event.attempt}[/]", event.path)
             case GoalFinished(status="aborted" | "rejected"):
                 why = f": {describe_cause(event.cause)}" if event.cause else ""
-                self._line(event, f"[red]{event.status}{escape(why)}[/]", event.path)
+                self._print_line(event, f"[red]{event.status}{escape(why)}[/]", event.path)
             case StopRequested():
-                self._line(event, f"[yellow]stopping: {escape(event.reason)}[/]", "")
+                self._print_line(event, f"[yellow]stopping: {escape(event.reason)}[/]", "")
             case RunEnded():
-                self._line(event, f"[bold]{event.status}[/] {escape(event.outcome or '')}", "")
+                self._print_line(event, f"[bold]{event.status}[/] {escape(event.outcome or '')}", "")
             case _:
                 pass
 
-    def _exited(self, event: NodeExited) -> None:
+    def _show_exit(self, event: NodeExited) -> None:
         started_s = self._started_s.pop((event.path, event.visit), None)
         if started_s is None:
             return
         if event.preempted:
-            what = "[yellow]preempted[/]"
+            end = "[yellow]preempted[/]"
         elif not event.outcome:
-            what = "[red]error[/]"
+            end = "[red]error[/]"
         else:
-            what = f"[{'red' if event.cause else 'green'}]{escape(event.outcome)}[/]"
-        self._line(event, f"{what} [dim]after {event.time_s - started_s:.2f} s[/]", event.path)
+            end = f"[{'red' if event.cause else 'green'}]{escape(event.outcome)}[/]"
+        self._print_line(event, f"{end} [dim]after {event.time_s - started_s:.2f} s[/]", event.path)
 
-    def _line(self, event: Event, text: str, path: str) -> None:
-        place = f"{escape(path)}  " if path else ""
-        self._console.print(f"[dim]{event.time_s:9.3f} s[/]  {place}{text}", soft_wrap=True, highlight=False)
+    def _print_line(self, event: Event, text: str, path: str) -> None:
+        node = f"{escape(path)}  " if path else ""
+        self._console.print(f"[dim]{event.time_s:9.3f} s[/]  {node}{text}", soft_wrap=True, highlight=False)

@@ -1,4 +1,4 @@
-"""`flexcell replay`: runs recorded runs again and says where they first do something else."""
+"""`flexcell replay`: executes recorded runs again and reports the first difference."""
 
 from __future__ import annotations
 
@@ -28,24 +28,24 @@ def replay(
         list[str],
         typer.Argument(
             metavar="REC...",
-            help="Recordings made with `flexcell run --record`; with --journal, ids of runs.",
+            help="Recordings of `flexcell run --record`; with --journal, ids of runs.",
             show_default=False,
         ),
     ],
     behavior: Annotated[
-        Path | None, typer.Option(help="Run this version of the behavior instead of the recorded one.")
+        Path | None, typer.Option(help="Execute this version of the behavior instead of the recorded one.")
     ] = None,
-    journal: Annotated[Path | None, typer.Option(help="Replay runs of this journal directory.")] = None,
-    junit: Annotated[Path | None, typer.Option(help="Write the results here as JUnit XML.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
+    journal: Annotated[Path | None, typer.Option(help="Replay runs of the journal in this folder.")] = None,
+    junit: Annotated[Path | None, typer.Option(help="Write the results to this file as JUnit XML.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the results as one JSON object on stdout.")] = False,
 ) -> None:
-    """Run recorded runs again, in virtual time and without robots: the recorded answers stand in for them.
+    """Replay recorded runs in virtual time and without robots: recorded responses replace the devices.
 
-    Exit code 0: everything happened again and nothing else. 4: something differs; the first
-    difference is named. 2: a recording, or the behavior, cannot be used.
+    Exit code 0: every event is the same. 4: the runs differ; the first difference is printed.
+    2: a recording or the behavior cannot be used.
     """
     prepare(junit)
-    # Not from where a recording lies or what it names: that is of whoever made it.
+    # Not from the folder of a recording or from paths in it: its author must not decide which code runs.
     catalogue = load_states(Path.cwd())
     results = [_replayed(name, catalogue, behavior, journal) for name in recordings]
     if junit is not None:
@@ -61,7 +61,7 @@ def replay(
 def _replayed(
     name: str, catalogue: Catalogue, behavior: Path | None, journal: Path | None
 ) -> ReplayReport | FlexcellError:
-    """Replay one; a bad recording is reported and the others go on."""
+    """Replay one recording; the error of an invalid one is returned, so that the others still run."""
     try:
         changed = load_behavior(behavior) if behavior is not None else None
         return replay_recording(_load(name, journal), catalogue, behavior=changed)
@@ -83,11 +83,11 @@ def _exit_code(results: list[ReplayReport | FlexcellError]) -> ExitCode:
 
 def _lines(name: str, result: ReplayReport | FlexcellError) -> Iterator[str]:
     if isinstance(result, FlexcellError):
-        # The error mostly says itself which file it is about.
+        # Most errors name the file already.
         yield f"flexcell: {result}" if name in str(result) else f"flexcell: {name}: {result}"
         return
     if result.difference is None:
-        cut = "" if result.recording.complete else ", where the recording was cut off"
+        cut = "" if result.recording.complete else ", up to the end of the truncated recording"
         yield f"{name}: the same, {result.compared} events{cut}"
         return
     yield f"{name}: differs: {result.difference}"
@@ -136,10 +136,10 @@ def _suite(name: str, result: ReplayReport | FlexcellError) -> JunitSuite:
         problem = JunitProblem(kind="error", type="unusable", message=str(result))
         case = JunitCase(name=name, classname="replay", time_s=0.0, problem=problem)
         return JunitSuite(name=name, file=name, cases=(case,))
-    description, found = result.recording.description, result.difference
+    description, difference = result.recording.description, result.difference
     problem = (
-        JunitProblem(kind="failure", type="differs", message=str(found), text=found.explained())
-        if found is not None
+        JunitProblem(kind="failure", type="differs", message=str(difference), text=difference.explained())
+        if difference is not None
         else None
     )
     case = JunitCase(name=Path(name).stem, classname=class_name(name), time_s=result.duration_s, problem=problem)

@@ -1,4 +1,4 @@
-"""`flexcell resume`: goes on with a run whose engine died, from its last durable event."""
+"""`flexcell resume`: resumes a run whose process died, from its last durable event."""
 
 from __future__ import annotations
 
@@ -35,29 +35,33 @@ from engine.runtime.run_options import RunOptions
 
 
 def resume(
-    run: Annotated[str, typer.Argument(help="The run, as `flexcell runs` names it.", show_default=False)],
-    journal: Annotated[str, typer.Option(help="Directory of the journal of runs.")] = STATE_FOLDER,
+    run: Annotated[str, typer.Argument(help="Id of the run, see `flexcell runs`.", show_default=False)],
+    journal: Annotated[str, typer.Option(help="Folder of the run journal.")] = STATE_FOLDER,
     answer: Annotated[
         list[str] | None,
-        typer.Option(help="PATH=rerun or PATH=OUTCOME, for a state that was in mid-work; may be repeated."),
+        typer.Option(
+            help="PATH=rerun or PATH=OUTCOME: how to resume a state that was active; may be repeated.",
+        ),
     ] = None,
     changed: Annotated[
-        bool, typer.Option("--changed", help="Go on in the behavior as its file is now, where that is possible.")
+        bool, typer.Option("--changed", help="Resume with the current file of the behavior, if the change permits it.")
     ] = False,
-    behavior: Annotated[
-        Path | None, typer.Option(help="The behavior, where its file is no longer where it was.")
-    ] = None,
-    cell: Annotated[Path | None, typer.Option(help="The cell, where its file is no longer where it was.")] = None,
+    behavior: Annotated[Path | None, typer.Option(help="File of the behavior, if it has moved since the run.")] = None,
+    cell: Annotated[Path | None, typer.Option(help="File of the cell, if it has moved since the run.")] = None,
     clock: Annotated[
-        Literal["virtual", "real"] | None, typer.Option(help="As the run was started, by default.")
+        Literal["virtual", "real"] | None, typer.Option(help="Clock of the run; by default the one it started with.")
     ] = None,
     take_over: Annotated[
-        bool, typer.Option("--take-over", help="Also when a process drives it: that one can write no more and stops.")
+        bool,
+        typer.Option("--take-over", help="Resume even if another process executes the run; that process is stopped."),
     ] = False,
-    events: Annotated[Path | None, typer.Option(help="Write the new events here, one JSON object a line.")] = None,
+    events: Annotated[
+        Path | None, typer.Option(help="Write the new events to this file, one JSON object per line.")
+    ] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
     substitute_on_robots: Annotated[
-        bool, typer.Option("--substitute-on-robots", help="Where a run has substitutes: also where a robot is real.")
+        bool,
+        typer.Option("--substitute-on-robots", help="Allow the substitutes of the run in a cell with real robots."),
     ] = False,
     operator: Operator = False,
     autonomy: Autonomy = None,
@@ -65,21 +69,23 @@ def resume(
     demand_operator: Demand = False,
     breakpoints: Breakpoints = False,
     paused: Paused = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
-    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Show no progress.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as one JSON object on stdout, and no progress.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Do not print progress.")] = False,
 ) -> None:
-    """Go on with an interrupted run.
+    """Resume an interrupted run.
 
-    What had ended is not done again. A state in mid-work follows its `resume` policy; one that asks
-    is asked for on the terminal, or must be answered with --answer. Exit codes are those of `run`.
+    Nodes that had ended are not executed again. A state that was active follows its `resume` policy; for
+    the policy `ask`, the terminal asks or --answer decides. The exit codes are those of `run`.
     """
     prepare(events)
     found = read_run(journal, run)
     file = behavior or _recorded_file(found)
     catalogue = _known_states(file, named=behavior is not None)
-    place = _read_cell(cell, found)
-    plan = read_plan(file, catalogue, cell=place, substitutes=found.substitutes)
-    require_simulation(plan, place, allowed=substitute_on_robots)
+    cell_spec = _read_cell(cell, found)
+    plan = read_plan(file, catalogue, cell=cell_spec, substitutes=found.substitutes)
+    require_simulation(plan, cell_spec, allowed=substitute_on_robots)
     options = OperatorOptions(
         autonomy=autonomy,
         operator=operator,
@@ -101,14 +107,14 @@ def resume(
     try:
         resumption = decide(answers=answers)
     except ResumeDecisionRequired as questions:
-        answers = {**answers, **_asked(questions)}
+        answers = {**answers, **_ask(questions)}
         resumption = decide(answers=answers)
     if not quiet and not json:
-        _tell(resumption)
+        _print_resumption(resumption)
     supervision = options.supervision(file, autonomy=resumption.autonomy)
-    order = RunSetup(
+    setup = RunSetup(
         make=partial(_make, resumption, catalogue, answers, supervision),
-        cell=place,
+        cell=cell_spec,
         seed=found.origin.seed,
         journal=journal,
         store=found.origin.store,
@@ -116,7 +122,9 @@ def resume(
         virtual=(clock or found.origin.clock) == "virtual",
         quiet=quiet or json,
         supervision=supervision,
-        reload=partial(reload_plan, file, catalogue, cell=place, substitutes=found.substitutes) if operator else None,
+        reload=partial(reload_plan, file, catalogue, cell=cell_spec, substitutes=found.substitutes)
+        if operator
+        else None,
     )
 
     def report(ended: ExecutionResult) -> None:
@@ -128,7 +136,7 @@ def resume(
         if events is not None:
             write(events, encoded)
 
-    raise typer.Exit(execute_run(order, report=report))
+    raise typer.Exit(execute_run(setup, report=report))
 
 
 async def _make(
@@ -141,7 +149,9 @@ async def _make(
     skills: SkillPort | None,
 ) -> Run:
     if isinstance(journal, NullJournal):
-        raise ControlError("a run is resumed in its journal", where=resumption.found.id, hint="give --journal DIR")
+        raise ControlError(
+            "a run can only be resumed in its journal", where=resumption.found.id, hint="give --journal DIR"
+        )
     return await resume_run(
         resumption,
         cell=cell,
@@ -154,16 +164,18 @@ async def _make(
 
 
 def _recorded_file(found: RecordedRun) -> Path:
-    """Return the behavior file that the journal names; Python is not run because a journal says so."""
+    """Return the behavior file that the journal names; a journal must not decide that Python code runs."""
     file = found.origin.behavior
     if is_python_name(file):
-        hint = f"say that you want it with --behavior {file}"
-        raise ControlError("the run was made by a Python file, which runs when it is read", where=found.id, hint=hint)
+        hint = f"if you trust the file, give --behavior {file}"
+        raise ControlError(
+            "the behavior of the run is a Python file, which is executed when it is read", where=found.id, hint=hint
+        )
     return Path(file)
 
 
 def _known_states(file: Path, *, named: bool) -> StateCatalogue:
-    """Load the states of the behavior's project, if the user named the file or works in its folder; else those here."""
+    """Load the states of the behavior's project if the user named the file or works in its folder; else those here."""
     here = Path.cwd()
     catalogue = load_states(file if named or file.resolve().is_relative_to(here) else here)
     if not is_python_name(str(file)):
@@ -186,35 +198,35 @@ def _read_answers(given: Sequence[str]) -> dict[str, str]:
     return answers
 
 
-def _asked(questions: ResumeDecisionRequired) -> dict[str, str]:
-    """Return what the person at the terminal says; without a terminal print the questions and end."""
+def _ask(questions: ResumeDecisionRequired) -> dict[str, str]:
+    """Return the answers given at the terminal; without a terminal, print the questions and end the command."""
     if not (sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()):
         for question in questions.questions:
-            ways = ", ".join((RERUN, *question.outcomes))
-            sys.stderr.write(f"{question.path}: what became of it? --answer {question.path}=… ({ways})\n")
+            choices = ", ".join((RERUN, *question.outcomes))
+            sys.stderr.write(f"{question.path}: was active, how to resume? --answer {question.path}=… ({choices})\n")
         raise typer.Exit(ExitCode.BAD_INPUT)
     answers: dict[str, str] = {}
     for question in questions.questions:
-        ways = (RERUN, *question.outcomes)
-        said = ""
-        while said not in ways:
-            said = typer.prompt(f"{question.path} was in mid-work: {', '.join(ways)}?", err=True).strip()
-        answers[question.path] = said
+        choices = (RERUN, *question.outcomes)
+        answer = ""
+        while answer not in choices:
+            answer = typer.prompt(f"{question.path} was active: {', '.join(choices)}?", err=True).strip()
+        answers[question.path] = answer
     return answers
 
 
-def _tell(resumption: ResumePlan) -> None:
+def _print_resumption(resumption: ResumePlan) -> None:
     found, checkpoint = resumption.found, resumption.checkpoint
     for change in resumption.changes:
         sys.stderr.write(f"changed: {change}\n")
     if checkpoint is None:
-        sys.stderr.write(f"{found.id} begins anew: nothing of it had become durable\n")
+        sys.stderr.write(f"{found.id} starts from the beginning: no event of it is durable\n")
         return
-    where = f"goes on after event {checkpoint.read_seq}"
+    where = f"resumes after event {checkpoint.read_seq}"
     if found.origin.cell is not None:
-        where += ", the world brought to where it was" if resumption.restores else ", the cell as it is"
+        where += ", the simulated world is restored" if resumption.restores else ", the cell is not restored"
     sys.stderr.write(f"{found.id} {where}\n")
     for path in checkpoint.rerun:
-        sys.stderr.write(f"  again: {path}\n")
+        sys.stderr.write(f"  rerun: {path}\n")
     for path, outcome in checkpoint.taken.items():
-        sys.stderr.write(f"  taken as {outcome}: {path}\n")
+        sys.stderr.write(f"  outcome {outcome}: {path}\n")

@@ -1,4 +1,4 @@
-"""`flexcell run`: executes one behavior and says how it ended."""
+"""`flexcell run`: executes one behavior and reports its result."""
 
 from __future__ import annotations
 
@@ -41,47 +41,56 @@ from engine.runtime.run_options import RunOptions
 
 @dataclass(frozen=True, kw_only=True)
 class _RunPosition:
-    """The moment of another run to begin at."""
+    """The event of a recorded run at which this run starts."""
 
-    found: RecordedRun
+    recorded: RecordedRun
     seq: int
     checkpoint: Checkpoint
 
     @property
     def restores(self) -> bool:
-        """Whether the simulated world is known as it was at that moment."""
-        return self.found.knows_world_at(self.seq)
+        """Whether the state of the simulated world is known at that event."""
+        return self.recorded.knows_world_at(self.seq)
 
 
 def run(
     file: Annotated[Path, typer.Argument(help="The behavior: YAML, JSON or FILE.py:NAME.", show_default=False)],
     cell: Annotated[
-        Path | None, typer.Option(help="The cell to run it in; the one the behavior names by default.")
+        Path | None, typer.Option(help="Cell in which it runs; by default the cell that the behavior names.")
     ] = None,
     parameter: Annotated[
-        list[str] | None, typer.Option("-p", "--parameter", help="A parameter, name=value; may be repeated.")
+        list[str] | None,
+        typer.Option("-p", "--parameter", help="Parameter of the behavior, NAME=VALUE; may be repeated."),
     ] = None,
     input_: Annotated[
-        list[str] | None, typer.Option("--input", help="A userdata key, key=JSON; may be repeated.")
+        list[str] | None, typer.Option("--input", help="Initial userdata, KEY=JSON; may be repeated.")
     ] = None,
     clock: Annotated[
-        Literal["virtual", "real"], typer.Option(help="virtual: as fast as the machine allows, and repeatable.")
+        Literal["virtual", "real"],
+        typer.Option(help="virtual: as fast as the computer allows, and deterministic. real: in real time."),
     ] = "real",
     seed: Annotated[
         int | None,
-        typer.Option(help="Seed of random choices and of the jitter of parts; parts lie exactly without one.", min=0),
+        typer.Option(
+            help="Seed of random choices and of the placement noise of parts; without a seed, no placement noise.",
+            min=0,
+        ),
     ] = None,
-    journal: Annotated[str, typer.Option(help="Directory of the journal of runs, or `none`.")] = STATE_FOLDER,
+    journal: Annotated[str, typer.Option(help="Folder of the run journal, or `none`.")] = STATE_FOLDER,
     store: Annotated[
-        str | None, typer.Option(help="Use this store instead of the cell's: a file, or mongodb://HOST:PORT/DATABASE.")
+        str | None,
+        typer.Option(help="Store used instead of the cell's: a file, or mongodb://HOST:PORT/DATABASE."),
     ] = None,
-    events: Annotated[Path | None, typer.Option(help="Write the event log here, one JSON object a line.")] = None,
+    events: Annotated[
+        Path | None, typer.Option(help="Write the event log to this file, one JSON object per line.")
+    ] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
     from_: Annotated[
-        str | None, typer.Option("--from", help="RUN@SEQ: begin with the data of that event of a run in the journal.")
+        str | None,
+        typer.Option("--from", help="RUN@SEQ: start with the data that this run of the journal had at event SEQ."),
     ] = None,
     at: Annotated[
-        str | None, typer.Option(help="With --from: the node to begin at; the state entered last by default.")
+        str | None, typer.Option(help="With --from: node to start at; by default the state entered last.")
     ] = None,
     operator: Operator = False,
     autonomy: Autonomy = None,
@@ -90,41 +99,48 @@ def run(
     breakpoints: Breakpoints = False,
     paused: Paused = False,
     record: Annotated[
-        Path | None, typer.Option(help="Record the run in this MCAP file, for Foxglove and `flexcell replay`.")
+        Path | None, typer.Option(help="Record the run to this MCAP file, for Foxglove and `flexcell replay`.")
     ] = None,
     record_rate: Annotated[
-        float, typer.Option(help="At most that many messages of a topic a second are recorded; 0: events only.", min=0)
+        float, typer.Option(help="Maximum recorded rate of a topic, in messages per second; 0: events only.", min=0)
     ] = DEFAULT_RATE_HZ,
     record_topic: Annotated[
         list[str] | None,
-        typer.Option(help="Record only topics with this name, may hold `*`; may be repeated."),
+        typer.Option(
+            help="Record only topics whose name matches this pattern (`*` matches any text); may be repeated."
+        ),
     ] = None,
-    junit: Annotated[Path | None, typer.Option(help="Write the result here as JUnit XML.")] = None,
-    faults: Annotated[Path | None, typer.Option(help="Let go wrong what this fault document says.")] = None,
+    junit: Annotated[Path | None, typer.Option(help="Write the result to this file as JUnit XML.")] = None,
+    faults: Annotated[Path | None, typer.Option(help="Inject the faults of this fault document.")] = None,
     substitutes: Annotated[
         Path | None,
-        typer.Option(help="Let something else stand in for the nodes that this document names."),
+        typer.Option(help="Replace nodes as this substitutes document defines."),
     ] = None,
     substitute_on_robots: Annotated[
-        bool, typer.Option("--substitute-on-robots", help="With --substitutes: also where a robot is real.")
+        bool,
+        typer.Option(
+            "--substitute-on-robots", help="With --substitutes: allow substitutes in a cell with real robots."
+        ),
     ] = False,
     coverage: Annotated[
-        Path | None, typer.Option(help="Add what was covered of the behavior to this file; it is made at first.")
+        Path | None, typer.Option(help="Add the coverage of the run to this file; it is created if missing.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
-    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Show no progress.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as one JSON object on stdout, and no progress.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Do not print progress.")] = False,
 ) -> None:
     """Run a behavior.
 
-    Exit code 0: its outcome is a success. 1: another outcome. 2: nothing was started.
-    3: it ended with an error, or a file that was asked for could not be written in the end.
-    130: interrupted; robots are at rest and the journal is closed.
+    Exit code 0: the outcome is a success. 1: any other outcome. 2: the run was not started.
+    3: the run ended with an error, or a requested file could not be written at its end.
+    130: interrupted; the robots are at rest and the journal is closed.
     """
     prepare(events, record, junit, coverage)
     catalogue = load_states(file)
     recorded = _read_recorded(from_, at, journal)
-    place = _named_cell(cell, recorded)
-    behavior = whole = read_valid_behavior(file, catalogue, cell=place, given=parameter or ())
+    named = _named_cell(cell, recorded)
+    behavior = whole = read_valid_behavior(file, catalogue, cell=named, given=parameter or ())
     if substitutes is not None:
         behavior = behavior.with_substitutes(load_substitutes(substitutes))
     plan = new_plan(behavior, catalogue)
@@ -138,20 +154,20 @@ def run(
     )
     supervision = options.supervision(file)
     start = _read_start(recorded, at, plan)
-    opened = place or read_cell(None, behavior)
-    require_simulation(plan, opened, allowed=substitute_on_robots)
+    cell_spec = named or read_cell(None, behavior)
+    require_simulation(plan, cell_spec, allowed=substitute_on_robots)
     parameters = read_parameters(parameter or [], behavior.parameters)
     if start is not None:
         known = {name: value for name, value in start.checkpoint.parameters.items() if name in plan.parameters}
         parameters = {**known, **parameters}
-        seed = start.found.origin.seed if seed is None else seed
-        if opened is not None:
-            refuse_errors(check_given(behavior, catalogue, opened, parameters))
+        seed = start.recorded.origin.seed if seed is None else seed
+        if cell_spec is not None:
+            refuse_errors(check_given(behavior, catalogue, cell_spec, parameters))
     inputs = read_inputs(input_ or [])
     covered = CoverageCollector(whole, catalogue) if coverage is not None else None
     if covered is not None and coverage is not None:
         covered.require_same(coverage)
-    order = RunSetup(
+    setup = RunSetup(
         make=_maker(
             behavior,
             plan,
@@ -163,7 +179,7 @@ def run(
             start=start,
             catalogue=catalogue,
         ),
-        cell=opened,
+        cell=cell_spec,
         seed=seed,
         journal=journal,
         store=store,
@@ -174,7 +190,7 @@ def run(
         inputs=inputs,
         recording=RecordingOptions(
             path=record,
-            documents=collect_documents(behavior, opened),
+            documents=collect_documents(behavior, cell_spec),
             rate_hz=record_rate,
             topics=tuple(record_topic or ("*",)),
         )
@@ -182,7 +198,7 @@ def run(
         else None,
         faults=load_faults(faults) if faults is not None else None,
         watchers=(covered.follow(),) if covered is not None else (),
-        reload=partial(reload_plan, file, catalogue, cell=opened, substitutes=behavior.substitutes)
+        reload=partial(reload_plan, file, catalogue, cell=cell_spec, substitutes=behavior.substitutes)
         if operator
         else None,
     )
@@ -200,7 +216,7 @@ def run(
         if junit is not None:
             write_run_junit(junit, file, plan, ended.result, seed=seed, clock=clock)
 
-    raise typer.Exit(execute_run(order, report=report))
+    raise typer.Exit(execute_run(setup, report=report))
 
 
 def _maker(
@@ -216,9 +232,9 @@ def _maker(
     catalogue: Catalogue,
 ) -> MakeRun:
     async def make(cell: OpenCell, journal: Journal | NullJournal, skills: SkillPort | None) -> Run:
-        await _say_what_is_missing(behavior, catalogue, cell)
-        if start is not None and start.restores and start.found.world is not None:
-            await cell.restore(start.found.world.data)
+        await _warn_missing_entries(behavior, catalogue, cell)
+        if start is not None and start.restores and start.recorded.world is not None:
+            await cell.restore(start.recorded.world.data)
         return new_run(
             plan,
             cell=cell,
@@ -235,8 +251,8 @@ def _maker(
     return make
 
 
-async def _say_what_is_missing(behavior: Behavior, catalogue: Catalogue, cell: OpenCell) -> None:
-    """Warn of named entries that the store does not hold; the behavior may still write them before it needs them."""
+async def _warn_missing_entries(behavior: Behavior, catalogue: Catalogue, cell: OpenCell) -> None:
+    """Warn of named entries missing in the store; the behavior may still write them before it reads them."""
     if cell.store is not None:
         for finding in check_stored(behavior, catalogue, [(key.kind, key.name) for key in await cell.store.list()]):
             sys.stderr.write(f"{finding}\n")
@@ -245,7 +261,7 @@ async def _say_what_is_missing(behavior: Behavior, catalogue: Catalogue, cell: O
 def _read_recorded(text: str | None, at: str | None, journal: str) -> tuple[RecordedRun, int] | None:
     if text is None:
         if at is not None:
-            raise DocumentError("--at needs --from", hint="such as --from RUN@120")
+            raise DocumentError("--at requires --from", hint="such as --from RUN@120")
         return None
     run_id, _, number = text.rpartition("@")
     if not run_id or not number.isdecimal():
@@ -256,18 +272,18 @@ def _read_recorded(text: str | None, at: str | None, journal: str) -> tuple[Reco
 def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> _RunPosition | None:
     if recorded is None:
         return None
-    found, seq = recorded
-    start = _RunPosition(found=found, seq=seq, checkpoint=checkpoint_at(found, plan, seq=seq, path=at))
-    if found.world is not None and not start.restores:
-        known = found.world.seq
-        sys.stderr.write(f"flexcell: the cell starts as it is: its world is known at event {known} only\n")
-    elif found.world is None and found.origin.cell is not None:
-        sys.stderr.write("flexcell: the cell starts as it is\n")
+    earlier, seq = recorded
+    start = _RunPosition(recorded=earlier, seq=seq, checkpoint=checkpoint_at(earlier, plan, seq=seq, path=at))
+    if earlier.world is not None and not start.restores:
+        known = earlier.world.seq
+        sys.stderr.write(f"flexcell: the cell is not restored: its world is known at event {known} only\n")
+    elif earlier.world is None and earlier.origin.cell is not None:
+        sys.stderr.write("flexcell: the cell is not restored: the journal holds no state of its world\n")
     return start
 
 
 def _named_cell(file: Path | None, recorded: tuple[RecordedRun, int] | None) -> Cell | None:
-    """Return the cell of the command line, else that of the run to begin with; None for that of the behavior."""
+    """Return the cell of the command line, else that of the run to start from; None for that of the behavior."""
     if file is None and recorded is not None and recorded[0].origin.cell is not None:
         file = Path(recorded[0].origin.cell)
     return load_cell(file) if file is not None else None
@@ -276,10 +292,10 @@ def _named_cell(file: Path | None, recorded: tuple[RecordedRun, int] | None) -> 
 def read_valid_behavior(
     file: Path, catalogue: Catalogue, *, cell: Cell | None = None, given: Sequence[str] = ()
 ) -> Behavior:
-    """Load a behavior; one that has errors in the cell where it is to run ends the command with all of them.
+    """Load a behavior; if it has errors in the cell in which it runs, print them all and end the command.
 
     Raises:
-        DocumentError: it cannot be read at all.
+        DocumentError: the behavior cannot be read.
     """
     behavior, findings = read_behavior(file, catalogue, cell=cell, given=given)
     refuse_errors(findings)

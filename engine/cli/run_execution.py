@@ -1,4 +1,4 @@
-"""Carries out one run for the command line: its clock, cell, journal, recording, signals, and its end."""
+"""Executes one run for the command line: clock, cell, journal, recording, signals and shutdown."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ from engine.stop import StopNotice, StopRelay
 
 T = TypeVar("T")
 MakeRun = Callable[[OpenCell, Journal | NullJournal, SkillPort | None], Awaitable[Run]]
-"""Makes the run, new or resumed, in an open cell and journal; what it refuses was not started."""
+"""Creates the run, new or resumed, in an open cell and journal; if it raises, no run was started."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunSetup:
-    """Everything around a run, read and checked before anything starts."""
+    """Everything that a run needs, read and checked before it starts."""
 
     make: MakeRun
     cell: Cell | None
@@ -61,12 +61,12 @@ class RunSetup:
     faults: Faults | None = None
     watchers: tuple[Watcher, ...] = ()
     reload: Callable[[], Plan] | None = None
-    """With an operator on the terminal: reads the behavior anew for a hot change."""
+    """With an operator on the terminal: reloads the behavior for a hot change."""
 
 
 @dataclass(kw_only=True)
 class ExecutionResult:
-    """How a run ended, with its events."""
+    """The result of a run, with its events."""
 
     result: RunResult
     log: list[Event]
@@ -74,49 +74,49 @@ class ExecutionResult:
 
     @property
     def exit_code(self) -> ExitCode:
-        """What the process says of it."""
+        """The exit code of the process."""
         if self.interrupted and not self.result.abandoned:
             return ExitCode.INTERRUPTED
         return exit_code(self.result)
 
 
 def exit_code(result: RunResult) -> ExitCode:
-    """Return what the process says of a run that was not interrupted."""
+    """Return the exit code for a run that was not interrupted."""
     if result.status == "errored":
         return ExitCode.ERRORED
     return ExitCode.SUCCESS if result.success else ExitCode.OTHER_OUTCOME
 
 
-def execute_run(order: RunSetup, *, report: Callable[[ExecutionResult], None]) -> ExitCode:
+def execute_run(setup: RunSetup, *, report: Callable[[ExecutionResult], None]) -> ExitCode:
     """Execute a run to its end, report it, and return the exit code.
 
-    A state that was abandoned may never end, and with it the loop: such a process ends right after
-    the report, with the cell at rest and the journal closed.
+    An abandoned state may never end and keeps the event loop alive: the process then exits right
+    after the report, with the cell at rest and the journal closed.
 
     Raises:
-        FlexcellError: nothing was started.
+        FlexcellError: the run was not started.
     """
 
     async def main() -> ExecutionResult:
-        ended = await _execute(order)
+        ended = await _execute(setup)
         if ended.result.abandoned:
-            code = _reported(ended, report)
-            _say(f"abandoned: {', '.join(ended.result.abandoned)}; the process ends without waiting for it")
+            code = _report_run(ended, report)
+            _print_message(f"abandoned: {', '.join(ended.result.abandoned)}; the process exits without waiting for it")
             sys.stdout.flush()
             sys.stderr.flush()
             os._exit(code)
         return ended
 
-    ended = _on_clock(main(), virtual=order.virtual)
-    return _reported(ended, report)
+    ended = _on_clock(main(), virtual=setup.virtual)
+    return _report_run(ended, report)
 
 
-def _reported(ended: ExecutionResult, report: Callable[[ExecutionResult], None]) -> ExitCode:
-    """Report a run and return the exit code; it has been, whatever becomes of the report."""
+def _report_run(ended: ExecutionResult, report: Callable[[ExecutionResult], None]) -> ExitCode:
+    """Report a run and return the exit code; a failed report changes success to an error."""
     try:
         report(ended)
     except FlexcellError as error:
-        _say(str(error))
+        _print_message(str(error))
         return ended.exit_code or ExitCode.ERRORED
     return ended.exit_code
 
@@ -125,115 +125,117 @@ def _on_clock(main: Coroutine[Any, Any, T], *, virtual: bool) -> T:
     return run_virtual(main) if virtual else asyncio.run(main)
 
 
-async def _execute(order: RunSetup) -> ExecutionResult:
+async def _execute(setup: RunSetup) -> ExecutionResult:
     log: list[Event] = []
     over = asyncio.Event()
     with ExitStack() as stack:
         opening = stack.enter_context(ExitStack())
         opening.enter_context(gc_paused())
-        interruption = stack.enter_context(InterruptHandler(_say))
-        journal = _journal(order, stack)
+        interruption = stack.enter_context(InterruptHandler(_print_message))
+        journal = _journal(setup, stack)
         async with (
-            _recording(order) as recording,
-            _relay(order) as relay,
-            OpenCell(order.cell, seed=order.seed, store_path=order.store, relay=relay) as cell,
+            _recording(setup) as recording,
+            _relay(setup) as relay,
+            OpenCell(setup.cell, seed=setup.seed, store_path=setup.store, relay=relay) as cell,
         ):
             if relay is not None:
                 stack.enter_context(relay.watched_signals())
             started_unix_s = time.time()
-            faults = _faults(order, cell)
-            run = await order.make(cell, journal, faults)
+            faults = _faults(setup, cell)
+            run = await setup.make(cell, journal, faults)
             if recording is not None:
                 recording.attach(
-                    run, cell.bus, started_unix_s=started_unix_s, inputs=order.inputs, supervision=order.supervision
+                    run, cell.bus, started_unix_s=started_unix_s, inputs=setup.inputs, supervision=setup.supervision
                 )
-            for watcher in (log.append, *order.watchers):
+            for watcher in (log.append, *setup.watchers):
                 run.watch(watcher)
-            if not order.quiet:
+            if not setup.quiet:
                 run.watch(ProgressPrinter(Console(stderr=True)).show)
             interruption.watch_over(run)
             if relay is not None:
                 relay.on_stop(partial(_stop_run, run, over))
-            _watch_for_standstill(run)
-            if order.reload is not None:
-                stack.enter_context(OperatorConsole(run, say=_tell, reload=order.reload, policy=order.supervision))
-            _keep_loaded(order)
+            _watch_for_deadlock(run)
+            if setup.reload is not None:
+                stack.enter_context(
+                    OperatorConsole(run, say=_print_line, reload=setup.reload, policy=setup.supervision)
+                )
+            _freeze_loaded_objects(setup)
             opening.close()
             with short_switch_interval(), LoopWatchdog():
-                result = await _within(order.timeout_s, run)
+                result = await _execute_within(setup.timeout_s, run)
             over.set()
-    if faults is not None and order.quiet:
-        # With progress on the terminal these lines stand in it already.
+    if faults is not None and setup.quiet:
+        # The progress output shows these lines already.
         for line in faults.unapplied():
-            _say(line)
+            _print_message(line)
     return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason))
 
 
-def _keep_loaded(order: RunSetup) -> None:
-    """Have the collector leave out what is there now: going through all of it would hold the loop while arms move."""
-    if not order.virtual:
+def _freeze_loaded_objects(setup: RunSetup) -> None:
+    """Exclude the loaded objects from garbage collection: scanning them would block the loop while arms move."""
+    if not setup.virtual:
         gc.collect()
     gc.freeze()
 
 
-async def _within(timeout_s: float | None, execution: Run) -> RunResult:
+async def _execute_within(timeout_s: float | None, execution: Run) -> RunResult:
     if timeout_s is None:
         return await execution.execute()
     loop = asyncio.get_running_loop()
-    timer = loop.call_later(timeout_s, execution.stop, f"it took longer than {timeout_s:g} s")
+    timer = loop.call_later(timeout_s, execution.stop, f"timeout: the run took longer than {timeout_s:g} s")
     try:
         return await execution.execute()
     finally:
         timer.cancel()
 
 
-def _relay(order: RunSetup) -> AbstractAsyncContextManager[StopRelay | None]:
-    """Return what brings the robots to rest when a signal finds the event loop blocked."""
-    return StopRelay() if order.cell is not None and not order.virtual else nullcontext()
+def _relay(setup: RunSetup) -> AbstractAsyncContextManager[StopRelay | None]:
+    """Return the relay that stops the robots if a signal arrives while the event loop is blocked."""
+    return StopRelay() if setup.cell is not None and not setup.virtual else nullcontext()
 
 
 async def _stop_run(run: Run, over: asyncio.Event, notice: StopNotice) -> None:
-    """End the run; the devices stay latched until it is over."""
+    """Stop the run; the devices stay latched until it has ended."""
     run.stop(notice.reason)
     await over.wait()
 
 
-def _watch_for_standstill(run: Run) -> None:
-    """End the run errored, with all that it has told, when virtual time cannot pass any more."""
+def _watch_for_deadlock(run: Run) -> None:
+    """End the run as errored, with all its events kept, when virtual time deadlocks."""
     loop = asyncio.get_running_loop()
     if isinstance(loop, VirtualLoop):
-        loop.when_stuck = lambda error: run.fail(_standstill(run, error))
+        loop.when_stuck = lambda error: run.fail(_deadlock(run, error))
 
 
-def _standstill(run: Run, error: VirtualTimeDeadlock) -> VirtualTimeDeadlock:
+def _deadlock(run: Run, error: VirtualTimeDeadlock) -> VirtualTimeDeadlock:
     waiting = [f"{each.path} ({', '.join(each.reasons)})" for each in run.control.view().waiting]
     names = ", ".join([*run.active_states, *waiting]) or error.hint
-    return VirtualTimeDeadlock(error.message, where=run.plan.root.path, hint=f"waiting for ever: {names}")
+    return VirtualTimeDeadlock(error.message, where=run.plan.root.path, hint=f"waiting forever: {names}")
 
 
-def _faults(order: RunSetup, cell: OpenCell) -> FaultPort | None:
-    if order.faults is None:
+def _faults(setup: RunSetup, cell: OpenCell) -> FaultPort | None:
+    if setup.faults is None:
         return None
-    return FaultPort(BusPort(cell.bus), order.faults, clock=cell.bus.clock, seed=order.seed or 0)
+    return FaultPort(BusPort(cell.bus), setup.faults, clock=cell.bus.clock, seed=setup.seed or 0)
 
 
-def _recording(order: RunSetup) -> AbstractAsyncContextManager[RunRecording | None]:
-    if order.recording is None:
+def _recording(setup: RunSetup) -> AbstractAsyncContextManager[RunRecording | None]:
+    if setup.recording is None:
         return nullcontext()
-    return RunRecording.open(order.recording, inline=order.virtual)
+    return RunRecording.open(setup.recording, inline=setup.virtual)
 
 
-def _journal(order: RunSetup, stack: ExitStack) -> Journal | NullJournal:
-    if order.journal == "none":
+def _journal(setup: RunSetup, stack: ExitStack) -> Journal | NullJournal:
+    if setup.journal == "none":
         return NullJournal()
-    return stack.enter_context(Journal.open(order.journal, inline=order.virtual))
+    return stack.enter_context(Journal.open(setup.journal, inline=setup.virtual))
 
 
-def _say(line: str) -> None:
+def _print_message(line: str) -> None:
     sys.stderr.write(f"flexcell: {line}\n")
     sys.stderr.flush()
 
 
-def _tell(line: str) -> None:
+def _print_line(line: str) -> None:
     sys.stderr.write(f"{line}\n")
     sys.stderr.flush()

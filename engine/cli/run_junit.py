@@ -1,4 +1,4 @@
-"""What `flexcell run --junit` tells a CI server of a run."""
+"""Writes the JUnit file of `flexcell run --junit` for a CI server."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, se
     """Write the file: one suite with one case.
 
     Raises:
-        FlexcellError: it cannot be written.
+        FlexcellError: the file cannot be written.
     """
     case = JunitCase(name=plan.name, classname=class_name(file), time_s=result.duration_s, problem=_problem(result))
     properties = {
@@ -32,11 +32,11 @@ def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, se
 def _problem(result: RunResult) -> JunitProblem | None:
     if result.success:
         return None
-    why = describe_cause(result.cause) if result.cause is not None else ""
-    said = result.outcome or result.status
+    cause = describe_cause(result.cause) if result.cause is not None else ""
+    end = result.outcome or result.status
     return JunitProblem(
         kind="failure" if result.status == "finished" else "error",
-        type=said,
-        message=why or said,
-        text="\nso ".join(map(link_text, links_from_root(result.cause))) or said,
+        type=end,
+        message=cause or end,
+        text="\nso ".join(map(link_text, links_from_root(result.cause))) or end,
     )

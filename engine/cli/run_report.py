@@ -1,4 +1,4 @@
-"""What `flexcell run` and `flexcell resume` print of a run that is over."""
+"""Prints the result of a run, for `flexcell run` and `flexcell resume`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def print_json(result: RunResult, encoded: bytes, count: int) -> None:
 
 
 def cause_links(cause: Cause | None) -> list[dict[str, object]]:
-    """Return a cause chain as the commands give it to machines: what was measured first, the run's end last."""
+    """Return a cause chain for JSON output: the root cause first, the end of the run last."""
     return [
         {"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes}
         for link in links_from_root(cause)
@@ -40,19 +40,19 @@ def cause_links(cause: Cause | None) -> list[dict[str, object]]:
 
 
 def print_result(result: RunResult) -> None:
-    """Say how it ended, and why where it is no success."""
+    """Print how the run ended, and the cause if it is not a success."""
     console = Console(stderr=True)
     style = "green" if result.success else "red"
     what = result.outcome or result.status
     console.print(f"[bold {style}]{what}[/] after {result.duration_s:.2f} s [dim](run {result.run})[/]")
     if result.stood_in_for:
-        console.print(f"substitutes stood in for {', '.join(result.stood_in_for)}", markup=False, soft_wrap=True)
+        console.print(f"substituted nodes: {', '.join(result.stood_in_for)}", markup=False, soft_wrap=True)
     if not result.success:
         print_cause(result.cause, console)
 
 
 def print_cause(cause: Cause | None, console: Console) -> None:
-    """Print a cause chain from what was measured outwards, a line for each link and each node that it came through."""
+    """Print a cause chain, root cause first: one line per link and per node that it passed through."""
     for depth, link in enumerate(links_from_root(cause)):
         begin = f"{'  ' * depth}so " if depth else ""
         console.print(f"{begin}{link_text(link)}", markup=False, highlight=False, soft_wrap=True)

@@ -1,4 +1,4 @@
-"""`flexcell runs`: lists the runs of a journal and shows where one stands."""
+"""`flexcell runs`: lists the runs of a journal and shows the state of one."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ from engine.runtime.plan import new_plan
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200
 
-app = typer.Typer(help="List the runs of a journal and show where one stands.", invoke_without_command=True)
+app = typer.Typer(help="List the runs of a journal and show the state of one.", invoke_without_command=True)
 
-JournalPlace = Annotated[str, typer.Option("--journal", help="Directory of the journal of runs.")]
+JournalPlace = Annotated[str, typer.Option("--journal", help="Folder of the run journal.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 class RunListEntry(msgspec.Struct, frozen=True, kw_only=True):
     """One run in the list; `status` is running, interrupted, finished, stopped, errored or damaged.
 
-    `verified` is false where an older version, which made no checksums, wrote some of it.
+    `verified` is false if an older version, which wrote no checksums, wrote part of the run.
     """
 
     id: str
@@ -59,7 +59,7 @@ class RunListEntry(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RunSummary(RunListEntry, frozen=True, kw_only=True):
-    """Where one run stood at its last durable event, and what was done to it."""
+    """State of one run at its last durable event, and the actions of its operator."""
 
     outcome: str | None
     cause: list[dict[str, object]]
@@ -70,25 +70,25 @@ class RunSummary(RunListEntry, frozen=True, kw_only=True):
     operator: list[Event]
     last: list[Event]
     world_at: int | None
-    """The event up to which the simulated world is known."""
+    """Event at which the state of the simulated world is known."""
 
 
 @app.callback()
 def runs(context: typer.Context, journal: JournalPlace = STATE_FOLDER, json: AsJson = False) -> None:
-    """List the runs, oldest first; one whose engine died shows as interrupted."""
+    """List the runs, oldest first; a run whose process died is listed as interrupted."""
     if context.invoked_subcommand is not None:
         return
     lines = [_line(record) for record in list_runs(journal)]
     if json:
         sys.stdout.write(msgspec.json.encode(lines).decode() + "\n")
         return
-    # The id is there to be copied: it is never cut short.
+    # Users copy the id: it is never truncated.
     widest = max((len(line.id) for line in lines), default=0)
     run_column = Column("run", min_width=widest, no_wrap=True)
     table = Table(run_column, "behavior", "status", "started (UTC)", "events", box=None)
     for line in lines:
         table.add_row(line.id, line.behavior, line.status, line.started, str(line.events))
-    # In a pipe nothing is folded or cut short: its reader looks for whole words.
+    # In a pipe no text is wrapped or truncated: the reader searches for whole words.
     Console(width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
     for line in lines:
         if line.damage:
@@ -100,12 +100,14 @@ def runs(context: typer.Context, journal: JournalPlace = STATE_FOLDER, json: AsJ
 
 @app.command("show")
 def show(
-    run: Annotated[str, typer.Argument(help="The run, as the list names it.", show_default=False)],
+    run: Annotated[str, typer.Argument(help="Id of the run, see `flexcell runs`.", show_default=False)],
     journal: JournalPlace = STATE_FOLDER,
-    events: Annotated[bool, typer.Option("--events", help="Print all its events, one JSON object a line.")] = False,
+    events: Annotated[
+        bool, typer.Option("--events", help="Print all events of the run, one JSON object per line.")
+    ] = False,
     json: AsJson = False,
 ) -> None:
-    """Show where a run stood: active states, data, what the operator did, why it ended."""
+    """Show the state of a run: active states, data, actions of the operator, and why it ended."""
     found = read_run(journal, run)
     if events:
         for event in found.events:
@@ -159,15 +161,15 @@ def _end(found: RecordedRun) -> RunEnded | None:
 
 
 def _history(found: RecordedRun) -> RunStateReducer | None:
-    """Return where it stood; the behavior it executed is in the journal itself."""
+    """Return the state of the run; the journal itself holds the behavior that it executed."""
     behavior = found.behavior()
     if behavior is None:
         return None
     try:
         plan = new_plan(behavior, load_states(Path.cwd()))
     except DocumentError as error:
-        # A run of somebody else's, whose states are not here: its events can be shown all the same.
-        sys.stderr.write(f"flexcell: without userdata: {error}\n")
+        # A run of another project, whose states are not installed here: its events can still be shown.
+        sys.stderr.write(f"flexcell: userdata is not shown: {error}\n")
         return None
     return read_history(plan, found.id, found.events)
 
@@ -179,7 +181,7 @@ def _print(summary: RunSummary, end: RunEnded | None) -> None:
     console.print(f"{summary.id}: {summary.behavior}, {summary.status}{ended}")
     console.print(f"started {summary.started} UTC, {summary.events} events{engines}")
     if not summary.verified:
-        console.print("unverified: an older version, which made no checksums, wrote some of it")
+        console.print("unverified: an older version, which wrote no checksums, wrote part of this run")
     if summary.world_at is not None:
         console.print(f"the simulated world is known at event {summary.world_at}")
     cause: Cause | None = end.cause if end is not None else None
@@ -207,11 +209,11 @@ def _print_events(console: Console, title: str, events: Sequence[Event]) -> None
     if events:
         console.print(title)
     for event in events:
-        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_words(event)}")
+        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_text(event)}")
 
 
-def _words(event: Event) -> str:
-    """Say an event in one line."""
+def _event_text(event: Event) -> str:
+    """Describe an event in one line."""
     kind = str(type(event).__struct_config__.tag or "")
     match event:
         case GateReached():
@@ -220,10 +222,10 @@ def _words(event: Event) -> str:
             return f"{kind} {event.path} {event.outcome}"
         case _:
             fields = {name: getattr(event, name) for name in event.__struct_fields__ if name not in ("seq", "time_s")}
-            shown = [_short(value) for value in fields.values() if value not in (None, "", (), {})]
+            shown = [_truncated(value) for value in fields.values() if value not in (None, "", (), {})]
             return " ".join([kind, *shown])
 
 
-def _short(value: object) -> str:
+def _truncated(value: object) -> str:
     text = value if isinstance(value, str) else msgspec.json.encode(value).decode()
     return text if len(text) <= 80 else f"{text[:79]}…"

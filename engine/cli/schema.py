@@ -1,4 +1,4 @@
-"""`flexcell schema`: the JSON Schemas of documents, for editors."""
+"""`flexcell schema`: prints the JSON Schemas of documents, for text editors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.document.schema import schema_texts
 
 def schema(
     kind: Annotated[
-        Literal["behavior", "cell", "entries", "faults", "substitutes"], typer.Argument(help="Which document.")
+        Literal["behavior", "cell", "entries", "faults", "substitutes"], typer.Argument(help="Kind of document.")
     ] = "behavior",
 ) -> None:
     """Print the JSON Schema of a kind of document."""

@@ -1,4 +1,4 @@
-"""`flexcell serve`: the cell, its runs and the dashboard behind one local port."""
+"""`flexcell serve`: serves a cell, its runs and the dashboard on one local port."""
 
 from __future__ import annotations
 
@@ -36,39 +36,44 @@ ServeDashboard = Callable[..., Coroutine[Any, Any, None]]
 
 def serve(
     cell: Annotated[
-        Path | None, typer.Option(help="The cell to connect; without one, behaviors run without robots.")
+        Path | None, typer.Option(help="Cell to connect; without a cell, behaviors run without robots.")
     ] = None,
-    port: Annotated[int, typer.Option(help="TCP port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)] = 8642,
+    port: Annotated[int, typer.Option(help="TCP port of the server; 0 selects a free port.", min=0, max=65535)] = 8642,
     host: Annotated[str, typer.Option(help="Loopback address to listen on.")] = "127.0.0.1",
     stop_port: Annotated[
         int,
         typer.Option(
-            help="TCP port at which STOP is taken whatever the server does; 0 takes a free one.", min=0, max=65535
+            help="TCP port of the stop relay, which accepts STOP even while the server is blocked; 0 selects a free"
+            " port.",
+            min=0,
+            max=65535,
         ),
     ] = 0,
     view_port: Annotated[
         int,
         typer.Option(
-            help="TCP port of the page's 3D view, which browsers draw in a process of its own; 0 takes a free one.",
+            help="TCP port of the 3D view, which is served from its own origin; 0 selects a free port.",
             min=0,
             max=65535,
         ),
     ] = 0,
-    project: Annotated[Path, typer.Option(help="Folder with `behaviors/` in it.")] = Path(),
-    state: Annotated[Path, typer.Option(help="Folder for tokens and the journal.")] = Path(".flexcell"),
+    project: Annotated[Path, typer.Option(help="Project folder, which contains `behaviors/`.")] = Path(),
+    state: Annotated[
+        Path, typer.Option(help="Folder in which the server keeps its state: tokens, journal, recordings.")
+    ] = Path(".flexcell"),
     seed: Annotated[
-        int | None, typer.Option(help="Seed of the jitter of parts; they lie exactly without one.", min=0)
+        int | None, typer.Option(help="Seed of the placement noise of parts; without a seed, no noise.", min=0)
     ] = None,
     record: Annotated[
         bool, typer.Option("--record/--no-record", help="Record every run to `recordings/` in the state folder.")
     ] = True,
-    recordings_kept: Annotated[int, typer.Option(help="So many recordings are kept at most.", min=1)] = KEPT,
+    recordings_kept: Annotated[int, typer.Option(help="Maximum number of recordings kept.", min=1)] = KEPT,
     recordings_size: Annotated[
-        float, typer.Option(help="So large they are at most, together, in MB; the oldest go first.", min=1)
+        float, typer.Option(help="Maximum total size of the recordings, in MB; the oldest are deleted first.", min=1)
     ] = SIZE_MB,
-    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    open_: Annotated[bool, typer.Option("--open", help="Open the dashboard in the browser.")] = False,
 ) -> None:
-    """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
+    """Connect a cell and serve its dashboard until Ctrl-C; robots are brought to rest before the server exits."""
     loaded = load_cell(cell) if cell is not None else None
     catalogue = load_states(project)
     sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
@@ -109,25 +114,27 @@ async def _serve(
     open_page: bool,
 ) -> None:
     new_dashboard: ServeDashboard = load_factory(SERVERS, "dashboard")
-    # Plans load it with the first tree, which would hold the loop in the middle of another run.
+    # Otherwise the first plan with a tree imports it, which would block the loop during another run.
     import_module("engine.runtime.tree")
     state = folder.path
 
     def ready(dashboard: Any) -> None:
         folder.announce(url=dashboard.url, token=dashboard.token, stop=relay.endpoint)
-        # What is there now stays: a collection that went through all of it would hold the loop while arms move.
+        # The loaded objects stay alive: a collection that scanned them would block the loop while arms move.
         gc.collect()
         gc.freeze()
-        # What is late before is late for nobody.
+        # Delays before this point affect no run.
         watched.enter_context(LoopWatchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")
-        sys.stdout.write("It logs in once; `flexcell login` prints another. Stop with Ctrl-C.\n")
+        sys.stdout.write(
+            "The address is valid for one login; `flexcell login` prints another. Press Ctrl-C to stop the server.\n"
+        )
         sys.stdout.flush()
         if open_page:
             webbrowser.open(dashboard.new_login_url())
 
     if cell is not None:
-        sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
+        sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first start compiles its code, which takes longer.\n")
     with Journal.open(state) as journal, short_switch_interval(), ExitStack() as watched:
         async with (
             StopRelay(host=host, port=stop_port) as relay,
@@ -155,16 +162,16 @@ async def _serve(
 
 
 def _end(serving: asyncio.Task[None]) -> None:
-    """End the server, whose robots the relay has told to stop already."""
+    """End the server; the relay has already stopped the robots."""
     sys.stderr.write("stopping: bringing the robots to rest\n")
     serving.cancel()
 
 
 def _on_signals(loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:
-    """Call `end` on the loop at SIGINT and SIGTERM; the loop's own handlers would hide the signals from the relay."""
+    """Call `end` on the loop at SIGINT and SIGTERM; asyncio's own handlers would hide the signals from the relay."""
 
-    def caught(_number: int, _frame: FrameType | None) -> None:
+    def on_signal(_number: int, _frame: FrameType | None) -> None:
         loop.call_soon_threadsafe(end)
 
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, caught)
+        signal.signal(number, on_signal)

@@ -1,4 +1,4 @@
-"""`flexcell states`: which states there are, and all about one of them."""
+"""`flexcell states`: lists the available states and describes one of them."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from engine.document.state_catalogue import Catalogue, find_state
 from engine.registry import load_states, state_by_path
 from engine.state import State
 
-app = typer.Typer(help="Show the states that behaviors can use.", invoke_without_command=True)
+app = typer.Typer(help="List the states that behaviors can use, and describe one.", invoke_without_command=True)
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 @app.callback()
 def list_states(context: typer.Context, json: AsJson = False) -> None:
-    """List all states; `states show NAME` tells all about one."""
+    """List all states; `states show NAME` describes one."""
     if context.invoked_subcommand is not None:
         return
     catalogue = load_states(Path.cwd())
     sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
     signatures = _signatures(catalogue)
     if json:
-        sys.stdout.write(msgspec.json.encode([_plain(signature) for signature in signatures]).decode() + "\n")
+        sys.stdout.write(msgspec.json.encode([_as_dict(signature) for signature in signatures]).decode() + "\n")
         return
-    table = Table("state", "outcomes", "what it does", box=None)
+    table = Table("state", "outcomes", "description", box=None)
     for signature in signatures:
         table.add_row(signature.name, " ".join(signature.outcomes), signature.summary)
     Console().print(table)
@@ -42,34 +42,34 @@ def list_states(context: typer.Context, json: AsJson = False) -> None:
 
 @app.command("show")
 def show(
-    name: Annotated[str, typer.Argument(help="A state such as motion.MoveJoints, or package.module:Class.")],
+    name: Annotated[str, typer.Argument(help="State, such as motion.MoveJoints, or package.module:Class.")],
     json: AsJson = False,
 ) -> None:
-    """Show parameters, input and output keys and outcomes of one state."""
+    """Show the parameters, input keys, output keys and outcomes of one state."""
     signature = read_signature(_find(name))
     if json:
-        sys.stdout.write(msgspec.json.encode(_plain(signature)).decode() + "\n")
+        sys.stdout.write(msgspec.json.encode(_as_dict(signature)).decode() + "\n")
         return
     console = Console(highlight=False)
     console.print(f"[bold]{signature.name}[/]\n{signature.doc}\n")
     console.print(f"outcomes: {', '.join(signature.outcomes)}")
     for title, rows in _tables(signature).items():
         if rows:
-            table = Table(title, "type", "default", "meaning", box=None)
+            table = Table(title, "type", "default", "description", box=None)
             for row in rows:
                 table.add_row(*row)
             console.print(table)
 
 
 def _signatures(catalogue: Catalogue) -> list[StateSignature]:
-    """Describe every state once, by the name that documents give it."""
-    found = [(name, read_signature(state)) for name, state in catalogue.items()]
-    return [replace(each, name=name) for name, each in found if name == each.name or each.name not in catalogue]
+    """Return the signature of every state once, under the name that documents use."""
+    signatures = [(name, read_signature(state)) for name, state in catalogue.items()]
+    return [replace(each, name=name) for name, each in signatures if name == each.name or each.name not in catalogue]
 
 
 def _find(name: str) -> type[State]:
     catalogue = load_states(Path.cwd())
-    # Whoever types the name of a module at the command line wants it imported; no document can.
+    # A user who gives a module name on the command line wants it imported; documents cannot import modules.
     return state_by_path(name) if ":" in name and name not in catalogue else find_state(catalogue, name)
 
 
@@ -84,7 +84,7 @@ def _tables(signature: StateSignature) -> dict[str, list[tuple[str, str, str, st
     }
 
 
-def _plain(signature: StateSignature) -> dict[str, object]:
+def _as_dict(signature: StateSignature) -> dict[str, object]:
     return {
         "name": signature.name,
         "description": signature.doc,
@@ -97,7 +97,7 @@ def _plain(signature: StateSignature) -> dict[str, object]:
 
 
 def type_text(key: KeySignature) -> str:
-    """Write a type with its limits in a few words, such as `number > 0, <= 1`."""
+    """Return a type with its limits as short text, such as `number > 0, <= 1`."""
     schema = key.schema
     limits = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
     bounds = [f"{sign} {schema[name]}" for name, sign in limits.items() if name in schema]
@@ -107,12 +107,12 @@ def type_text(key: KeySignature) -> str:
 
 
 def default_text(key: KeySignature) -> str:
-    """Write the default as JSON, `required` where there is none."""
+    """Return the default as JSON, or `required` if there is none."""
     return "required" if key.required else msgspec.json.encode(key.default).decode()
 
 
 def description(key: KeySignature) -> str:
-    """Return what the state's author says of it."""
+    """Return the description that the author of the state wrote."""
     return str(key.schema.get("description", ""))
 
 
@@ -121,6 +121,6 @@ def _alternatives(schema: Mapping[str, object]) -> str:
         return str(schema["$ref"]).rpartition("/")[2]
     options = schema.get("anyOf")
     if isinstance(options, list):
-        found = msgspec.convert(options, list[dict[str, object]])
-        return " or ".join(str(option.get("type") or _alternatives(option)) for option in found)
+        schemas = msgspec.convert(options, list[dict[str, object]])
+        return " or ".join(str(option.get("type") or _alternatives(option)) for option in schemas)
     return "any"

@@ -1,6 +1,6 @@
-"""`flexcell stop`: STOP of the cell of a running server, on the path that needs no answer of the server itself.
+"""`flexcell stop`: STOP of the cell of a running server, through a relay that works while the server is blocked.
 
-Imports next to nothing, so that the command is on its way within a few hundredths of a second.
+Imports as little as possible, so that the request leaves within a few hundredths of a second.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from engine.host.state_folder_names import SERVER_FILE
 REASON = "flexcell stop"
 _ANSWER_S = 2.0
 _REST_S = 10.0
-_LOOK_S = 0.02
+_POLL_S = 0.02
 _READ_BYTES = 65536
 
 
 def stop_cell(state: Path, reason: str) -> int:
-    """Stop the cell of the server that keeps its state in `state`; print how far it is and return the exit code.
+    """Stop the cell of the server that keeps its state in `state`; print the progress and return the exit code.
 
-    0: everything is at rest. 2: no server runs there. 3: nobody answers, or something does not come to rest.
+    0: all devices are at rest. 2: no server runs there. 3: no answer, or a device does not come to rest.
     """
     file = state / SERVER_FILE
     try:
@@ -34,7 +34,7 @@ def stop_cell(state: Path, reason: str) -> int:
         sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); give --state, or use the emergency stop\n")
         return 2
     try:
-        status = _posted(url, token, reason)
+        status = _post(url, token, reason)
         acknowledged = f"STOP acknowledged after {status['after_s'] * 1000:.0f} ms{_engine(status)}\n"
     except (OSError, ValueError, TypeError, KeyError) as error:
         return _stopped_by_server(record, reason, error)
@@ -46,39 +46,39 @@ def stop_cell(state: Path, reason: str) -> int:
 def _wait_for_rest(url: str, token: str, status: dict[str, Any]) -> int:
     deadline_s = time.monotonic() + _REST_S
     while not status["at_rest"] and time.monotonic() < deadline_s:
-        time.sleep(_LOOK_S)
+        time.sleep(_POLL_S)
         try:
-            status = _posted(f"{url}/status", token, "")
+            status = _post(f"{url}/status", token, "")
         except (OSError, ValueError):
             break
     if not status["at_rest"]:
         moving = ", ".join(each["name"] for each in status["devices"] if not each["at_rest"])
-        sys.stderr.write(f"flexcell: {moving}: does not confirm that it rests; use the emergency stop\n")
+        sys.stderr.write(f"flexcell: {moving}: not confirmed at rest; use the emergency stop\n")
         return 3
     sys.stdout.write(f"At rest after {status['after_s']:.2f} s.\n")
     return 0
 
 
 def _stopped_by_server(record: dict[str, Any], reason: str, error: Exception) -> int:
-    """Ask the server itself where the relay does not answer."""
-    sys.stderr.write(f"flexcell: the stop relay does not answer ({error}); asking the server\n")
+    """Send STOP to the server itself if the relay does not answer."""
+    sys.stderr.write(f"flexcell: the stop relay does not answer ({error}); sending STOP to the server\n")
     try:
-        _posted(f"{record['url']}api/v1/cell/stop", str(record["token"]), reason, timeout_s=_REST_S)
+        _post(f"{record['url']}api/v1/cell/stop", str(record["token"]), reason, timeout_s=_REST_S)
     except (OSError, ValueError, KeyError) as failure:
-        sys.stderr.write(f"flexcell: nobody takes STOP ({failure}); use the emergency stop\n")
+        sys.stderr.write(f"flexcell: the server does not accept STOP ({failure}); use the emergency stop\n")
         return 3
-    sys.stdout.write("Stopped: the server has confirmed that every robot is at rest.\n")
+    sys.stdout.write("Stopped: the server confirms that every robot is at rest.\n")
     return 0
 
 
-def _posted(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) -> dict[str, Any]:
-    """Post a stop and return the answer.
+def _post(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) -> dict[str, Any]:
+    """Post a stop request and return the response.
 
-    HTTP/1.0 by hand: http.client takes half as long to import as everything else that happens before STOP is sent.
+    Writes HTTP/1.0 directly: importing http.client takes half as long as everything else before STOP is sent.
 
     Raises:
-        OSError: nobody is there, or does not answer.
-        ValueError: it answered something else.
+        OSError: no connection, or no response.
+        ValueError: the response is not a success.
     """
     authority, _, path = url.removeprefix("http://").partition("/")
     host, _, port = authority.rpartition(":")
@@ -94,7 +94,7 @@ def _posted(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) 
     content = rest.partition(b"\r\n\r\n")[2]
     code = status.split()[1:2] if status.startswith(b"HTTP/") else []
     if code not in ([b"200"], [b"204"]):
-        raise ValueError(f"it answered {answer[:200].decode('utf-8', 'replace')!r}")
+        raise ValueError(f"unexpected response: {answer[:200].decode('utf-8', 'replace')!r}")
     return json.loads(content) if content else {}
 
 

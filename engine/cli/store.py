@@ -22,30 +22,34 @@ from engine.store import EntryChange, Store, migrate
 
 app = typer.Typer(help="Read and write named entries of a cell: joint configurations, poses, primitives, records.")
 
-Kind = Annotated[str, typer.Argument(help="joints, pose, dmp, cart_dmp, trajectory, gripper, detection, record …")]
+Kind = Annotated[
+    str, typer.Argument(help="Kind: joints, pose, dmp, cart_dmp, trajectory, gripper, detection, record …")
+]
 Name = Annotated[str, typer.Argument(help="Name of the entry.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Expected = Annotated[
-    int | None, typer.Option(help="Only when the stored entry has this revision; 0: only when there is none.")
+    int | None, typer.Option(help="Proceed only if the stored entry has this revision; 0: only if there is no entry.")
 ]
 Format = Annotated[
     Literal["entries", "mongodb_store"],
-    typer.Option("--format", help="entries: a document of flexcell. mongodb_store: documents of that ROS package."),
+    typer.Option("--format", help="entries: a flexcell document. mongodb_store: documents of that ROS package."),
 ]
 
 
 @app.command("list")
 def list_entries(
-    kind: Annotated[str, typer.Argument(help="Only this kind.")] = "",
-    prefix: Annotated[str, typer.Option(help="Only names that begin so.")] = "",
-    search: Annotated[str, typer.Option(help="Only where each word begins a word of the name or of a tag.")] = "",
-    tag: Annotated[list[str] | None, typer.Option(help="Only with this tag; may be repeated.")] = None,
-    limit: Annotated[int | None, typer.Option(help="At most so many.", min=1)] = None,
+    kind: Annotated[str, typer.Argument(help="List only entries of this kind.")] = "",
+    prefix: Annotated[str, typer.Option(help="List only names that begin with this text.")] = "",
+    search: Annotated[
+        str, typer.Option(help="List only entries whose name or tags contain words that begin with each of these.")
+    ] = "",
+    tag: Annotated[list[str] | None, typer.Option(help="List only entries with this tag; may be repeated.")] = None,
+    limit: Annotated[int | None, typer.Option(help="Maximum number of entries listed.", min=1)] = None,
     cell: Cell = None,
     store: Place = None,
     json: AsJson = False,
 ) -> None:
-    """List the entries with their revisions, tags, and who changed them last."""
+    """List the entries with revision, tags, and time and author of the last change."""
     keys = with_store(
         cell,
         store,
@@ -56,7 +60,9 @@ def list_entries(
         return
     table = Table("kind", "name", "revision", "tags", "changed", "by", box=None)
     for key in keys:
-        table.add_row(key.kind, key.name, str(key.revision), " ".join(key.tags), _when(key.changed_unix_ms), key.by)
+        table.add_row(
+            key.kind, key.name, str(key.revision), " ".join(key.tags), _time_text(key.changed_unix_ms), key.by
+        )
     Console().print(table)
 
 
@@ -69,10 +75,12 @@ def get(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
 
 @app.command("show")
 def show(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
-    """Print one entry to be read: its value, tags, and its last change."""
+    """Print one entry in readable form: value, tags and last change."""
     changes = with_store(cell, store, lambda opened: opened.history(kind, name))
     if not changes or changes[-1].value is None:
-        raise StoreError("there is no such entry", where=f"{kind} {name}", hint="flexcell store list")
+        raise StoreError(
+            "there is no such entry", where=f"{kind} {name}", hint="`flexcell store list` lists the entries"
+        )
     last = changes[-1]
     sys.stdout.write(f"{last.kind} {last.name}, {_change_text(last)}\n")
     if last.tags:
@@ -84,9 +92,9 @@ def show(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None
 def set_entry(
     kind: Kind,
     name: Name,
-    value: Annotated[str, typer.Argument(help="The fields of its kind as a JSON object.")],
+    value: Annotated[str, typer.Argument(help="Fields of the entry as a JSON object.")],
     expected_revision: Expected = None,
-    tag: Annotated[list[str] | None, typer.Option(help="A tag, in place of those it has; may be repeated.")] = None,
+    tag: Annotated[list[str] | None, typer.Option(help="Tag, replaces the present tags; may be repeated.")] = None,
     by: Who = None,
     reason: Why = "",
     cell: Cell = None,
@@ -117,7 +125,7 @@ def delete(
     cell: Cell = None,
     store: Place = None,
 ) -> None:
-    """Remove one entry; its history stays, and `undo` brings it back."""
+    """Delete one entry; its history is kept, and `undo` restores it."""
     with_store(
         cell,
         store,
@@ -129,7 +137,7 @@ def delete(
 
 @app.command("history")
 def history(kind: Kind, name: Name, cell: Cell = None, store: Place = None, json: AsJson = False) -> None:
-    """Print every change of an entry: who, when and why; with --json the values too."""
+    """Print every change of an entry: author, time and reason; with --json also the values."""
     changes = with_store(cell, store, lambda opened: opened.history(kind, name))
     if json:
         sys.stdout.write(msgspec.json.encode(changes).decode() + "\n")
@@ -148,7 +156,7 @@ def undo(
     cell: Cell = None,
     store: Place = None,
 ) -> None:
-    """Bring back what an entry was before its last change; again, one step further into the past."""
+    """Restore an entry to its state before the last change; repeated, one change further back."""
     change = with_store(
         cell,
         store,
@@ -159,7 +167,7 @@ def undo(
 
 @app.command("export")
 def export(format_: Format = "entries", cell: Cell = None, store: Place = None) -> None:
-    """Print all entries: as an entries document, or one JSON document a line for `mongoimport`."""
+    """Print all entries, as an entries document or as one JSON document per line for `mongoimport`."""
     records = with_store(cell, store, lambda opened: opened.export())
     sys.stdout.write(exported(records, format_))
 
@@ -167,17 +175,18 @@ def export(format_: Format = "entries", cell: Cell = None, store: Place = None) 
 @app.command("import")
 def import_entries(
     source: Annotated[
-        str, typer.Argument(help="An entries document; with --format mongodb_store a .json, .bson or mongodb://….")
+        str,
+        typer.Argument(help="Entries document; with --format mongodb_store: a .json or .bson file, or mongodb://…."),
     ],
-    overwrite: Annotated[bool, typer.Option(help="Write also entries that are there with another value.")] = False,
+    overwrite: Annotated[bool, typer.Option(help="Also overwrite stored entries that have another value.")] = False,
     format_: Format = "entries",
-    collection: Annotated[str, typer.Option(help="Of a mongodb:// source.")] = "message_store",
+    collection: Annotated[str, typer.Option(help="Collection of a mongodb:// source.")] = "message_store",
     by: Who = None,
     cell: Cell = None,
     store: Place = None,
 ) -> None:
-    """Write the entries of a document that are missing in the store."""
-    entries = imported(source, format_, collection=collection, say=_say)
+    """Import the entries of a document that are missing in the store."""
+    entries = imported(source, format_, collection=collection, say=_print_message)
     written = with_store(
         cell,
         store,
@@ -190,17 +199,22 @@ def import_entries(
 
 @app.command("migrate")
 def migrate_store(
-    source: Annotated[str, typer.Argument(help="A store file, mongodb://HOST:PORT/DATABASE, or a cell document.")],
-    target: Annotated[str, typer.Argument(help="The same; made where it is missing.")],
+    source: Annotated[str, typer.Argument(help="Store file, mongodb://HOST:PORT/DATABASE, or cell document.")],
+    target: Annotated[str, typer.Argument(help="As SOURCE; it is created if missing.")],
 ) -> None:
-    """Copy all entries with their histories to another store, and verify that they arrived; may be repeated."""
+    """Copy all entries with their histories to another store, and verify the copy; may be repeated."""
 
     async def main() -> None:
-        async with await opened_store(source, made=False) as here, await opened_store(target, made=True) as there:
-            done = await migrate(here, there, progress=lambda n, of: _say(f"{n} of {of} entries"))
+        async with (
+            await opened_store(source, made=False) as source_store,
+            await opened_store(target, made=True) as target_store,
+        ):
+            done = await migrate(
+                source_store, target_store, progress=lambda n, of: _print_message(f"{n} of {of} entries")
+            )
             sys.stdout.write(
-                f"{done.entries} entries with {done.changes} changes are in {there.address}, {done.new_changes} new;"
-                f" verified, digest {done.digest[:16]}\n"
+                f"{done.entries} entries with {done.changes} changes are in {target_store.address},"
+                f" {done.new_changes} new; verified, digest {done.digest[:16]}\n"
             )
 
     asyncio.run(main())
@@ -208,22 +222,22 @@ def migrate_store(
 
 @app.command("watch")
 def watch(
-    count: Annotated[int | None, typer.Option(help="End after so many changes.", min=1)] = None,
+    count: Annotated[int | None, typer.Option(help="Number of changes to print; default: until Ctrl-C.", min=1)] = None,
     cell: Cell = None,
     store: Place = None,
     json: AsJson = False,
 ) -> None:
-    """Print each change that any program makes, until it is interrupted."""
+    """Print each change of the store by any program, until Ctrl-C."""
 
     async def follow(opened: Store) -> None:
-        heard: asyncio.Queue[EntryChange] = asyncio.Queue()
-        await opened.follow(heard.put_nowait)
-        _say(f"watching {opened.address}")
-        told = 0
-        while count is None or told < count:
-            change = await heard.get()
-            told += 1
-            text = msgspec.json.encode(change).decode() if json else _told(change)
+        changes: asyncio.Queue[EntryChange] = asyncio.Queue()
+        await opened.follow(changes.put_nowait)
+        _print_message(f"watching {opened.address}")
+        printed = 0
+        while count is None or printed < count:
+            change = await changes.get()
+            printed += 1
+            text = msgspec.json.encode(change).decode() if json else _entry_change_text(change)
             sys.stdout.write(f"{text}\n")
             sys.stdout.flush()
 
@@ -237,23 +251,25 @@ def watch(
         return
 
 
-def _told(change: EntryChange) -> str:
+def _entry_change_text(change: EntryChange) -> str:
     return f"{change.kind} {change.name} {_change_text(change)}"
 
 
 def _change_text(change: EntryChange) -> str:
-    what = "deleted" if change.value is None else "written"
+    action = "deleted" if change.value is None else "written"
     if change.restores is not None:
-        what = f"undone to revision {change.restores}" if change.restores else "undone: deleted"
-    who = f" by {change.by}" if change.by else ""
-    why = f": {change.reason}" if change.reason else ""
-    return f"revision {change.revision} {what} {_when(change.changed_unix_ms)}{who}{why}"
+        action = f"undone to revision {change.restores}" if change.restores else "undone: deleted"
+    author = f" by {change.by}" if change.by else ""
+    reason = f": {change.reason}" if change.reason else ""
+    return f"revision {change.revision} {action} {_time_text(change.changed_unix_ms)}{author}{reason}"
 
 
-def _when(unix_ms: int) -> str:
-    return datetime.fromtimestamp(unix_ms / 1000, UTC).strftime("%Y-%m-%d %H:%M:%SZ") if unix_ms else "long ago"
+def _time_text(unix_ms: int) -> str:
+    return (
+        datetime.fromtimestamp(unix_ms / 1000, UTC).strftime("%Y-%m-%d %H:%M:%SZ") if unix_ms else "at an unknown time"
+    )
 
 
-def _say(line: str) -> None:
+def _print_message(line: str) -> None:
     sys.stderr.write(f"flexcell: {line}\n")
     sys.stderr.flush()

@@ -1,4 +1,4 @@
-"""Opens the store that the options of a command name."""
+"""Opens the store that the options of a command select."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from engine.store.mongo.mongo_address import is_mongo_address
 
 T = TypeVar("T")
 
-Cell = Annotated[Path | None, typer.Option("--cell", help="The cell whose store it is.")]
+Cell = Annotated[Path | None, typer.Option("--cell", help="Cell whose store is used.")]
 Place = Annotated[
-    str | None, typer.Option("--store", help="A store file or mongodb://HOST:PORT/DATABASE, instead of a cell.")
+    str | None, typer.Option("--store", help="Store file or mongodb://HOST:PORT/DATABASE, instead of a cell.")
 ]
 
 
 def author_name(who: str | None) -> str:
-    """Return who does it: the one who is named, or else who runs the command as far as its computer knows."""
+    """Return the author of a change: the name given, else the user name of the process if there is one."""
     if who is not None:
         return who
     try:
@@ -35,12 +35,12 @@ def author_name(who: str | None) -> str:
         return ""
 
 
-Who = Annotated[str | None, typer.Option(help="Who does it, for the history; you by default.")]
-Why = Annotated[str, typer.Option(help="Why, for the history.")]
+Who = Annotated[str | None, typer.Option(help="Author of the change, for the history; by default your user name.")]
+Why = Annotated[str, typer.Option(help="Reason of the change, for the history.")]
 
 
 def with_store(cell: Path | None, address: str | None, work: Callable[[Store], Awaitable[T]]) -> T:
-    """Open the chosen store, do `work` with it, and close it."""
+    """Open the selected store, call `work` with it, and close it."""
 
     async def main() -> T:
         async with await chosen_store(cell, address, inline=True) as opened:
@@ -50,23 +50,23 @@ def with_store(cell: Path | None, address: str | None, work: Callable[[Store], A
 
 
 async def chosen_store(cell: Path | None, address: str | None, *, inline: bool) -> Store:
-    """Open the store at an address, or else that of a cell, seeded.
+    """Open the store at an address, else the store of a cell, seeded.
 
     Raises:
-        StoreError: neither is given, the cell has no store, or it cannot be opened.
+        StoreError: neither is given, the cell has no store, or the store cannot be opened.
     """
     if address is not None:
         return await open_store(address, inline=inline)
     if cell is None:
-        raise StoreError("which store?", hint="give --cell FILE or --store ADDRESS")
+        raise StoreError("no store is selected", hint="give --cell FILE or --store ADDRESS")
     return await _of_cell(cell, inline=inline)
 
 
 async def opened_store(text: str, *, made: bool) -> Store:
-    """Open the store at an address, or that of a cell document; a file that is missing is made only if `made`.
+    """Open the store at an address, or that of a cell document; a missing file is created only if `made`.
 
     Raises:
-        StoreError: it cannot be opened.
+        StoreError: the store cannot be opened.
     """
     if text.endswith((".yaml", ".yml")):
         return await _of_cell(Path(text), inline=True)
@@ -76,7 +76,7 @@ async def opened_store(text: str, *, made: bool) -> Store:
 
 
 def require_file(address: str) -> None:
-    """Refuse the path of a file that is not there, which opening would make; raises StoreError."""
+    """Raise StoreError for the path of a missing file, which opening the store would create."""
     if not is_mongo_address(address) and not Path(address).is_file():
         raise StoreError("there is no such store file", where=address)
 
@@ -88,7 +88,7 @@ async def _of_cell(file: Path, *, inline: bool) -> Store:
         try:
             await opened.seed(load_entries(loaded.seed_file).records(), by=f"cell {loaded.name}")
         except BaseException:
-            # Whatever stops the seeding, the store must be closed.
+            # The store must be closed for every reason for which seeding ends early.
             await opened.close()
             raise
     return opened

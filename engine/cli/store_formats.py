@@ -1,4 +1,4 @@
-"""Reads and writes entries in the formats that `flexcell store import` and `export` know."""
+"""Reads and writes entries in the formats of `flexcell store import` and `export`."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ ROS = "mongodb_store"
 
 
 def exported(records: Sequence[EntryRecord], form: str) -> str:
-    """Return entries as an entries document, or as documents of `mongodb_store`, one a line."""
+    """Return entries as an entries document, or as documents of `mongodb_store`, one per line."""
     if form != ROS:
         return write_entries(records)
     return "".join(f"{json.dumps(ros_document(record), ensure_ascii=False)}\n" for record in records)
 
 
 def imported(source: str, form: str, *, collection: str, say: Callable[[str], None]) -> tuple[EntryRecord, ...]:
-    """Return the entries in a file or, in the form of `mongodb_store`, on a server.
+    """Return the entries in a file or, in the format `mongodb_store`, on a server.
 
-    `say` hears of names that had to change, and of messages that stay plain records.
+    `say` reports names that had to change, and messages that are imported as plain records.
     """
     if form != ROS:
         return load_entries(Path(source)).records()
@@ -36,9 +36,9 @@ def imported(source: str, form: str, *, collection: str, say: Callable[[str], No
     entries = entries_from_ros(documents)
     for entry in entries:
         if entry.ros_name != entry.record.name:
-            say(f"{entry.ros_name!r} is named {entry.record.name} here")
+            say(f"{entry.ros_name!r} is imported as {entry.record.name}")
         if entry.kept:
-            say(f"{entry.record.name} ({entry.ros_type}) is kept as a record: {entry.kept}")
+            say(f"{entry.record.name} ({entry.ros_type}) is imported as a record: {entry.kept}")
     return tuple(entry.record for entry in entries)
 
 
@@ -47,6 +47,6 @@ def _from_server(uri: str, collection: str) -> tuple[dict[str, Any], ...]:
         reading: Any = import_module("engine.store.mongo.mongo_collection")
     except ImportError as error:
         raise StoreError(
-            f"reading from a server needs the package pymongo: {error}", hint="pip install 'flexcell[mongo]'"
+            f"reading from a server requires the package pymongo: {error}", hint="pip install 'flexcell[mongo]'"
         ) from error
     return reading.read_collection(uri, collection=collection)

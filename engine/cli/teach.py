@@ -1,4 +1,4 @@
-"""`flexcell teach`: the Helping Hand of a running server from the command line, and buttons for it."""
+"""`flexcell teach`: uses the Helping Hand of a running server, and connects its buttons."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from engine.teaching.button_device import button_events
 from engine.teaching.teach_document import load_triggers
 
 app = typer.Typer(
-    help="Teach poses and motions: triggers, captures, saving them as named entries.", no_args_is_help=True
+    help="Teach poses and motions: set triggers, capture, save captures as named entries.", no_args_is_help=True
 )
 
 R = TypeVar("R")
@@ -49,9 +49,10 @@ app.command("propose")(propose)
 
 @app.command("set")
 def set_(
-    triggers: Annotated[Path, typer.Argument(help="Trigger document: what each button does.")], server: Folder = _STATE
+    triggers: Annotated[Path, typer.Argument(help="Trigger document, which defines the action of each button.")],
+    server: Folder = _STATE,
 ) -> None:
-    """Let the Helping Hand listen to the triggers of a document.
+    """Activate the triggers of a document in the Helping Hand.
 
     `flexcell teach set triggers.yaml`
     """
@@ -60,17 +61,17 @@ def set_(
 
 @app.command("status")
 def status(server: Folder = _STATE, json: AsJson = False) -> None:
-    """Show triggers and captures."""
+    """Show the triggers and captures."""
     _show(_call(server, ReadTeachStatus(), TeachStatus), json=json)
 
 
 @app.command("fire")
 def fire(
     trigger: Annotated[str, typer.Argument(help="Name of the trigger.")],
-    release: Annotated[bool, typer.Option("--release", help="Let its button go instead of pressing it.")] = False,
+    release: Annotated[bool, typer.Option("--release", help="Release the button instead of pressing it.")] = False,
     server: Folder = _STATE,
 ) -> None:
-    """Do what a trigger does, without its button. This may let an arm float.
+    """Execute the action of a trigger without its button. This may start hand guiding of an arm.
 
     `flexcell teach fire "Record joint state"`
     """
@@ -89,12 +90,12 @@ def save(
     number: Number,
     name: Annotated[str, typer.Argument(help="Name of the entry.")],
     as_: Annotated[
-        CaptureForm | None, typer.Option("--as", help="Form of the entry; as what it was captured otherwise.")
+        CaptureForm | None, typer.Option("--as", help="Form of the entry; by default the form of the capture.")
     ] = None,
     tag: Annotated[list[str] | None, typer.Option(help="Tag of the entry; may be repeated.")] = None,
-    replace: Annotated[bool, typer.Option("--replace", help="Overwrite an entry of that name.")] = False,
-    by: Annotated[str, typer.Option(help="Who saves it, for its history.")] = "",
-    reason: Annotated[str, typer.Option(help="Why, for its history.")] = "",
+    replace: Annotated[bool, typer.Option("--replace", help="Overwrite an entry of this name.")] = False,
+    by: Annotated[str, typer.Option(help="Author, for the history of the entry.")] = "",
+    reason: Annotated[str, typer.Option(help="Reason, for the history of the entry.")] = "",
     server: Folder = _STATE,
 ) -> None:
     """Save a capture as a named entry.
@@ -108,17 +109,17 @@ def save(
 
 @app.command("discard")
 def discard(number: Number, server: Folder = _STATE) -> None:
-    """Throw a capture away."""
+    """Delete a capture."""
     _show(_call(server, DiscardCapture(id=number), TeachStatus), json=False)
 
 
 @app.command("buttons")
 def buttons(
     device: Annotated[Path, typer.Argument(help="Event file, such as /dev/input/by-id/…-event-kbd.")],
-    topic: Annotated[str, typer.Option(help="Buttons are told on <topic>/<button>.")] = "keypress",
+    topic: Annotated[str, typer.Option(help="Button events are published on <topic>/<button>.")] = "keypress",
     server: Folder = _STATE,
 ) -> None:
-    """Tell the bus of the buttons of an input device, such as a media controller, until it goes away or Ctrl-C.
+    """Publish the buttons of an input device, such as a media controller, until it is removed or Ctrl-C.
 
     `flexcell teach buttons /dev/input/by-id/bluetooth-media-event-kbd`
     """
@@ -136,14 +137,14 @@ def buttons(
         asyncio.run(main())
     except KeyboardInterrupt:
         raise typer.Exit(ExitCode.INTERRUPTED) from None
-    sys.stderr.write("the device went away\n")
+    sys.stderr.write("the device was removed\n")
 
 
 def _call(server: Path, request: Service[R], kind: type[R]) -> R:
-    return asyncio.run(_with_bus(server, lambda bus: _asked(bus, request, kind)))
+    return asyncio.run(_with_bus(server, lambda bus: _call_service(bus, request, kind)))
 
 
-async def _asked(bus: RemoteJsonBus, request: Service[R], kind: type[R]) -> R:
+async def _call_service(bus: RemoteJsonBus, request: Service[R], kind: type[R]) -> R:
     answer = await bus.call(f"{_NAMESPACE}/{request.skill_name()}", msgspec.to_builtins(request))
     return msgspec.json.decode(answer, type=kind)
 
@@ -153,21 +154,21 @@ async def _with_bus(server: Path, ask: Callable[[RemoteJsonBus], Awaitable[R]]) 
         return await ask(bus)
 
 
-def _show(found: TeachStatus, *, json: bool) -> None:
+def _show(teach_status: TeachStatus, *, json: bool) -> None:
     if json:
-        sys.stdout.write(msgspec.json.encode(found).decode() + "\n")
+        sys.stdout.write(msgspec.json.encode(teach_status).decode() + "\n")
         return
     console = Console()
-    triggers = Table("trigger", "robot", "topic", "type", "does", "now", box=None)
-    for one in found.triggers:
+    triggers = Table("trigger", "robot", "topic", "type", "action", "state", box=None)
+    for one in teach_status.triggers:
         trigger = one.trigger
-        now = one.fault or ("pressed" if one.pressed else "")
+        state = one.fault or ("pressed" if one.pressed else "")
         triggers.add_row(
-            trigger.trig_name, trigger.robot_ns, trigger.trig_topic, trigger.trig_type, trigger.trig_callback, now
+            trigger.trig_name, trigger.robot_ns, trigger.trig_topic, trigger.trig_type, trigger.trig_callback, state
         )
-    console.print(triggers if found.triggers else "no triggers: `flexcell teach set FILE`")
+    console.print(triggers if teach_status.triggers else "no triggers: `flexcell teach set FILE`")
     captures = Table("capture", "robot", "form", "samples", "seconds", "by trigger", "saved as", box=None)
-    for capture in found.captures:
+    for capture in teach_status.captures:
         captures.add_row(
             str(capture.id),
             capture.robot,
@@ -177,11 +178,11 @@ def _show(found: TeachStatus, *, json: bool) -> None:
             capture.trigger,
             ", ".join(capture.saved_as) or capture.remark,
         )
-    if found.captures:
+    if teach_status.captures:
         console.print(captures)
-    for name in found.recording:
+    for name in teach_status.recording:
         console.print(f"{name} is being recorded")
-    for name in found.guided:
-        console.print(f"{name} floats")
-    if found.said:
-        console.print(found.said)
+    for name in teach_status.guided:
+        console.print(f"{name} is being guided by hand")
+    if teach_status.said:
+        console.print(teach_status.said)

@@ -1,4 +1,4 @@
-"""`flexcell teach propose`: a behavior from taught entries, with a running server or from a cell's store alone."""
+"""`flexcell teach propose`: generates a behavior from taught entries, on a running server or from a cell's store."""
 
 from __future__ import annotations
 
@@ -30,45 +30,49 @@ def propose(
     steps: Annotated[
         list[str],
         typer.Argument(
-            help="Entries in their order, `+close` and `+open` between them; `KIND:NAME` where several kinds have the"
-            " name, `NAME=ROLE` where the guess is wrong (via, approach, grasp, release, depart).",
+            help="Entries in execution order, with `+close` and `+open` between them; `KIND:NAME` if several kinds use"
+            " the name, `NAME=ROLE` to set a role explicitly (via, approach, grasp, release, depart).",
         ),
     ],
-    out: Annotated[Path, typer.Option(help="File of the behavior.")],
-    arm: Annotated[str, typer.Option(help="Who moves; the only arm, or the one whose name entries begin with.")] = "",
-    tool: Annotated[ToolName | None, typer.Option(help="What it holds with; asked of the arm otherwise.")] = None,
-    part: Annotated[str | None, typer.Option(help="What is grasped; the part that is nearest otherwise.")] = None,
-    width: Annotated[float | None, typer.Option(help="Width in metres of what is grasped.", min=0.0, max=1.0)] = None,
+    out: Annotated[Path, typer.Option(help="File of the proposed behavior.")],
+    arm: Annotated[
+        str, typer.Option(help="Arm; by default the only arm, or the one whose name begins the names of the entries.")
+    ] = "",
+    tool: Annotated[
+        ToolName | None, typer.Option(help="Tool of the arm; by default the tool that the arm reports.")
+    ] = None,
+    part: Annotated[str | None, typer.Option(help="Part to grasp; by default the nearest part.")] = None,
+    width: Annotated[float | None, typer.Option(help="Width of the grasped part in metres.", min=0.0, max=1.0)] = None,
     approach: Annotated[
-        float, typer.Option(help="Straight way in metres before a grasp or release.", min=0.001, max=0.5)
+        float, typer.Option(help="Length in metres of the straight approach to a grasp or release.", min=0.001, max=0.5)
     ] = 0.1,
-    speed: Annotated[float, typer.Option(help="Share of the joint speed limits.", min=0.01, max=1.0)] = 0.3,
+    speed: Annotated[float, typer.Option(help="Fraction of the joint speed limits.", min=0.01, max=1.0)] = 0.3,
     replace: Annotated[bool, typer.Option("--replace", help="Overwrite the file.")] = False,
     cell: Annotated[
-        Path | None, typer.Option(help="The cell that the behavior is for; its store is read, no server is asked.")
+        Path | None, typer.Option(help="Cell of the behavior; its store is read directly, without a running server.")
     ] = None,
     server: Annotated[Path, typer.Option(help="Folder in which `flexcell serve` keeps its state.")] = Path(
         STATE_FOLDER
     ),
 ) -> None:
-    """Propose a behavior from taught entries: approach, grasp, carry, release, taught motions in between.
+    """Propose a behavior from taught entries: approach, grasp, transfer, release, with taught motions in between.
 
     `flexcell teach propose home tray_pick +close bin +open sweep --cell cells/cell.yaml --out behaviors/taught.yaml`
     """
     if out.exists() and not replace:
-        raise StoreError("the file is there", where=out, hint="another name, or --replace")
+        raise StoreError("the file exists", where=out, hint="give another name, or --replace")
     options = ProposalOptions(
         name=out.stem, arm=arm, tool=tool, speed=speed, approach_m=approach, width_m=width,
         cell=_relative(cell, out) if cell is not None else "",
     )  # fmt: skip
-    made = asyncio.run(
-        _offline(steps, part, options, cell) if cell is not None else _asked(steps, part, options, server)
+    proposal = asyncio.run(
+        _offline(steps, part, options, cell) if cell is not None else _on_server(steps, part, options, server)
     )
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(made.text, encoding="utf-8", newline="\n")
-    for number, words in enumerate(made.words, start=1):
-        sys.stdout.write(f"{number}. {words}\n")
-    for remark in made.remarks:
+    out.write_text(proposal.text, encoding="utf-8", newline="\n")
+    for number, description in enumerate(proposal.words, start=1):
+        sys.stdout.write(f"{number}. {description}\n")
+    for remark in proposal.remarks:
         sys.stderr.write(f"flexcell: {remark}\n")
 
 
@@ -79,7 +83,7 @@ async def _offline(texts: Sequence[str], part: str | None, options: ProposalOpti
         return await propose_offline(store, load_cell(cell), request)
 
 
-async def _asked(texts: Sequence[str], part: str | None, options: ProposalOptions, server: Path) -> Proposal:
+async def _on_server(texts: Sequence[str], part: str | None, options: ProposalOptions, server: Path) -> Proposal:
     async with RemoteJsonBus.connect(server) as bus:
         listed = msgspec.json.decode(await bus.call(f"store/{ListEntries.skill_name()}", {}), type=EntryList)
         steps = read_steps(texts, [(kind, name) for kind, name, _ in listed.entries], part=part)
@@ -89,10 +93,10 @@ async def _asked(texts: Sequence[str], part: str | None, options: ProposalOption
 
 
 def read_steps(texts: Sequence[str], keys: Iterable[tuple[str, str]], *, part: str | None) -> tuple[TaughtStep, ...]:
-    """Return the steps that are named; `keys` are kind and name of the entries that there are.
+    """Return the steps that `texts` name; `keys` are kind and name of the existing entries.
 
     Raises:
-        SkillFailed: there is no such entry, several kinds have the name, or there is no such role.
+        SkillFailed: there is no such entry, several kinds use the name, or there is no such role.
     """
     kinds: dict[str, list[str]] = {}
     for kind, name in keys:
@@ -109,13 +113,13 @@ def _step(text: str, kinds: dict[str, list[str]], part: str | None) -> TaughtSte
     if named.startswith("+"):
         return TaughtStep(kind="action", name=named[1:], role=chosen, part=part)
     kind, _, name = named.rpartition(":")
-    found = [kind] if kind in kinds.get(name, ()) else [] if kind else kinds.get(name, [])
-    if not found:
-        raise SkillFailed(f"there is no entry {named} that a motion can be made of", hint=did_you_mean(name, kinds))
-    if len(found) > 1:
-        hint = " or ".join(f"{each}:{name}" for each in found)
-        raise SkillFailed(f"several kinds of entries are called {name}", where=text, hint=hint)
-    return TaughtStep(kind=cast("StepKind", found[0]), name=name, role=chosen, part=part)
+    matches = [kind] if kind in kinds.get(name, ()) else [] if kind else kinds.get(name, [])
+    if not matches:
+        raise SkillFailed(f"there is no entry {named} that defines a motion", hint=did_you_mean(name, kinds))
+    if len(matches) > 1:
+        hint = " or ".join(f"{each}:{name}" for each in matches)
+        raise SkillFailed(f"several kinds of entries have the name {name}", where=text, hint=hint)
+    return TaughtStep(kind=cast("StepKind", matches[0]), name=name, role=chosen, part=part)
 
 
 def _relative(cell: Path, out: Path) -> str:

@@ -1,8 +1,8 @@
-"""Coverage of behaviors: which nodes, outcomes, transitions and conditions a set of runs has seen.
+"""Coverage of behaviors: nodes, outcomes, transitions and conditions that a set of runs has executed.
 
 `Coverage(behavior, catalogue)` counts: give `follow()` to `Run.watch`, or a whole event log to `add`.
-`missing` and `percent` tell, `accumulate(file)` adds it to a file, and `engine.coverage.report`
-writes files as text, HTML, Cobertura XML, lcov or JSON.
+`missing` and `percent` are the result, `accumulate(file)` adds it to a file, and `engine.coverage.report`
+formats files as text, HTML, Cobertura XML, lcov or JSON.
 """
 
 from engine.coverage.coverage_collector import CoverageCollector

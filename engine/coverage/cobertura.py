@@ -1,4 +1,4 @@
-"""Coverage as Cobertura XML, which CI servers read: nodes are lines, ways out of them are branches."""
+"""Coverage as Cobertura XML for CI servers: nodes are lines, exits of nodes are branches."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _DOCTYPE = '<!DOCTYPE coverage SYSTEM "http://cobertura.sourceforge.net/xml/cove
 
 
 def cobertura_report(coverages: tuple[BehaviorCoverage, ...], *, version: str, time_s: float) -> str:
-    """Return the report; `version` is that of the program, `time_s` the moment it is made, in Unix time."""
+    """Return the report; `version` is the version of the program, `time_s` the report time in Unix time."""
     files = by_file(coverages)
     covered, valid = sum(file.lines_covered for file in files), sum(len(file.lines) for file in files)
     taken, ways = sum(file.branches_taken for file in files), sum(file.branches for file in files)

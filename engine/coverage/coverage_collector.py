@@ -1,4 +1,4 @@
-"""How much of a behavior its runs have covered: feed it with the events of any number of runs."""
+"""Collects the coverage of a behavior from the events of any number of runs."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from engine.runtime.record.recorder import Watcher
 
 
 class CoverageCollector:
-    """Which nodes of a behavior were entered, and which of their ways out were taken, in some runs.
+    """Nodes of a behavior that were entered, and exits of nodes that were taken, in a set of runs.
 
     Args:
-        behavior: What is run.
-        catalogue: The states it uses.
+        behavior: The behavior.
+        catalogue: The states that it uses.
 
     Raises:
-        DocumentError: the behavior cannot be run.
+        DocumentError: the behavior is invalid.
     """
 
     def __init__(self, behavior: Behavior, catalogue: Catalogue) -> None:
@@ -44,12 +44,12 @@ class CoverageCollector:
         self._counts: dict[Key, int] = {item.key: 0 for item in self._inventory.items}
 
     def follow(self) -> Watcher:
-        """Count one more run and return what takes its events, for `Run.watch`."""
+        """Count one more run and return the function that receives its events, for `Run.watch`."""
         self.runs += 1
         return CoverageCounter(self._inventory, self._counts).take
 
     def add(self, events: Iterable[Event]) -> None:
-        """Count a run by its whole event log.
+        """Count a run from its complete event log.
 
         Raises:
             FlexcellError: the log is of another behavior, or of another version of this one.
@@ -60,7 +60,7 @@ class CoverageCollector:
                 raise FlexcellError(
                     f"this is a run of {event.behavior}, document {event.document[:12]}, not of {self.behavior.name}, "
                     f"document {self.behavior.meaning[:12]}",
-                    hint="run the present version of the behavior again",
+                    hint="run the current version of the behavior",
                 )
         take = self.follow()
         for event in log:
@@ -68,21 +68,21 @@ class CoverageCollector:
 
     @property
     def items(self) -> tuple[CoverageItem, ...]:
-        """Everything that can be covered, with how often it was seen, in document order."""
+        """All items that can be covered, with their counts, in document order."""
         return tuple(msgspec.structs.replace(item, count=self._counts[item.key]) for item in self._inventory.items)
 
     @property
     def missing(self) -> tuple[CoverageItem, ...]:
-        """What was not seen."""
+        """The items that are not covered."""
         return tuple(item for item in self.items if not item.count)
 
     @property
     def percent(self) -> float:
-        """The share that was seen."""
+        """The covered share in percent."""
         return self.record().percent
 
     def record(self) -> BehaviorCoverage:
-        """Return what a coverage file keeps; files inside the current directory are named relative to it."""
+        """Return the content of a coverage file; files inside the current directory are named relative to it."""
         documents = tuple(
             CoveredDocument(file=_shown(str(one.file)), meaning=one.meaning, text=text_hash(one.file))
             for one in self._inventory.behaviors
@@ -96,18 +96,18 @@ class CoverageCollector:
         )
 
     def require_same(self, file: Path) -> None:
-        """Check that what is counted can be added to a coverage file, if there is one.
+        """Check that the counts can be added to a coverage file, if it exists.
 
         Raises:
-            FlexcellError: the file cannot be used, or holds another version of the behavior.
+            FlexcellError: the file cannot be used, or contains another version of the behavior.
         """
         self._added_to(file)
 
     def accumulate(self, file: Path) -> None:
-        """Add what was counted to a coverage file, which is made where there is none.
+        """Add the counts to a coverage file, which is created if missing.
 
         Raises:
-            FlexcellError: the file cannot be used, or holds another version of the behavior.
+            FlexcellError: the file cannot be used, or contains another version of the behavior.
         """
         write_coverage(file, self._added_to(file))
 

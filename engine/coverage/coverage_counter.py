@@ -1,4 +1,4 @@
-"""Counts what one run of a behavior does, from its events."""
+"""Counts the covered items of one run from its events."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from engine.runtime.history.run_reducer import DIVERTED_TO_OUTCOME
 
 
 class CoverageCounter:
-    """Follows one run; hand `take` its events in order.
+    """Counts one run; pass its events to `take` in order.
 
     Args:
-        inventory: What can be counted.
-        counts: How often each item was seen, by key; added to, never extended.
+        inventory: The items that can be counted.
+        counts: Count of each item, by key; counts are increased, keys never added.
     """
 
     def __init__(self, inventory: CoverageInventory, counts: dict[Key, int]) -> None:
@@ -35,7 +35,7 @@ class CoverageCounter:
         self._statuses: dict[str, str] = {}
 
     def take(self, event: Event) -> None:
-        """Count what an event tells; those of another version of the document do not count."""
+        """Count an event; events of another version of the document do not count."""
         match event:
             case RunStarted() | BehaviorChanged():
                 self._ours = event.document == self._inventory.behavior.meaning
@@ -98,7 +98,7 @@ class CoverageCounter:
 
     def _changed(self, path: str, status: str) -> None:
         if path in self._inventory.succeeding:
-            return  # a leaf of ours is entered and left like any state
+            return  # a native leaf is entered and exited like any state
         before = self._statuses.get(path, "invalid")
         self._statuses[path] = status
         if status != "invalid" and before != "running":

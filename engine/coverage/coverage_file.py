@@ -1,4 +1,4 @@
-"""What coverage files hold: for each behavior its documents and how often each item was seen."""
+"""Content of coverage files: for each behavior its documents and the count of each item."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.errors import FlexcellError
 
 
 class CoveredDocument(msgspec.Struct, frozen=True, kw_only=True):
-    """One file of a behavior: the hash of what it means, and of its text, empty where it has none."""
+    """One file of a behavior: its semantic hash, and the hash of its text, empty if there is no text."""
 
     file: str
     meaning: str
@@ -21,7 +21,7 @@ class CoveredDocument(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class BehaviorCoverage(msgspec.Struct, frozen=True, kw_only=True):
-    """How often the items of one behavior were seen in `runs` runs; `document` is the hash of its meaning."""
+    """Counts of the items of one behavior in `runs` runs; `document` is its semantic hash."""
 
     behavior: str
     document: str
@@ -36,16 +36,16 @@ class BehaviorCoverage(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def covered(self) -> int:
-        """How many items were seen."""
+        """Number of covered items."""
         return sum(item.count > 0 for item in self.items)
 
     @property
     def percent(self) -> float:
-        """The share of items that were seen."""
+        """Share of covered items in percent."""
         return percent(self.covered, len(self.items))
 
     def merged(self, newer: BehaviorCoverage) -> BehaviorCoverage:
-        """Return the sum of two coverages of the same document, with the places of the newer one."""
+        """Return the sum of two coverages of the same document, with the positions of the newer one."""
         counts = {item.key: item.count for item in self.items}
         items = tuple(msgspec.structs.replace(item, count=item.count + counts.get(item.key, 0)) for item in newer.items)
         return msgspec.structs.replace(newer, runs=self.runs + newer.runs, items=items)
@@ -59,7 +59,7 @@ class CoverageFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 def percent(covered: int, total: int) -> float:
-    """Return a share in percent; of nothing all is covered."""
+    """Return a share in percent; 100 for an empty total."""
     return 100.0 * covered / total if total else 100.0
 
 
@@ -67,7 +67,7 @@ def merge(coverages: tuple[BehaviorCoverage, ...]) -> tuple[BehaviorCoverage, ..
     """Return one coverage for each behavior, in the order in which they first appear.
 
     Raises:
-        FlexcellError: two of them are of different versions of one file.
+        FlexcellError: two coverages have different versions of one file.
     """
     merged: dict[str, BehaviorCoverage] = {}
     versions: dict[str, str] = {}
@@ -85,10 +85,10 @@ def merge(coverages: tuple[BehaviorCoverage, ...]) -> tuple[BehaviorCoverage, ..
 
 
 def read_coverage(file: Path) -> tuple[BehaviorCoverage, ...]:
-    """Return what a coverage file holds.
+    """Read a coverage file.
 
     Raises:
-        FlexcellError: it cannot be read or is no coverage file.
+        FlexcellError: the file cannot be read or is not a coverage file.
     """
     try:
         return msgspec.json.decode(file.read_bytes(), type=CoverageFile).behaviors
@@ -96,11 +96,11 @@ def read_coverage(file: Path) -> tuple[BehaviorCoverage, ...]:
         raise FlexcellError(f"cannot read this file: {error.strerror}", where=file, hint="check its path") from error
     except msgspec.MsgspecError as error:
         hint = "give a file that `flexcell run --coverage` wrote"
-        raise FlexcellError(f"this is no coverage file: {error}", where=file, hint=hint) from error
+        raise FlexcellError(f"this is not a coverage file: {error}", where=file, hint=hint) from error
 
 
 def write_coverage(file: Path, coverages: tuple[BehaviorCoverage, ...]) -> None:
-    """Write a coverage file, in one step, so that a reader never finds half of it.
+    """Write a coverage file atomically, so that a reader never reads a partial file.
 
     Raises:
         FlexcellError: it cannot be written.
@@ -115,7 +115,7 @@ def write_coverage(file: Path, coverages: tuple[BehaviorCoverage, ...]) -> None:
 
 
 def text_hash(file: Path) -> str:
-    """Return the hash of a file's text, empty where it cannot be read."""
+    """Return the hash of a file's text; empty if it cannot be read."""
     try:
         return sha256(file.read_bytes()).hexdigest()
     except OSError:

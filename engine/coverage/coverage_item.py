@@ -1,4 +1,4 @@
-"""One thing that runs of a behavior can do, with where it is written and how often it was done."""
+"""One item that runs of a behavior can cover, with its position in the document and its count."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ Key = tuple[str, str, str]
 
 
 class CoverageItem(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A node that can be entered, or a way in which the node at `path` can end or be left.
+    """A node that can be entered, or an exit of the node at `path`.
 
     `name` is the outcome of an `outcome` or `transition`, the text of a `condition` with its number
-    in front, or the status of a part of a tree; `target` is where it leads. `count` is how often it
-    was seen.
+    in front, or the status of a tree node; `target` is its target. `count` is how often it
+    was executed.
     """
 
     kind: ItemKind
@@ -39,17 +39,17 @@ class CoverageItem(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
 
     @property
     def key(self) -> Key:
-        """What tells it apart in its behavior."""
+        """Unique key of the item in its behavior."""
         return (self.kind, self.path, self.name)
 
     @property
     def place(self) -> str:
-        """Where it is written, `file:line:column`."""
+        """Position in the document, `file:line:column`."""
         return f"{self.file}:{self.line}:{self.column}"
 
     @property
     def label(self) -> str:
-        """What it is, in words, beside its path."""
+        """Description of the item, without its path."""
         match self.kind:
             case "node":
                 return "never entered" if not self.count else "entered"

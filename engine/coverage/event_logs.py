@@ -1,4 +1,4 @@
-"""Reads the event logs of runs from wherever they were kept: `--events` files, recordings, journals."""
+"""Reads the event logs of runs from `--events` files, recordings and journals."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from engine.journal import decode_event, list_runs, read_events
 from engine.recording import load_recording
 
 MAX_BYTES = 2**30
-"""Bytes of a file of `--events`, which is read whole."""
+"""Maximum size in bytes of an `--events` file, which is read completely."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunEventLog:
-    """The events of one run, and what to call it in messages."""
+    """The events of one run, and its name in messages."""
 
     name: str
     events: tuple[AnyEvent, ...]
 
     @property
     def document(self) -> str:
-        """The hash of the behavior it began with, empty where the log has no beginning."""
+        """The hash of the behavior at its start; empty if the log has no start."""
         return next((event.document for event in self.events if isinstance(event, RunStarted)), "")
 
 
@@ -31,7 +31,7 @@ def read_logs(place: Path) -> tuple[RunEventLog, ...]:
     """Return the runs in a journal (a directory or `*.db`), a recording (`*.mcap`) or an event log (`*.jsonl`).
 
     Raises:
-        FlexcellError: it cannot be read, or is none of these.
+        FlexcellError: the file cannot be read, or is of another kind.
     """
     if place.is_dir() or place.suffix == ".db":
         runs = list_runs(place)
@@ -56,6 +56,6 @@ def _read_lines(file: Path) -> tuple[AnyEvent, ...]:
         try:
             events.append(decode_event(line))
         except FlexcellError as error:
-            hint = "give what --events, --record or --journal wrote"
+            hint = "give a file that --events, --record or --journal wrote"
             raise FlexcellError(error.message, where=f"{file}:{number}", hint=hint) from error
     return tuple(events)

@@ -1,4 +1,4 @@
-"""Coverage as one HTML page that needs nothing else: totals, what is missing, and the annotated documents."""
+"""Coverage as one self-contained HTML page: totals, missing items, and the annotated documents."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _WORDS: dict[LineStatus, str] = {"covered": "covered", "partial": "partly covere
 
 
 def html_page(coverages: tuple[BehaviorCoverage, ...]) -> str:
-    """Return the page; a document is shown line by line if its file is still the one that was run."""
+    """Return the page; a document is shown line by line if its file is unchanged since the run."""
     files = by_file(coverages)
     share = percent(sum(c.covered for c in coverages), sum(len(c.items) for c in coverages))
     names = ", ".join(coverage.behavior for coverage in coverages)
     anchors = {file.file: f"f{number}" for number, file in enumerate(files)}
     sections = [
         f"<h1>Coverage of {escape(names)}</h1>",
-        f'<p class="quiet">{share:.1f} % of nodes and ways out of them were seen.</p>',
+        f'<p class="quiet">{share:.1f} % of nodes and of their exits are covered.</p>',
         _files(files, anchors),
         *(_missing(coverage, anchors) for coverage in coverages),
         *(_source(file, anchors[file.file]) for file in files),
@@ -47,7 +47,7 @@ def _files(files: tuple[FileCoverage, ...], anchors: dict[str, str]) -> str:
     ]
     head = (
         '<th scope="col">Document</th><th scope="col">Covered</th>'
-        '<th scope="col" class="number">Nodes</th><th scope="col" class="number">Ways taken</th>'
+        '<th scope="col" class="number">Nodes</th><th scope="col" class="number">Exits taken</th>'
     )
     return _table("Documents", head, rows)
 
@@ -69,14 +69,14 @@ def _missing(coverage: BehaviorCoverage, anchors: dict[str, str]) -> str:
         if not item.count and (item.kind == "node" or item.path in entered):
             missing.setdefault(item.path, []).append(item)
     if not missing:
-        return f"{title}\n<p>Nothing: all of it was seen in {runs}.</p>"
+        return f"{title}\n<p>Nothing: everything is covered by {runs}.</p>"
     rows = [
         f'<tr><th scope="row"><code>{escape(path)}</code></th>'
         f"<td><ul>{''.join(_missed_way(item, anchors) for item in items)}</ul></td></tr>"
         for path, items in missing.items()
     ]
     return f"{title}\n" + _table(
-        f"What {runs} did not do", '<th scope="col">Node</th><th scope="col">Not seen</th>', rows
+        f"Not covered by {runs}", '<th scope="col">Node</th><th scope="col">Not covered</th>', rows
     )
 
 
@@ -89,7 +89,7 @@ def _source(file: FileCoverage, anchor: str) -> str:
     title = f'<h2 id="{anchor}">{escape(file.file)}</h2>'
     path = Path(file.file)
     if not file.text or text_hash(path) != file.text:
-        return f'{title}\n<p class="quiet">The file is not here, or not as it was when it was run.</p>'
+        return f'{title}\n<p class="quiet">The file is missing or has changed since the run.</p>'
     lines = {line.number: line for line in file.lines}
     text = path.read_text(encoding="utf-8").splitlines()
     rows = [_row(number, code, lines.get(number), anchor) for number, code in enumerate(text, start=1)]
@@ -106,16 +106,16 @@ def _row(number: int, code: str, line: CoverageLine | None, anchor: str) -> str:
     if line is None:
         return f'<tr id="{place}>{numbered}<td></td><td></td><td class="code">{escape(code)}</td></tr>'
     note = "; ".join(item.label for item in line.missing)
-    said = f'<span class="note">not seen: {escape(note)}</span>' if note else ""
+    remark = f'<span class="note">not covered: {escape(note)}</span>' if note else ""
     mark = f'<span aria-hidden="true">{_MARKS[line.status]}</span><span class="hidden">{_WORDS[line.status]}</span>'
     return (
         f'<tr id="{place} class="{line.status}">{numbered}<td class="number">{line.hits}</td>'
-        f'<td class="mark">{mark}</td><td class="code">{escape(code)}{said}</td></tr>'
+        f'<td class="mark">{mark}</td><td class="code">{escape(code)}{remark}</td></tr>'
     )
 
 
 def _table(caption: str, head: str, rows: list[str], *, kind: str = "") -> str:
-    # A region that scrolls must be reachable by keyboard, and named.
+    # A scrollable region must be reachable by keyboard, and have a label.
     label = escape(caption, quote=True)
     return (
         f'<div class="scroll" role="region" aria-label="{label}" tabindex="0">\n'

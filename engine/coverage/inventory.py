@@ -1,4 +1,4 @@
-"""Everything that runs of a behavior can do: its nodes, and the ways out of each, with their places."""
+"""All items that runs of a behavior can cover: its nodes and their exits, with their positions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ConditionItem:
 
 @dataclass(frozen=True, kw_only=True)
 class CoverageInventory:
-    """What can be covered in a behavior and in those it refers to."""
+    """The items that can be covered in a behavior and in those that it references."""
 
     behavior: Behavior
     items: tuple[CoverageItem, ...]
@@ -33,11 +33,11 @@ class CoverageInventory:
     rules: Mapping[str, tuple[ConditionItem, ...]]
     """The conditions of each concurrency container, by path."""
     succeeding: Mapping[str, frozenset[str]]
-    """The outcomes that mean SUCCESS, by path of each leaf of a tree."""
+    """The outcomes that map to SUCCESS, by path of each leaf of a tree."""
 
     @cached_property
     def behaviors(self) -> tuple[Behavior, ...]:
-        """The behavior and every one it refers to, each file once."""
+        """The behavior and every behavior that it references, each file once."""
         found: dict[str, Behavior] = {}
         due = [self.behavior]
         while due:
@@ -49,10 +49,10 @@ class CoverageInventory:
 
 
 def take_inventory(behavior: Behavior, catalogue: Catalogue) -> CoverageInventory:
-    """List what runs of a behavior can do, in document order.
+    """Return the items that runs of a behavior can cover, in document order.
 
     Raises:
-        DocumentError: the behavior cannot be run.
+        DocumentError: the behavior is invalid.
     """
     plan = new_plan(behavior, catalogue)
     listing = _Listing(plan)
@@ -162,12 +162,12 @@ class _Listing:
 
 
 def _is_part(node: NodeSpec) -> bool:
-    """Whether a node of a tree is a composite, decorator or foreign behaviour, and not a leaf of ours."""
+    """Whether a node of a tree is a composite, decorator or foreign behaviour, and not a native leaf."""
     return node.kind in (*TREE_KINDS, *WRAPPERS)
 
 
 def _statuses_of_part(node: NodeSpec) -> tuple[str, ...]:
-    """Return how a part can end; a condition only succeeds, a remap may show either in the place of the other."""
+    """Return the final statuses of a tree node; a condition only succeeds, a remap may exchange the two."""
     if node.condition is not None:
         return ("success",)
     if node.remap is not None:

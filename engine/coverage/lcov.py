@@ -1,4 +1,4 @@
-"""Coverage as an lcov trace file: nodes are functions, ways out of them are branches."""
+"""Coverage as an lcov trace file: nodes are functions, exits of nodes are branches."""
 
 from __future__ import annotations
 
@@ -26,5 +26,5 @@ def _record(file: FileCoverage) -> str:
 
 
 def _branch(line: CoverageLine, index: int, way: CoverageBranch) -> str:
-    # `-` says that the branch was never decided, as its node was never entered.
+    # `-` means that the branch was never evaluated, because its node was never entered.
     return f"BRDA:{line.number},0,{index},{way.item.count if way.reached else '-'}"

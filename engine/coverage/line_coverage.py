@@ -1,4 +1,4 @@
-"""Coverage by line of the source documents, which is how HTML, Cobertura and lcov show it."""
+"""Coverage by line of the source documents, for HTML, Cobertura and lcov."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LineStatus = Literal["covered", "partial", "missed"]
 
 @dataclass(frozen=True, kw_only=True)
 class CoverageBranch:
-    """One way out of a node; `reached` when the node was entered at all."""
+    """One exit of a node; `reached` if the node was entered."""
 
     item: CoverageItem
     reached: bool
@@ -24,7 +24,7 @@ class CoverageBranch:
 
 @dataclass(frozen=True, kw_only=True)
 class CoverageLine:
-    """A line on which nodes or ways out of nodes are written."""
+    """A line that contains nodes or exits of nodes."""
 
     number: int
     nodes: tuple[CoverageItem, ...]
@@ -32,22 +32,22 @@ class CoverageLine:
 
     @property
     def hits(self) -> int:
-        """How often its nodes were entered or, where it has none, its ways were taken."""
+        """How often its nodes were entered or, without nodes, its exits were taken."""
         return sum(node.count for node in self.nodes) if self.nodes else sum(way.item.count for way in self.branches)
 
     @property
     def taken(self) -> int:
-        """How many of its ways were taken."""
+        """Number of its exits that were taken."""
         return sum(way.item.count > 0 for way in self.branches)
 
     @property
     def missing(self) -> tuple[CoverageItem, ...]:
-        """What was not seen of it."""
+        """The items of the line that are not covered."""
         return tuple(item for item in (*self.nodes, *(way.item for way in self.branches)) if not item.count)
 
     @property
     def status(self) -> LineStatus:
-        """Whether all of it was seen, some, or nothing."""
+        """Whether the line is covered, partly covered or missed."""
         if not self.missing:
             return "covered"
         return "partial" if len(self.missing) < len(self.nodes) + len(self.branches) else "missed"
@@ -59,33 +59,33 @@ class FileCoverage:
 
     file: str
     text: str
-    """The hash of the text that the lines are counted in."""
+    """The hash of the text to which the line numbers refer."""
     lines: tuple[CoverageLine, ...]
 
     @property
     def lines_covered(self) -> int:
-        """How many lines were reached."""
+        """Number of lines reached."""
         return sum(line.hits > 0 for line in self.lines)
 
     @property
     def branches(self) -> int:
-        """How many ways out of nodes there are."""
+        """Number of exits of nodes."""
         return sum(len(line.branches) for line in self.lines)
 
     @property
     def branches_taken(self) -> int:
-        """How many of them were taken."""
+        """Number of exits taken."""
         return sum(line.taken for line in self.lines)
 
     @property
     def percent(self) -> float:
-        """The share of nodes and ways that were seen."""
+        """Share of nodes and exits that are covered."""
         total = sum(len(line.nodes) + len(line.branches) for line in self.lines)
         return percent(total - sum(len(line.missing) for line in self.lines), total)
 
 
 def by_file(coverages: Iterable[BehaviorCoverage]) -> tuple[FileCoverage, ...]:
-    """Return the coverage of each file, sorted by name; a document used at several places is added up."""
+    """Return the coverage of each file, sorted by name; several uses of a document are summed."""
     texts: dict[str, str] = {}
     merged: dict[tuple[str, int, int, str, str, str], CoverageItem] = {}
     entered: set[tuple[str, int, int, str, str, str]] = set()

@@ -1,4 +1,4 @@
-"""Writes the coverage of behaviors in the formats that people, CI servers and editors read."""
+"""Formats the coverage of behaviors for people, CI servers and editors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ReportFormat = Literal["text", "html", "cobertura", "lcov", "json"]
 
 
 def report(coverages: tuple[BehaviorCoverage, ...], form: ReportFormat, *, time_s: float) -> str:
-    """Return the report; `time_s` is the moment it is made, in Unix time."""
+    """Return the report; `time_s` is the report time in Unix time."""
     match form:
         case "text":
             return text_report(coverages)

@@ -1,4 +1,4 @@
-"""Coverage as a table for terminals and logs: a line for each node, and below it what is missing."""
+"""Coverage as a table for terminals and logs: one line per node, with its missing items below."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from engine.coverage.coverage_item import CoverageItem
 
 
 def text_report(coverages: tuple[BehaviorCoverage, ...]) -> str:
-    """Return the table of each behavior, and the total where there are several."""
+    """Return the table of each behavior, and the total of several behaviors."""
     parts = [_behavior(coverage) for coverage in coverages]
     if len(coverages) > 1:
         rows = [f"{coverage.percent:6.1f} %  {coverage.file}" for coverage in coverages]
@@ -24,7 +24,7 @@ def _behavior(coverage: BehaviorCoverage) -> str:
         if item.kind != "node":
             ways[item.path].append(item)
     width = max(len("node"), *(len(node.path) for node in nodes))
-    lines.append(f"{'node':<{width}}  {'entered':>7}  {'ways':>7}")
+    lines.append(f"{'node':<{width}}  {'entered':>7}  {'exits':>7}")
     for node in nodes:
         out = ways[node.path]
         taken = sum(way.count > 0 for way in out)
@@ -35,7 +35,7 @@ def _behavior(coverage: BehaviorCoverage) -> str:
 
 
 def _missing(node: CoverageItem, ways: list[CoverageItem]) -> list[CoverageItem]:
-    """Return what to show as missing: of a node that was never entered only that."""
+    """Return the missing items; for a node that was never entered, only the node."""
     return [way for way in ways if not way.count] if node.count else [node]
 
 

@@ -1,4 +1,4 @@
-"""Editing of documents: pure edits of their text that keep every byte they are not about, and the files behind them.
+"""Editing of documents: pure edits of their text that preserve every byte they do not concern, and the document files.
 
 `apply_edits` is a function of text and edits; `DocumentRepository` opens, saves, merges and keeps versions.
 """

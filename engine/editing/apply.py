@@ -1,4 +1,4 @@
-"""Applies edits to a text: all of them or none, and nothing but what they ask for."""
+"""Applies edits to a text atomically: all of them or none."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class EditRefusal:
-    """Why no edit was made: `index` says which of them could not be."""
+    """Why no edit was applied; `index` is the edit that failed."""
 
     message: str
     hint: str
@@ -52,7 +52,7 @@ class EditRefusal:
 
 @dataclass(frozen=True, kw_only=True)
 class EditResult:
-    """A text after edits, and the paths of the nodes that they made or changed; where refused, as it was.
+    """A text after edits, with the paths of the nodes created or changed; unchanged if an edit was rejected.
 
     `draft` is the text as read, where edits were made.
     """
@@ -64,14 +64,14 @@ class EditResult:
 
 
 def read_edits(raw: Sequence[object]) -> tuple[list[edit.AnyEdit], EditRefusal | None]:
-    """Return edits from plain data, or which of them is none."""
+    """Return edits decoded from plain data, or the problem of the first invalid one."""
     made: list[edit.AnyEdit] = []
     for index, each in enumerate(raw):
         try:
             made.append(cast("edit.AnyEdit", msgspec.convert(each, cast("Any", edit.AnyEdit))))
         except msgspec.ValidationError as error:
             return [], EditRefusal(
-                message=f"this is no edit: {explain_validation_error(str(error))}",
+                message=f"this is not an edit: {explain_validation_error(str(error))}",
                 hint="see the list of edits",
                 index=index,
             )
@@ -79,11 +79,11 @@ def read_edits(raw: Sequence[object]) -> tuple[list[edit.AnyEdit], EditRefusal |
 
 
 def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, context: ProjectContext) -> EditResult:
-    """Apply edits one after the other; the first that cannot be made leaves the text as it was.
+    """Apply edits in order; if one fails, the text stays unchanged.
 
     Args:
-        text: YAML, or JSON where `file` ends so.
-        edits: What to do.
+        text: YAML, or JSON if `file` ends in `.json`.
+        edits: The edits to apply.
         file: Name of the document, for positions.
         context: The states and behaviors around it.
     """
@@ -95,7 +95,7 @@ def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, context:
 
 
 def apply_edits_to_draft(draft: Draft, edits: Sequence[edit.AnyEdit], *, context: ProjectContext) -> EditResult:
-    """Apply edits to a text that was read already; its `draft` is used up."""
+    """Apply edits to a text that is parsed already; this consumes its `draft`."""
     index, text = 0, draft.given
     try:
         session = EditSession(draft, context)
@@ -111,7 +111,7 @@ def apply_edits_to_draft(draft: Draft, edits: Sequence[edit.AnyEdit], *, context
         )
     if len(made.given) > MAX_TEXT:
         refusal = EditRefusal(
-            message="the document would become too large", hint="split it with behavior references", index=index
+            message="the edited document exceeds the size limit", hint="split it with behavior references", index=index
         )
         return EditResult(text=text, refused=refusal)
     return EditResult(text=made.given, draft=made, changed=session.changed())

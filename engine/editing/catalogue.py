@@ -1,4 +1,4 @@
-"""What can be put into a behavior: states with their parameters, containers, other behaviors."""
+"""Catalogue of the editor: states with their parameters, containers, and other behaviors."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class ContainerView:
 
 @dataclass(frozen=True, kw_only=True)
 class BehaviorReferenceView:
-    """A behavior that another may refer to by its file."""
+    """A behavior that another behavior may reference by its file."""
 
     id: str
     name: str
@@ -61,30 +61,36 @@ class BehaviorReferenceView:
 
 
 _DOCS = {
-    "machine": ("State machine", "One child at a time, from the initial one along the transitions."),
-    "concurrency": ("Concurrency", "Children side by side; the first condition that holds decides the outcome."),
-    "priority": ("Priority machine", "A machine; while it is active everything outside its path stands still."),
-    "tree": ("Behavior tree", "Sequences, selectors and decorators; ends with success or failure."),
-    "foreach": ("For each", "Its child once for each item, or so many times."),
-    "sequence": ("Sequence", "Children one after the other until one fails."),
-    "selector": ("Selector", "Children one after the other until one succeeds."),
-    "parallel": ("Parallel", "Children together; the policy says whose success counts."),
-    "inverter": ("Inverter", "Turns success of its child into failure and back."),
-    "one_shot": ("One shot", "Runs its child once and remembers how it ended."),
-    "repeat": ("Repeat", "Runs its child until it has succeeded so many times in a row."),
-    "cooldown": ("Cooldown", "Fails without asking its child until some time has passed since that ended."),
-    "remap": ("Remap", "Shows another status than its child has."),
-    "condition": ("Condition", "Succeeds when its child has a status, and runs until then."),
-    "if_then_else": ("If, then, else", "Asks one child, then runs the second if that succeeded, else the third."),
-    "while_do_else": ("While, do, else", "Runs the second child while the first succeeds, the third while it fails."),
-    "retry": ("Retry", "Runs its child again after failure."),
+    "machine": ("State machine", "Executes one child at a time, from the initial one along the transitions."),
+    "concurrency": (
+        "Concurrency",
+        "Executes children concurrently; the first condition that is true decides the outcome.",
+    ),
+    "priority": ("Priority machine", "A state machine; while it is active, everything outside its path is paused."),
+    "tree": ("Behavior tree", "Ticks sequences, selectors and decorators; ends with success or failure."),
+    "foreach": ("For each", "Executes its child once for each item, or a number of times."),
+    "sequence": ("Sequence", "Executes children in order until one fails."),
+    "selector": ("Selector", "Executes children in order until one succeeds."),
+    "parallel": ("Parallel", "Executes children in parallel; the policy defines which successes are required."),
+    "inverter": ("Inverter", "Inverts success and failure of its child."),
+    "one_shot": ("One shot", "Executes its child once and keeps its final status."),
+    "repeat": ("Repeat", "Executes its child until it has succeeded a number of times in a row."),
+    "cooldown": ("Cooldown", "Fails without ticking its child until a time has passed since the child ended."),
+    "remap": ("Remap", "Maps the status of its child to another status."),
+    "condition": ("Condition", "Succeeds when its child has a given status, and is running until then."),
+    "if_then_else": ("If, then, else", "Executes one child, then the second if it succeeded, else the third."),
+    "while_do_else": (
+        "While, do, else",
+        "Executes the second child while the first succeeds, the third while it fails.",
+    ),
+    "retry": ("Retry", "Executes its child again after a failure."),
     "timeout": ("Timeout", "Fails when its child takes too long."),
-    "guard": ("Guard", "Lets its child run only while an expression is true; else fails, or is skipped."),
+    "guard": ("Guard", "Executes its child only while an expression is true; otherwise fails or is skipped."),
 }
 
 
 def state_views(catalogue: Catalogue) -> tuple[StateView, ...]:
-    """Return every state that can be described, sorted by name; broken classes are left to the check."""
+    """Return every state with a valid signature, sorted by name; the check reports broken classes."""
     found: list[StateView] = []
     for name in sorted(catalogue):
         try:
@@ -107,7 +113,7 @@ def container_views() -> tuple[ContainerView, ...]:
 
 
 def behavior_reference_views(library: Library) -> tuple[BehaviorReferenceView, ...]:
-    """Return the behaviors of a project, sorted by id; of one that cannot be read only what is known."""
+    """Return the behaviors of a project, sorted by id; an unreadable one has only its known fields."""
     return tuple(
         BehaviorReferenceView(
             id=view.id,

@@ -11,18 +11,18 @@ from engine.errors import DocumentError
 
 
 def cell_reference(project: Path, *, cell: str, document: Path) -> str:
-    """Return the path by which a document names a cell of its project; empty where there is none of that name.
+    """Return the path by which a document references a cell of its project; empty if no cell has this name.
 
     Args:
         project: The folder of the project.
         cell: The name of the cell.
-        document: The file that is to refer to it.
+        document: The file that contains the reference.
     """
     for file in sorted((project / "behaviors").rglob("*.y*ml")):
         try:
             data = load_source(file).data
         except DocumentError:
-            continue  # whatever it is, it is no cell that could be opened
+            continue  # not a cell that can be opened
         if isinstance(data, dict) and "robots" in data and cast("dict[str, object]", data).get("cell") == cell:
             return Path(os.path.relpath(file, document.parent)).as_posix()
     return ""

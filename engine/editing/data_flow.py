@@ -1,4 +1,4 @@
-"""Who writes and who reads each userdata key of a behavior, and on which way a reader finds it undefined."""
+"""Writers and readers of each userdata key of a behavior, and paths on which a reader finds it undefined."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_ROUTES = 200
 class KeyWriter:
     """A node that writes a key, or a container that declares it; the path is empty for the document itself.
 
-    `name` is the output key, or what else of the node it is.
+    `name` is the output key, or the field of the node that writes it.
     """
 
     path: str
@@ -49,7 +49,7 @@ class KeyReader:
 
 @dataclass(frozen=True, kw_only=True)
 class KeyFlow:
-    """One key with all that write and read it, in document order."""
+    """One key with all its writers and readers, in document order."""
 
     key: str
     writers: tuple[KeyWriter, ...]
@@ -57,7 +57,7 @@ class KeyFlow:
 
 
 def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
-    """Return the keys of a behavior, those that it declares first; behaviors that it refers to are walls."""
+    """Return the keys of a behavior, declared keys first; referenced behaviors are not entered."""
     subject = analyze_behaviors(behavior, catalogue)[0]
     written = list(_writers(subject))
     read = tuple(key_reads(subject))

@@ -1,4 +1,4 @@
-"""Looks at a text as it is being edited: what it draws, and everything that is wrong with it."""
+"""Diagnostics of a text under edit: its graph and its findings."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from engine.library.behavior_library import FindingView
 
 @dataclass(frozen=True, kw_only=True)
 class DocumentAnalysis:
-    """What is known of a text; `graph` and `document` are None where it cannot be read.
+    """Graph and findings of a text; `graph` and `document` are None if it cannot be read.
 
-    `with_findings` is False where it was drawn, and nobody has looked yet for what is wrong with it.
+    `with_findings` is False if the graph was built but the check has not run yet.
     """
 
     hash: str
@@ -33,12 +33,12 @@ class DocumentAnalysis:
 
 
 def text_hash(text: str) -> str:
-    """Return the SHA-256 of a text as it stands in a file."""
+    """Return the SHA-256 of a text as encoded in a file."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def analyze_text(text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-    """Draw and check a text as if it stood in `file`."""
+    """Build the graph and the findings of a text, as if it were the content of `file`."""
     try:
         draft = Draft(text, file=str(file))
     except DocumentError as error:
@@ -49,14 +49,14 @@ def analyze_text(text: str, *, file: Path, context: ProjectContext) -> DocumentA
 def analyze_unreadable_text(
     text: str, error: DocumentError, *, file: Path, context: ProjectContext
 ) -> DocumentAnalysis:
-    """Return what is known of a text that cannot be drawn: what is wrong with it, this error at least."""
+    """Return the findings of a text without graph: at least this error."""
     found = findings_of(text, file=file, context=context)
     told = found if any(each.severity == "error" for each in found) else (_invalid(error), *found)
     return DocumentAnalysis(hash=text_hash(text), graph=None, document=None, findings=told, checked=True)
 
 
 def draw_document(draft: Draft, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-    """Draw a text as if it stood in `file`; one that leads out of the project is not looked at any further."""
+    """Build the graph of a text, as if it were the content of `file`; one that leaves the project is not checked."""
     graph = document_graph(draft, context)
     out = sorted_findings(find_external_references(draft, context, file), graph)
     return DocumentAnalysis(
@@ -65,20 +65,20 @@ def draw_document(draft: Draft, *, file: Path, context: ProjectContext) -> Docum
 
 
 def with_findings(drawn: DocumentAnalysis, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-    """Return what is known of a text that was drawn, and what is wrong with it."""
+    """Return the diagnostics of a text whose graph exists, with its findings."""
     if drawn.checked:
         return drawn
     return replace(drawn, findings=sorted_findings(_check(text, file, context), drawn.graph), checked=True)
 
 
 def sorted_findings(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
-    """Return findings in the order of the text, each with its line and its node as far as one tells the other."""
+    """Return findings in the order of the text, each with its line and node where one follows from the other."""
     nodes = _by_line(graph) if found and graph is not None else []
     return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
 
 
 def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
-    """Return what is wrong with a text as if it stood in `file`, in its order, without drawing it."""
+    """Return the findings of a text as if it were the content of `file`, in text order, without a graph."""
     found = _check(text, file, context)
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
 
@@ -91,7 +91,7 @@ def _check(text: str, file: Path, context: ProjectContext) -> list[FindingView]:
 
 
 def find_external_references(draft: Draft, context: ProjectContext, file: Path) -> list[FindingView]:
-    """Return where a text names files outside of the project, which nobody is to look at."""
+    """Return the references of a text to files outside the project, which must not be read."""
     named: list[tuple[str, Plain, str]] = [
         (path, ref.data, "behavior") for path, ref in Outline(draft.data).refs.items() if "behavior" in ref.data
     ]
@@ -136,10 +136,10 @@ def _invalid(error: DocumentError) -> FindingView:
 
 
 def finding_view(finding: Finding, file: Path) -> FindingView:
-    """Return a finding as the editor shows it in `file`: one of another behavior, at the node that refers to that."""
+    """Return a finding as shown in `file`; one of another behavior appears at the node that references it."""
     position, message, path = finding.position, finding.message, finding.path
     if position.file != str(file):
-        # Of a behavior that is referred to: the node that refers to it is what can be shown here.
+        # A finding in a referenced behavior: the node that references it is what can be shown here.
         path = path.partition("/root")[0] or "root"
         message = f"{Path(position.file).name}:{position.line}: {message}"
         line = 0 if finding.path else 1
@@ -158,7 +158,7 @@ def _by_line(graph: DocumentNode) -> list[DocumentNode]:
 
 
 def _placed(finding: FindingView, nodes: list[DocumentNode]) -> FindingView:
-    """Give a finding the line of its node, or the node of its line, where it has only one of them."""
+    """Complete a finding that has only a node or only a line with the other one."""
     if finding.line == 0:
         node = next((each for each in nodes if each.path == finding.path), None)
         line, column = (node.line, node.column) if node is not None else (1, 1)

@@ -1,4 +1,4 @@
-"""What differs between two versions of a document, node by node, for a visual diff."""
+"""Compares two versions of a document node by node, for a visual diff."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LAYOUT = ("view",)
 
 @dataclass(frozen=True, kw_only=True)
 class FieldChange:
-    """One thing that differs; None where it was not, or is no longer, there."""
+    """One field that differs; None on the side on which it does not exist."""
 
     field: str
     before: object
@@ -24,9 +24,9 @@ class FieldChange:
 
 @dataclass(frozen=True, kw_only=True)
 class NodeChange:
-    """A node that was added, removed, changed, or moved to another container or name, maybe changed as well.
+    """A node that was added, removed, changed, or moved to another container or name, and possibly changed.
 
-    The path `document` is what the document itself says. `before_path` is where a moved node was.
+    The path `document` stands for the document itself. `before_path` is the previous path of a moved node.
     """
 
     path: str
@@ -76,7 +76,7 @@ def _compare(old: Outline, new: Outline) -> list[NodeChange]:
 
 
 def _moved(gone: dict[str, NodeRef], fresh: dict[str, NodeRef]) -> dict[str, str]:
-    """Return the nodes that are the same elsewhere: equal but for where they lead."""
+    """Return the nodes that exist unchanged elsewhere: equal except for their targets."""
     found: dict[str, str] = {}
     for was, ref in gone.items():
         alike = (path for path, now in fresh.items() if path not in found.values() and _essence(now) == _essence(ref))
@@ -91,7 +91,7 @@ def _essence(ref: NodeRef) -> object:
 
 
 def _own(ref: NodeRef) -> Plain:
-    """Return what a node says without its children, flat: `with.speed`, `machine.initial`."""
+    """Return the fields of a node without its children, flattened: `with.speed`, `machine.initial`."""
     inside = {id(child) for _, _, child in child_entries(ref.data)}
     own: Plain = {}
     for key, value in ref.data.items():

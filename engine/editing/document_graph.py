@@ -1,4 +1,4 @@
-"""A document as the canvas draws it, finished or not: the graph of a run, and beside it all that a form shows."""
+"""A document as the canvas draws it, complete or not: the graph of a run, and all fields that a form shows."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
 
     `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the
     arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`.
-    `document` is the id of the behavior that it refers to. `exits` are the outcomes that its container does not lead
-    anywhere yet. `role` is the key by which the part around it knows it, such as `then`.
+    `document` is the id of the behavior that it references. `exits` are the outcomes that its container does not lead
+    anywhere yet. `role` is its key in the surrounding tree node, such as `then`.
     """
 
     label: str
@@ -60,7 +60,7 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
 
 
 class DocumentInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """What the document itself declares, as written."""
+    """The declarations of the document itself, as written."""
 
     name: str
     description: str
@@ -72,7 +72,7 @@ class DocumentInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def info_of(draft: Draft) -> DocumentInfo:
-    """Return what a document declares; what is missing or of another kind is empty."""
+    """Return the declarations of a document; missing or invalid ones are empty."""
     data = draft.data
     cell = data.get("cell")
     return DocumentInfo(
@@ -91,7 +91,7 @@ def info_of(draft: Draft) -> DocumentInfo:
 
 
 def document_graph(draft: Draft, context: ProjectContext) -> DocumentNode | None:
-    """Draw a document; None where it has no root."""
+    """Build the graph of a document; None if it has no root."""
     outline = Outline(draft.data)
     root = outline.refs.get("root")
     return _Drawing(draft, context, outline).node(root) if root is not None else None
@@ -165,7 +165,7 @@ class _Drawing:
         )
 
     def _outcomes(self, ref: NodeRef, own: tuple[str, ...]) -> tuple[str, ...]:
-        """Return how a node can end; the outermost one also as declared, though nothing leads there yet."""
+        """Return the outcomes of a node; for the root also the declared ones to which nothing leads yet."""
         declared = texts(self._draft.data.get("outcomes")) if ref.parent is None else ()
         return tuple(dict.fromkeys((*declared, *own)))
 

@@ -1,4 +1,4 @@
-"""The behaviors of a project as files to be edited: opened, saved without overwriting anybody, renamed, deleted."""
+"""The behaviors of a project as editable files: open, save without overwriting other changes, rename, delete."""
 
 from __future__ import annotations
 
@@ -49,29 +49,33 @@ class StoredDocument:
 
 
 class NoSuchDocument(DocumentError):
-    """No document of the project has this id, or no version this hash."""
+    """No document of the project has this id, or no version has this hash."""
 
 
 class DocumentConflict(DocumentError):
-    """A document is not what the writer has read; `merged` has both changes where they do not contradict each other."""
+    """A document changed after the writer read it; `merged` has both changes if they do not conflict."""
 
     def __init__(self, theirs: StoredDocument, merged: str | None, conflicts: tuple[MergeConflict, ...]) -> None:
-        hint = "look at both and save again" if merged is None else "save the merged text, or choose one of the two"
-        super().__init__("the document has changed on disk meanwhile", where=theirs.id, hint=hint)
+        hint = (
+            "compare both versions and save again"
+            if merged is None
+            else "save the merged text, or choose one of the two"
+        )
+        super().__init__("the document has changed on disk", where=theirs.id, hint=hint)
         self.theirs = theirs
         self.merged = merged
         self.conflicts = conflicts
 
 
 class DocumentRepository:
-    """The documents under `project/behaviors`; may be used from any thread.
+    """The documents under `project/behaviors`; thread-safe.
 
     Args:
         project: The folder of the project.
         catalogue: The states by name.
         now_s: The wall clock, seconds since 1970.
-        stored: The entries of open cells, by the file of the cell; where it knows none the seed counts.
-        cell: The cell that is open, of which names are offered.
+        stored: The entries of open cells, by the file of the cell; for other cells the seed entries apply.
+        cell: The open cell, whose names are offered.
     """
 
     def __init__(
@@ -98,18 +102,18 @@ class DocumentRepository:
         return self._project
 
     def referable(self) -> tuple[BehaviorReferenceView, ...]:
-        """Return the behaviors of the project as others may refer to them, sorted by id."""
+        """Return the behaviors of the project that others may reference, sorted by id."""
         with self._writing:
             return behavior_reference_views(self._library)
 
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
-        """Return the names that the open cell offers by kind, those that the check knows; none without a cell."""
+        """Return the names of the open cell by kind, as the check knows them; none without a cell."""
         return cell_names(self._cell).listed() if self._cell is not None else {}
 
     def offered_to(self, document_id: str, text: str) -> dict[CellNameKind, tuple[str, ...]]:
-        """Return the names that the cell of a text offers by kind; those of the open one where it names none.
+        """Return the names of the cell of a text by kind; those of the open cell if the text names none.
 
-        None where that cell cannot be read, of which the check tells, or is none of this project.
+        None if that cell cannot be read, which the check reports, or is outside this project.
         """
         drawn = self.draw(document_id, text)
         written = drawn.document.cell if drawn.document is not None else None
@@ -119,35 +123,35 @@ class DocumentRepository:
             file = (self.file_of(document_id).parent / written).resolve()
             return cell_names(load_cell(file)).listed() if file.is_relative_to(self._project) else {}
         except (DocumentError, OSError, ValueError):
-            return {}  # the check says what is wrong with it
+            return {}  # the check reports the problem
 
     def file_of(self, document_id: str) -> Path:
-        """Return where a document is, or would be.
+        """Return the path of a document that exists or may be created.
 
         Raises:
-            DocumentError: this is no id of a document, or leads out of the project.
+            DocumentError: the id is not the id of a document, or leads out of the project.
         """
         parts = document_id.split("/")
         if not _ID.fullmatch(document_id) or any(part.endswith(".") or ".." in part for part in parts):
             hint = "an id is a path such as `behaviors/folder/name.yaml`"
-            raise NoSuchDocument("this is no id of a document", where=document_id[:200], hint=hint)
+            raise NoSuchDocument("this is not the id of a document", where=document_id[:200], hint=hint)
         file = (self._project / document_id).resolve()
         if not file.is_relative_to(self._project / "behaviors"):
-            raise NoSuchDocument("this leads out of the project", where=document_id)
+            raise NoSuchDocument("the id leads out of the project", where=document_id)
         if _LATER.search(document_id):
-            raise NoSuchDocument("breakpoints are no behavior", where=document_id)
+            raise NoSuchDocument("a breakpoints file is not a behavior", where=document_id)
         return file
 
     def context(self, document_id: str) -> ProjectContext:
-        """Return what is known around a document."""
+        """Return the project context of a document."""
         return ProjectContext(self.catalogue, self.file_of(document_id).parent, self._project, self._stored)
 
     def open(self, document_id: str) -> StoredDocument:
-        """Return a document and keep its text as a version, for whoever saves it later.
+        """Return a document and keep its text as a version, the base of a later save.
 
         Raises:
-            NoSuchDocument: there is none.
-            DocumentError: it cannot be read as text, or is no behavior.
+            NoSuchDocument: there is no such document.
+            DocumentError: it cannot be read as text, or is not a behavior.
         """
         file = self.file_of(document_id)
         opened = self._read(document_id, file)
@@ -157,27 +161,27 @@ class DocumentRepository:
         return opened
 
     def examine(self, document_id: str, text: str) -> DocumentAnalysis:
-        """Draw and check a text as if it were the document's."""
+        """Build the graph and the findings of a text, as if it were the document's."""
         return self._desk.examine(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def draw(self, document_id: str, text: str) -> DocumentAnalysis:
-        """Draw a text as if it were the document's; what is wrong with it is looked for by `examine`."""
+        """Build the graph of a text, as if it were the document's; `examine` checks it."""
         return self._desk.draw(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def findings(self, document_id: str, text: str) -> tuple[FindingView, ...]:
-        """Check a text as if it were the document's, without drawing it again."""
+        """Check a text as if it were the document's, without building its graph again."""
         return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def edit(self, document_id: str, text: str, edits: Sequence[AnyEdit]) -> tuple[EditResult, DocumentAnalysis]:
-        """Make edits in a text, all or none, and draw what comes of it; nothing is saved."""
+        """Apply edits to a text, all or none, and build the graph of the result; nothing is saved."""
         context = self.context(document_id)
         return self._desk.edit(text, edits, file=self.file_of(document_id), context=context)
 
     def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
-        """Return who writes and who reads each key of a text.
+        """Return the writers and readers of each key of a text.
 
         Raises:
-            DocumentError: it is no valid behavior, or leads out of the project.
+            DocumentError: the text is not a valid behavior, or leads out of the project.
         """
         file, context = self.file_of(document_id), self.context(document_id)
         stray = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
@@ -187,17 +191,17 @@ class DocumentRepository:
         return data_flow(parse_behavior(text, file=file), self.catalogue)
 
     def save(self, document_id: str, text: str, *, base_hash: str) -> StoredDocument:
-        """Write a document that is as it was when it was opened.
+        """Write a document that has not changed since it was opened.
 
         Args:
-            document_id: Which.
+            document_id: Id of the document.
             text: The new text.
-            base_hash: The hash of the text that it was made from.
+            base_hash: The hash of the text from which it was edited.
 
         Raises:
-            DocumentConflict: it has another text by now.
-            NoSuchDocument: there is none any more.
-            DocumentError: the text is no document.
+            DocumentConflict: the document has another text now.
+            NoSuchDocument: the document no longer exists.
+            DocumentError: the text is not a document.
         """
         file = self.file_of(document_id)
         _require_document(text, document_id)
@@ -213,7 +217,7 @@ class DocumentRepository:
         return self._read(document_id, file)
 
     def create(self, document_id: str, *, template: str = "machine", name: str = "") -> StoredDocument:
-        """Make a document from a template.
+        """Create a document from a template.
 
         Raises:
             DocumentError: the id is taken, or there is no such template.
@@ -225,27 +229,27 @@ class DocumentRepository:
         return self._put(document_id, file, text)
 
     def add(self, document_id: str, text: str) -> StoredDocument:
-        """Make a document of a text.
+        """Create a document from a text.
 
         Raises:
-            DocumentError: the id is taken, or the text is no behavior.
+            DocumentError: the id is taken, or the text is not a behavior.
         """
         _require_document(text, document_id)
         return self._put(document_id, self.file_of(document_id), text)
 
     def duplicate(self, document_id: str, new_id: str) -> StoredDocument:
-        """Make a copy of a document; raises DocumentError where the new id is taken."""
+        """Copy a document; raises DocumentError if the new id is taken."""
         return self._put(new_id, self.file_of(new_id), self._read(document_id, self.file_of(document_id)).text)
 
     def rename(self, document_id: str, new_id: str) -> StoredDocument:
-        """Give a document another id; its versions go along. References to it in other documents stay as they are.
+        """Rename a document with its versions. References to it in other documents do not change.
 
         Raises:
-            DocumentError: there is none, the new id is taken, or it is of another format.
+            DocumentError: there is no such document, the new id is taken, or it has another format.
         """
         file, new = self.file_of(document_id), self.file_of(new_id)
         if (file.suffix == ".json") != (new.suffix == ".json"):
-            raise DocumentError("a rename does not turn YAML into JSON", where=new_id, hint="keep the ending")
+            raise DocumentError("a rename does not convert YAML to JSON", where=new_id, hint="keep the file extension")
         with self._changing(document_id):
             there = self._read(document_id, file)
             _require_free(new, new_id)
@@ -256,10 +260,10 @@ class DocumentRepository:
         return self._read(new_id, new)
 
     def delete(self, document_id: str) -> None:
-        """Remove a document; its text stays among its versions.
+        """Delete a document; its text is kept as a version.
 
         Raises:
-            NoSuchDocument: there is none.
+            NoSuchDocument: there is no such document.
         """
         file = self.file_of(document_id)
         with self._changing(document_id):
@@ -270,7 +274,7 @@ class DocumentRepository:
         """Return the versions of a document, newest first, also of a deleted one.
 
         Raises:
-            NoSuchDocument: there never was one.
+            NoSuchDocument: there never was such a document.
         """
         file = self.file_of(document_id)
         with self._writing:
@@ -282,29 +286,29 @@ class DocumentRepository:
         return found
 
     def version(self, document_id: str, digest: str) -> str:
-        """Return the text of a version; raises DocumentError where it is not kept."""
+        """Return the text of a version; raises DocumentError if the version is not kept."""
         self.file_of(document_id)
         return self._versions.text(document_id, digest)
 
     def deleted(self) -> tuple[tuple[str, DocumentVersion], ...]:
-        """Return the documents that have gone and of which a version is kept: id and newest version, newest first."""
+        """Return the deleted documents of which a version is kept: id and newest version, newest first."""
         with self._writing:
             gone = [each for each in self._versions.ids() if not (self._project / each).exists()]
             found = [(each, self._versions.all(each)[0]) for each in gone if _ID.fullmatch(each)]
         return tuple(sorted(found, key=lambda each: -each[1].saved_at_s))
 
     def restore(self, document_id: str) -> StoredDocument:
-        """Write a document that was deleted again, as it was last.
+        """Restore a deleted document from its newest version.
 
         Raises:
             NoSuchDocument: no version of it is kept.
-            DocumentError: there is one under its id.
+            DocumentError: a document with its id exists.
         """
         file, newest = self.file_of(document_id), self.versions(document_id)[0]
         return self._put(document_id, file, self.version(document_id, newest.hash))
 
     def stamps(self) -> dict[str, tuple[int, int]]:
-        """Return time of change (ns) and size of every document, by id; cheap enough to be asked each second."""
+        """Return modification time (ns) and size of every document, by id; cheap enough to poll each second."""
         found: dict[str, tuple[int, int]] = {}
         folder = self._project / "behaviors"
         for file in folder.rglob("*"):
@@ -312,20 +316,20 @@ class DocumentRepository:
                 try:
                     status = file.stat()
                 except OSError:
-                    continue  # it went while we looked
+                    continue  # deleted during the listing
                 found[file.relative_to(self._project).as_posix()] = (status.st_mtime_ns, status.st_size)
         return found
 
     def hash_on_disk(self, document_id: str) -> str | None:
-        """Return the hash of a document as it is on disk; None where there is none."""
+        """Return the hash of a document as it is on disk; None if there is no such document."""
         try:
             return self._read(document_id, self.file_of(document_id)).hash
         except DocumentError:
-            return None  # deleted, or no text: either way nothing to compare with
+            return None  # deleted, or not text: nothing to compare with
 
     @contextmanager
     def _changing(self, document_id: str) -> Generator[None]:
-        """Hold the files of the project; what the system refuses is told with the document and what to do."""
+        """Lock the files of the project; an OS error is raised with the document and a hint."""
         with self._writing:
             try:
                 yield
@@ -333,21 +337,21 @@ class DocumentRepository:
                 raise DocumentError(
                     f"the document cannot be written: {error.strerror}",
                     where=document_id,
-                    hint="let this server write in the folder of the project, or make room on its disk",
+                    hint="grant this server write permission in the project folder, or free disk space",
                 ) from error
 
     def _remember(self, document_id: str, text: str) -> None:
-        """Keep what was found in a file as a version; a project that cannot be written is read all the same."""
+        """Keep the content of a file as a version; a read-only project can still be read."""
         try:
             self._versions.keep(document_id, text)
         except OSError as error:
-            _log.warning("no version of %s can be kept: %s", document_id, error)
+            _log.warning("cannot keep a version of %s: %s", document_id, error)
 
     def _conflict(self, there: StoredDocument, text: str, base_hash: str) -> DocumentConflict:
         try:
             base = self._versions.text(there.id, base_hash)
         except DocumentError:
-            # Nobody knows what it was made from: only a person can tell what is to stay.
+            # The base text is unknown, so no merge is possible: a person must decide.
             line = MergeConflict(line=1, base="", ours=text, theirs=there.text)
             return DocumentConflict(there, None, (line,))
         merged = merge_texts(base, text, there.text)
@@ -379,20 +383,20 @@ class DocumentRepository:
         except OSError as error:
             raise DocumentError(f"cannot read this file: {error.strerror}", where=document_id) from error
         if len(content) > MAX_BYTES:
-            raise DocumentError("the file is too large to be edited", where=document_id)
+            raise DocumentError("the file is too large for the editor", where=document_id)
         return StoredDocument(id=document_id, text=text, hash=text_hash(text), saved_at_s=saved_at_s)
 
 
 def _require_document(text: str, document_id: str) -> None:
-    """Refuse text that is no YAML mapping; one that is no valid behavior may be saved, or no work could be left off."""
+    """Reject text that is not a YAML mapping; an invalid behavior may be saved, so that work can be interrupted."""
     data = parse_source(text, file=document_id).data
     if not isinstance(data, dict):
-        raise DocumentError("the document is no mapping", where=document_id, hint="begin with `flexcell: 1`")
+        raise DocumentError("the document is not a mapping", where=document_id, hint="begin it with `flexcell: 1`")
     _require_behavior_data(cast("dict[str, object]", data), document_id)
 
 
 def _require_behavior(text: str, document_id: str) -> None:
-    """Refuse cells and entries, which lie in the same folder; text with mistakes may be opened to mend them."""
+    """Reject cells and entries documents, which may be in the same folder; invalid text may be opened to fix it."""
     try:
         data = parse_source(text, file=document_id).data
     except DocumentError:
@@ -403,7 +407,7 @@ def _require_behavior(text: str, document_id: str) -> None:
 
 def _require_behavior_data(data: dict[str, object], document_id: str) -> None:
     if "root" not in data and ("cell" in data or "robots" in data or "faults" in data or "breakpoints" in data):
-        raise DocumentError("this is no behavior", where=document_id, hint="the editor edits behaviors")
+        raise DocumentError("this is not a behavior", where=document_id, hint="the editor edits behaviors only")
 
 
 def _require_free(file: Path, document_id: str) -> None:

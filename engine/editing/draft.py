@@ -1,4 +1,4 @@
-"""A text under edit: its plain data, free to be changed, and the way back into the text."""
+"""A text under edit: its mutable plain data, and the conversion back to text."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from engine.errors import DocumentError, FlexcellError
 
 
 class EditRefused(FlexcellError):
-    """An edit cannot be made; nothing of it was."""
+    """An edit cannot be applied; the document is unchanged."""
 
 
 class Draft:
-    """A document whose `data` may be changed at will; `text` is it as written then, `given` as it was.
+    """A document whose `data` may be changed freely; `text` is its current text, `given` the original text.
 
     Args:
         text: YAML or JSON.
@@ -44,21 +44,21 @@ class Draft:
         return self._tree.origin
 
     def collections(self) -> Iterator[Collection]:
-        """Go through every collection as it was read, those outside first."""
+        """Iterate over every collection as it was read, outer ones first."""
         return self._tree.collections()
 
     @property
     def sources(self) -> Mapping[int, Collection]:
-        """Where dicts and lists stand in a text, by their id."""
+        """Positions of dicts and lists in a text, by their id."""
         return self._sources
 
     @property
     def json(self) -> bool:
-        """True where it is JSON."""
+        """True for a JSON document."""
         return self._tree.origin.json
 
     def adopt(self, text: str) -> dict[str, object]:
-        """Read other YAML, a mapping, whose text comes along wherever its parts are put.
+        """Read another YAML mapping, whose parts keep their text wherever they are inserted.
 
         Raises:
             DocumentError: it cannot be read.
@@ -68,7 +68,7 @@ class Draft:
         return cast("dict[str, object]", cast("Collection", other.root).data)
 
     def copied(self, value: object) -> object:
-        """Return a copy that will be written like what it is a copy of."""
+        """Return a copy that is written with the text of the original."""
         if isinstance(value, dict):
             found = cast("dict[str, object]", value)
             return self._alike(found, {key: self.copied(each) for key, each in found.items()})
@@ -78,33 +78,33 @@ class Draft:
         return copy.copy(value)
 
     def source_of(self, value: object) -> Collection | None:
-        """Return where a dict or list stands in a text."""
+        """Return the position of a dict or list in a text."""
         return self._sources.get(id(value))
 
     def text(self) -> str:
-        """Return the document as it is now.
+        """Return the current text of the document.
 
         Raises:
-            EditRefused: it cannot be written without changing more than was asked for.
+            EditRefused: it cannot be written without changing more than requested.
         """
         return self.rewritten().given
 
     def rewritten(self) -> Draft:
-        """Return the document as it is now, read again from its text.
+        """Return the current document, parsed again from its text.
 
         Raises:
-            EditRefused: it cannot be written without changing more than was asked for.
+            EditRefused: it cannot be written without changing more than requested.
         """
         made = TextRewriter(self._sources, self.json).document(self._tree, self.data)
-        # What ends with a line feed cannot be shown on a last line without one.
+        # Text that ends with a line feed cannot be written on a last line without one.
         again = self._read_back(made) or self._read_back(made + "\n")
         if again is None:
-            hint = "change the text itself"
-            raise EditRefused("this edit cannot be written into the text as it is laid out", hint=hint)
+            hint = "edit the text directly"
+            raise EditRefused("this edit does not fit the layout of the text", hint=hint)
         return again
 
     def _read_back(self, made: str) -> Draft | None:
-        """Return what a text reads as where that is the data, in kind and order."""
+        """Return the parsed text if it equals the data in type and order."""
         try:
             again = Draft(made.replace("\n", self._newline) if self._newline != "\n" else made, file=self.file)
         except DocumentError:
@@ -123,12 +123,12 @@ class Draft:
         source = self._sources.get(id(original))
         if source is not None:
             self._sources[id(made)] = source
-        self._kept.append(made)  # ids are used again when objects go
+        self._kept.append(made)  # ids are reused after objects are deleted
         return made
 
 
 def _equal(a: Any, b: Any) -> bool:
-    """Tell whether two values are the same in kind and order."""
+    """Return whether two values are equal in type and order."""
     if isinstance(a, dict) and isinstance(b, dict):
         one, two = cast("dict[str, Any]", a), cast("dict[str, Any]", b)
         return list(one) == list(two) and all(_equal(each, two[key]) for key, each in one.items())

@@ -1,4 +1,4 @@
-"""A cache of parsed texts under edit, so that the next edit of a text does not parse it again."""
+"""Cache of parsed texts under edit: the next edit of a text does not parse it again."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from engine.library.behavior_library import FindingView
 MAX_TEXTS = 6
 """Maximum number of texts kept: the last steps of a few pages; a text of 1,000 states takes about 10 MB."""
 MAX_ENTRIES = 60_000
-"""Entries in the kept texts together, each of some 500 bytes; the newest text is kept whatever it has."""
+"""Maximum number of entries in all kept texts, each about 500 bytes; the newest text is always kept."""
 
 
 @dataclass
 class _CachedDraft:
-    """What is known of one text; its draft goes with the edit that uses it."""
+    """Cached data of one text; the edit that uses its draft consumes it."""
 
     drawn: DocumentAnalysis
     draft: Draft | None
 
 
 class DraftCache:
-    """Draws, edits and checks texts, and keeps the last ones; may be used from any thread."""
+    """Parses, edits and checks texts, and caches the last ones; thread-safe."""
 
     def __init__(self, *, kept: int = MAX_TEXTS) -> None:
         self._kept = kept
@@ -41,11 +41,11 @@ class DraftCache:
 
     @property
     def kept_entries(self) -> int:
-        """Entries in the texts that are kept, counted by their separators."""
+        """Number of entries in the cached texts, counted by their separators."""
         return sum(text.count("\n") + text.count(",") for _, text in self._cache)
 
     def draw(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-        """Read and draw a text; what is wrong with it is looked for only where it cannot be read."""
+        """Parse a text and build its graph; the check runs only if the text cannot be read."""
         with gc_paused():
             draft = self._taken(file, text)
             try:
@@ -57,7 +57,7 @@ class DraftCache:
     def edit(
         self, text: str, edits: Sequence[AnyEdit], *, file: Path, context: ProjectContext
     ) -> tuple[EditResult, DocumentAnalysis]:
-        """Make edits in a text, all or none, and draw what comes of it."""
+        """Apply edits to a text, all or none, and build the graph of the result."""
         with gc_paused():
             done = self._edited(text, edits, file, context)
             if done.draft is not None:
@@ -65,13 +65,13 @@ class DraftCache:
         return done, self.draw(text, file=file, context=context)
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-        """Draw a text and look for what is wrong with it."""
+        """Build the graph and the findings of a text."""
         drawn = self.draw(text, file=file, context=context)
         with gc_paused():
             return with_findings(drawn, text, file=file, context=context)
 
     def findings(self, text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
-        """Look for what is wrong with a text; one that was drawn just now is not drawn again."""
+        """Check a text; a cached graph is reused."""
         with self._lock:
             sheet = self._cache.get((file, text))
         drawn = sheet.drawn if sheet is not None else self.draw(text, file=file, context=context)
@@ -85,7 +85,7 @@ class DraftCache:
         return apply_edits(text, edits, file=str(file), context=context)
 
     def _taken(self, file: Path, text: str) -> Draft | None:
-        """Return the draft of a text, once: who takes it may change it."""
+        """Remove the draft of a text from the cache and return it: the caller may change it."""
         with self._lock:
             sheet = self._cache.get((file, text))
             if sheet is None:

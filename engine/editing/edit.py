@@ -1,4 +1,4 @@
-"""The edits of a document: what can be asked for, as frozen messages with the word `edit` saying which."""
+"""The edits of a document, as frozen messages with the tag `edit`."""
 
 from __future__ import annotations
 
@@ -8,28 +8,29 @@ import msgspec
 from msgspec import Meta
 
 CanvasPoint = tuple[float, float]
-NodePath = Annotated[str, Meta(max_length=4000, description="A node, `root/approach/left`")]
+NodePath = Annotated[str, Meta(max_length=4000, description="Path of a node, `root/approach/left`")]
 NodeName = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")]
 
 
 class TransitionRef(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, rename={"source": "from"}):
-    """An arrow of a machine: a child of it (its path), and one of its outcomes."""
+    """A transition of a machine: a child (its path), and one of its outcomes."""
 
     source: NodePath
     outcome: str
 
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="edit"):
-    """Root of the edits."""
+    """Base class of the edits."""
 
 
 class AddNode(Edit, frozen=True, kw_only=True, tag="add_node"):
-    """Put a new node into a container; its name is made up where none is given.
+    """Insert a new node into a container; its name is generated if none is given.
 
     `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees
     sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes
-    as `copy` gives them, the content is that instead. `after` leads the open good outcomes of a
-    sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children.
+    as `copy` returns them are the content instead. `after` connects the open success outcomes of a
+    sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the
+    children.
     """
 
     parent: NodePath
@@ -45,20 +46,20 @@ class AddNode(Edit, frozen=True, kw_only=True, tag="add_node"):
 
 
 class RemoveNodes(Edit, frozen=True, kw_only=True, tag="remove_nodes"):
-    """Take nodes out, with the transitions and conditions that name them; other references show as findings."""
+    """Remove nodes, with the transitions and conditions that name them; other references become findings."""
 
     paths: tuple[NodePath, ...]
 
 
 class RenameNode(Edit, frozen=True, kw_only=True, tag="rename_node"):
-    """Give a node another name; whatever refers to it follows."""
+    """Rename a node; all references to it are updated."""
 
     path: NodePath
     name: NodeName
 
 
 class MoveNodes(Edit, frozen=True, kw_only=True, tag="move_nodes"):
-    """Put nodes into another container, or elsewhere among their siblings; transitions among them stay."""
+    """Move nodes to another container, or to another position among their siblings; transitions among them are kept."""
 
     paths: tuple[NodePath, ...]
     parent: NodePath
@@ -66,7 +67,7 @@ class MoveNodes(Edit, frozen=True, kw_only=True, tag="move_nodes"):
 
 
 class SetTransition(Edit, frozen=True, kw_only=True, tag="set_transition"):
-    """Lead an outcome of a node to a sibling, or to an outcome of the machine around it."""
+    """Connect an outcome of a node to a sibling, or to an outcome of the surrounding machine."""
 
     path: NodePath
     outcome: str
@@ -74,21 +75,21 @@ class SetTransition(Edit, frozen=True, kw_only=True, tag="set_transition"):
 
 
 class ClearTransition(Edit, frozen=True, kw_only=True, tag="clear_transition"):
-    """Lead an outcome of a node nowhere."""
+    """Remove the transition of an outcome of a node."""
 
     path: NodePath
     outcome: str
 
 
 class SetInitial(Edit, frozen=True, kw_only=True, tag="set_initial"):
-    """Let a machine begin with a child."""
+    """Set the initial child of a machine."""
 
     path: NodePath
     child: NodeName
 
 
 class SetParameter(Edit, frozen=True, kw_only=True, tag="set_parameter"):
-    """Give a state or behavior a value for a parameter."""
+    """Set a parameter of a state or behavior."""
 
     path: NodePath
     name: str
@@ -96,14 +97,14 @@ class SetParameter(Edit, frozen=True, kw_only=True, tag="set_parameter"):
 
 
 class ClearParameter(Edit, frozen=True, kw_only=True, tag="clear_parameter"):
-    """Take the value of a parameter back; its default holds."""
+    """Remove the value of a parameter; its default applies."""
 
     path: NodePath
     name: str
 
 
 class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
-    """Set one thing of a node; null takes it away.
+    """Set one field of a node; null removes it.
 
     For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post,
     notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
@@ -117,13 +118,13 @@ class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
 
 
 class SetPositions(Edit, frozen=True, kw_only=True, tag="set_positions"):
-    """Place nodes on the canvas, in pixels relative to their container; null forgets a position."""
+    """Set the canvas positions of nodes, in pixels relative to their container; null removes a position."""
 
     positions: dict[NodePath, CanvasPoint | None]
 
 
 class GroupNodes(Edit, frozen=True, kw_only=True, tag="group"):
-    """Put siblings into a new container in their place; what leads out of them becomes its outcomes."""
+    """Group siblings in a new container in their place; transitions that leave them become its outcomes."""
 
     paths: tuple[NodePath, ...]
     kind: Literal["machine", "priority", "concurrency", "sequence", "selector", "parallel"]
@@ -131,19 +132,19 @@ class GroupNodes(Edit, frozen=True, kw_only=True, tag="group"):
 
 
 class UngroupNode(Edit, frozen=True, kw_only=True, tag="ungroup"):
-    """Put the children of a container in its place."""
+    """Replace a container with its children."""
 
     path: NodePath
 
 
 class DuplicateNodes(Edit, frozen=True, kw_only=True, tag="duplicate"):
-    """Put copies of nodes beside them; transitions among them lead to the copies."""
+    """Insert copies of nodes next to them; transitions among them connect the copies."""
 
     paths: tuple[NodePath, ...]
 
 
 class PasteNodes(Edit, frozen=True, kw_only=True, tag="paste"):
-    """Put nodes as `copy` gives them into a container."""
+    """Insert nodes, in the form that `copy` returns, into a container."""
 
     parent: NodePath
     yaml: str
@@ -152,7 +153,7 @@ class PasteNodes(Edit, frozen=True, kw_only=True, tag="paste"):
 
 
 class SetDocument(Edit, frozen=True, kw_only=True, tag="set_document"):
-    """Change what the document declares; null takes a key away. The other keys stay.
+    """Change declarations of the document; null removes a key. Other keys are unchanged.
 
     Keys: name, description, cell, parameters, userdata, outcomes, success.
     """
@@ -161,7 +162,7 @@ class SetDocument(Edit, frozen=True, kw_only=True, tag="set_document"):
 
 
 class AutoConnect(Edit, frozen=True, kw_only=True, tag="auto_connect"):
-    """Lead the open outcomes of nodes where they obviously go; of all children for a machine."""
+    """Connect the open outcomes of nodes to their evident targets; for a machine, those of all children."""
 
     paths: tuple[NodePath, ...]
 

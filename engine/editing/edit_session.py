@@ -1,4 +1,4 @@
-"""The session that edits work on: a draft, its nodes, and the references that follow renamed and moved nodes."""
+"""The session that edits work on: a draft, its nodes, and the update of references to renamed and moved nodes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.editing.project_context import NodeOutcomes, ProjectContext
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
 DanglingTarget = Callable[[Plain, str], "str | None"]
-"""Where a lead goes whose target is in its container no more: given the node and the target; None drops it."""
+"""Returns the new target of a transition whose target left its container, from node and target; None removes it."""
 
 
 class EditSession:
@@ -29,34 +29,34 @@ class EditSession:
 
     @property
     def outline(self) -> Outline:
-        """The nodes as they are now."""
+        """The current nodes."""
         if self._outline is None:
             self._outline = Outline(self.draft.data)
         return self._outline
 
     def stale(self) -> None:
-        """Look at the nodes anew."""
+        """Mark the outline as outdated; it is rebuilt on the next access."""
         self._outline = None
 
     def at(self, path: str) -> NodeRef:
-        """Return a node; raises EditRefused where there is none."""
+        """Return a node; raises EditRefused if there is no such node."""
         return self.outline.at(path)
 
     def ends(self, ref: NodeRef) -> NodeOutcomes:
-        """Return how a node can end."""
+        """Return the outcomes of a node."""
         return self.context.ends(self.outline, ref)
 
     def mark(self, node: Plain) -> None:
-        """Remember that a node was made or changed."""
+        """Record that a node was created or changed."""
         self._changed[id(node)] = node
 
     def changed(self) -> tuple[str, ...]:
-        """Return the paths of the nodes that were made or changed and are still there, in the order of the edits."""
+        """Return the paths of the nodes that were created or changed and still exist, in the order of the edits."""
         paths = {id(ref.data): path for path, ref in self.outline.refs.items()}
         return tuple(paths[known] for known in self._changed if known in paths)
 
     def free_name(self, container: NodeRef, wanted: str, taken: Iterable[str] = ()) -> str:
-        """Return a name for a new child: as wanted, or with a number; never that of an outcome of the container."""
+        """Return a free name for a new child: the wanted one, or with a number; never an outcome of the container."""
         base = re.sub(r"[^A-Za-z0-9_-]+", "_", wanted).lstrip("-")[:56] or "node"
         used = {*(child.name for child in self.outline.children(container)), *taken}
         if container.kind in MACHINES:
@@ -68,11 +68,11 @@ class EditSession:
         return name
 
     def outcomes_inside(self, container: NodeRef) -> tuple[str, ...]:
-        """Return the names that children of a machine may lead to beside one another."""
+        """Return the transition targets of children of a machine other than its children."""
         return tuple(dict.fromkeys((*self.ends(container).outcomes, *self._meant_outcomes(container))))
 
     def _meant_outcomes(self, container: NodeRef) -> tuple[str, ...]:
-        """Return the outcomes that it is written to have, whether or not anything inside leads to them yet."""
+        """Return the declared outcomes, whether or not anything inside leads to them yet."""
         if container.parent is not None:
             followed = container.data.get("transitions")
             return tuple(map(str, cast("Plain", followed))) if isinstance(followed, dict) else ()
@@ -81,7 +81,7 @@ class EditSession:
 
 
 def named_children(container: NodeRef) -> Plain:
-    """Return the children of a container with named ones, as they are written; made where there are none yet."""
+    """Return the mapping of named children of a container, as written; it is created if missing."""
     body = container.data.get(container.kind)
     if not isinstance(body, dict):
         body = container.data[container.kind] = {}
@@ -92,14 +92,14 @@ def named_children(container: NodeRef) -> Plain:
 
 
 def rename_key(mapping: Plain, old: str, new: str) -> None:
-    """Give an entry of a mapping another key; it keeps its place."""
+    """Rename a key of a mapping; the entry keeps its position."""
     kept = {new if key == old else key: value for key, value in mapping.items()}
     mapping.clear()
     mapping.update(kept)
 
 
 def insert_key(mapping: Plain, key: str, value: object, index: int | None) -> None:
-    """Put an entry into a mapping at a place; at the end without one."""
+    """Insert an entry into a mapping at a position; by default at the end."""
     items = list(mapping.items())
     items.insert(len(items) if index is None else max(0, index), (key, value))
     mapping.clear()
@@ -107,13 +107,13 @@ def insert_key(mapping: Plain, key: str, value: object, index: int | None) -> No
 
 
 def assign_child_roles(container: NodeRef, nodes: list[Plain]) -> None:
-    """Give the children of a part whose children have roles these roles in turn: those that were taken before."""
+    """Assign roles to the children of a tree node with roles, in order: the roles that were taken before."""
     taken = [key for key in SLOTS[container.kind] if isinstance(container.body.get(key), dict)]
     container.body.update(zip(taken, nodes, strict=True))
 
 
 def remove_entry(node: Plain, key: str, entry: str) -> None:
-    """Take an entry out of a mapping of a node, and the mapping with its last one."""
+    """Remove an entry from a mapping of a node, and the mapping itself with its last entry."""
     mapping = node.get(key)
     if isinstance(mapping, dict):
         cast("Plain", mapping).pop(entry, None)
@@ -123,10 +123,10 @@ def remove_entry(node: Plain, key: str, entry: str) -> None:
 
 @dataclass
 class ReferenceUpdate:
-    """Keeps references right while nodes are renamed, moved and removed.
+    """Keeps references valid while nodes are renamed, moved and removed.
 
-    Made before the nodes are touched; `finish` then lets transitions, initial children, conditions, policies, canvas
-    positions and notes follow the nodes to wherever they are.
+    Create it before the nodes change; `finish` then updates transitions, initial children, conditions, policies, canvas
+    positions and notes to the new paths of the nodes.
     """
 
     session: EditSession
@@ -136,11 +136,12 @@ class ReferenceUpdate:
         self._refs = list(self.session.outline.refs.values())
 
     def finish(self, *, instead: dict[int, str] | None = None, stray: DanglingTarget | None = None) -> None:
-        """Let everything follow.
+        """Update all references.
 
         Args:
-            instead: For nodes that have left a container, by the id of their data, the name to lead to now.
-            stray: Where leads go that no longer have their target beside them; without it they are dropped.
+            instead: New target name for nodes that left a container, by the id of their data.
+            stray: Returns the new target of transitions whose target is no sibling any more; without it they are
+                removed.
         """
         self.session.stale()
         after = {id(ref.data): ref for ref in self.session.outline.refs.values()}

@@ -1,4 +1,4 @@
-"""Edits of what a node or document says of itself: parameters, measures, texts, positions, declarations."""
+"""Edits of the fields of a node or document: parameters, policies, texts, positions, declarations."""
 
 from __future__ import annotations
 
@@ -67,33 +67,35 @@ _ORDER = (
     "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "post", "timeout", "retry",
     "on_error", "autonomy", "resume", "success", "every", "transitions",
 )  # fmt: skip
-"""In which order the keys of a state are written."""
+"""Order in which the keys of a state are written."""
 _ORDER_INSIDE = (
     "initial", "items", "times", "as", "index", "memory", "policy", "synchronise", "success_count", "failure_count",
 )  # fmt: skip
 
 
 def set_parameter(session: EditSession, edit: SetParameter) -> None:
-    """Give a state or behavior a value for a parameter."""
+    """Set a parameter of a state or behavior."""
     ref = session.at(edit.path)
     if "state" not in ref.data and "behavior" not in ref.data and "behaviour" not in ref.data:
-        raise EditRefused(f"`{ref.path}` takes no parameters", hint="parameters go to states and behavior references")
+        raise EditRefused(
+            f"`{ref.path}` takes no parameters", hint="only states and behavior references take parameters"
+        )
     set_entry(ref.data, "with", {**_mapping(ref.data.get("with")), edit.name: plain_value(edit.value)})
     session.mark(ref.data)
 
 
 def clear_parameter(session: EditSession, edit: ClearParameter) -> None:
-    """Take the value of a parameter back."""
+    """Remove the value of a parameter."""
     ref = session.at(edit.path)
     given = _mapping(ref.data.get("with"))
     if edit.name not in given:
-        raise EditRefused(f"`{ref.path}` is given no `{edit.name}`", hint=did_you_mean(edit.name, given))
+        raise EditRefused(f"`{ref.path}` has no value for `{edit.name}`", hint=did_you_mean(edit.name, given))
     remove_entry(ref.data, "with", edit.name)
     session.mark(ref.data)
 
 
 def set_field(session: EditSession, edit: SetField) -> None:
-    """Set one thing of a node."""
+    """Set one field of a node."""
     ref = session.at(edit.path)
     value = plain_value(edit.value)
     if edit.field == "order":
@@ -109,7 +111,7 @@ def set_field(session: EditSession, edit: SetField) -> None:
 
 
 def set_positions(session: EditSession, edit: SetPositions) -> None:
-    """Place nodes on the canvas."""
+    """Set the canvas positions of nodes."""
     view = _mapping(session.draft.data.get("view"))
     for path, point in edit.positions.items():
         ref = session.at(path)
@@ -126,7 +128,7 @@ def set_positions(session: EditSession, edit: SetPositions) -> None:
 
 
 def set_document(session: EditSession, edit: SetDocument) -> None:
-    """Change what the document declares."""
+    """Change declarations of the document."""
     for key, value in edit.changes.items():
         if key not in _OF_DOCUMENTS:
             raise EditRefused(f"a document has no `{key}` to set", hint=did_you_mean(key, _OF_DOCUMENTS))
@@ -142,7 +144,7 @@ def set_document(session: EditSession, edit: SetDocument) -> None:
 
 
 def set_entry(node: Plain, key: str, value: object) -> None:
-    """Set an entry of a node; a new one stands where people would write it."""
+    """Set an entry of a node; a new one is inserted at its conventional position."""
     if key in node:
         node[key] = graft(node[key], value)
     elif key == "description":
@@ -156,9 +158,9 @@ def set_entry(node: Plain, key: str, value: object) -> None:
 
 
 def plain_value(value: object, depth: int = 0) -> object:
-    """Return a value of a request as plain data; refused where it is nested too deeply."""
+    """Return a value of a request as plain data; rejects values that are nested too deeply."""
     if depth > 40:
-        raise EditRefused("this value is nested too deeply", hint="at most 40 levels")
+        raise EditRefused("this value is nested too deeply", hint="the maximum is 40 levels")
     if isinstance(value, dict):
         return {str(key): plain_value(each, depth + 1) for key, each in cast("dict[object, object]", value).items()}
     if isinstance(value, list | tuple):
@@ -173,7 +175,9 @@ def plain_value(value: object, depth: int = 0) -> object:
 def _set_own(ref: NodeRef, key: str, value: object) -> None:
     if value is None or value == {} or (key == "description" and value == ""):
         if key in ("state", "behavior", "behaviour"):
-            raise EditRefused("a node cannot be without what it runs", hint="remove the node instead")
+            raise EditRefused(
+                "this field is what the node executes and cannot be removed", hint="remove the node instead"
+            )
         ref.data.pop(key, None)
         return
     if key in ("state", "behavior", "behaviour") and key not in ref.data:
@@ -196,7 +200,7 @@ def _set_inside(session: EditSession, ref: NodeRef, key: str, value: object) -> 
     if value is not None:
         _require(model, key, value)
     elif key == "initial":
-        raise EditRefused("a machine begins somewhere", where=ref.path, hint="name one of its children")
+        raise EditRefused("a machine requires an initial child", where=ref.path, hint="name one of its children")
     body = _body(ref)
     if value is None:
         body.pop(key, None)
@@ -207,7 +211,7 @@ def _set_inside(session: EditSession, ref: NodeRef, key: str, value: object) -> 
 
 
 def _body(ref: NodeRef) -> Plain:
-    """Return the mapping under the key of a node's kind; a plain list of children becomes one."""
+    """Return the mapping under the key of a node's kind; a plain list of children is converted to one."""
     body = ref.data.get(ref.kind)
     if isinstance(body, list):
         memory = {"memory": True} if ref.kind != "parallel" else {}
@@ -222,7 +226,7 @@ def _reorder(session: EditSession, ref: NodeRef, value: object) -> None:
     order = [str(name) for name in cast("list[object]", value)] if isinstance(value, list) else []
     if sorted(order) != sorted(child.name for child in children):
         names = ", ".join(child.name for child in children)
-        raise EditRefused("an order names each child once", where=ref.path, hint=f"its children are {names}")
+        raise EditRefused("an order must name each child once", where=ref.path, hint=f"its children are {names}")
     by_name = {child.name: child for child in children}
     if ref.kind in NAMED:
         states = named_children(ref)
@@ -244,7 +248,7 @@ def _note(session: EditSession, ref: NodeRef, value: object) -> None:
     elif isinstance(value, str):
         notes[ref.path] = value
     else:
-        raise EditRefused("a note is text", where=ref.path)
+        raise EditRefused("a note must be text", where=ref.path)
     if notes:
         session.draft.data["notes"] = notes
     else:
@@ -252,7 +256,7 @@ def _note(session: EditSession, ref: NodeRef, value: object) -> None:
 
 
 def _require(model: type[msgspec.Struct], key: str, value: object) -> None:
-    """Refuse a value that no document can have there."""
+    """Reject a value that is invalid for this field of a document."""
     kind = next(each.type for each in msgspec.structs.fields(model) if each.encode_name == key)
     try:
         msgspec.convert(value, kind)
@@ -263,7 +267,7 @@ def _require(model: type[msgspec.Struct], key: str, value: object) -> None:
 
 
 def _insert_in_order(mapping: Plain, key: str, value: object, order: tuple[str, ...]) -> None:
-    """Put a new entry behind the last of those that come before it in `order`."""
+    """Insert a new entry after the last entry that precedes it in `order`."""
     rank = order.index(key) if key in order else len(order)
     items = list(mapping.items())
     place = 0
@@ -279,7 +283,7 @@ def _insert_in_order(mapping: Plain, key: str, value: object, order: tuple[str, 
 
 def _rounded(number: float) -> int | float:
     if not -_FARTHEST_PX <= number <= _FARTHEST_PX:
-        raise EditRefused(f"no canvas is so large: {number:g}", hint=f"positions are within {_FARTHEST_PX} pixels")
+        raise EditRefused(f"position out of range: {number:g}", hint=f"positions are within ±{_FARTHEST_PX} pixels")
     near = round(number, 1)
     return int(near) if near == int(near) else near
 

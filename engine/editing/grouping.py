@@ -1,4 +1,4 @@
-"""Edits that put a container around siblings; what leads out of them becomes the outcomes of the container."""
+"""Edits that group siblings in a container; transitions that leave them become outcomes of the container."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from engine.editing.node_insertion import set_tree_node_name
 from engine.editing.outline import GROUPS, MACHINES, NodeRef, Plain, transition_entries
 
 _MARGIN_PX = (40, 60)
-"""Between the corner of a container and the first of its children."""
+"""Offset between the corner of a container and its first child."""
 _MOST_RULES = 16
 
 
 def group(session: EditSession, edit: GroupNodes) -> None:
-    """Put siblings into a new container."""
+    """Group siblings in a new container."""
     refs = outermost([session.at(path) for path in edit.paths])
     if not refs:
-        raise EditRefused("nothing is chosen", hint="choose the nodes to be grouped")
+        raise EditRefused("no nodes are selected", hint="select the nodes to group")
     home = refs[0].parent
     if home is None:
-        raise EditRefused("the outermost node cannot be grouped", hint="group what is inside")
+        raise EditRefused("the root node cannot be grouped", hint="group nodes inside it")
     if any(ref.parent is not home for ref in refs):
-        raise EditRefused("only nodes of one container can be grouped", hint="choose siblings")
+        raise EditRefused("only nodes of one container can be grouped", hint="select siblings")
     order = [child.name for child in session.outline.children(home)]
     refs.sort(key=lambda ref: order.index(ref.name))
     if edit.name is not None and edit.name in order and edit.name not in [ref.name for ref in refs]:
@@ -42,7 +42,7 @@ def group(session: EditSession, edit: GroupNodes) -> None:
 
 
 def _in_machine(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
-    # Branches are entered all at once, wherever one leads to.
+    # All branches are entered together, whatever their targets are.
     entry = refs[0].name if edit.kind in ("concurrency", "parallel") else _entry(session, home, refs)
     crossing = _crossing(refs)
     if edit.kind in MACHINES:
@@ -94,7 +94,7 @@ def _replace_in_named(session: EditSession, edit: GroupNodes, home: NodeRef, ref
 
 
 def _entry(session: EditSession, home: NodeRef, refs: list[NodeRef]) -> str:
-    """Return the one member that is entered from outside."""
+    """Return the only member that is entered from outside."""
     names = {ref.name for ref in refs}
     outside = [child for child in session.outline.children(home) if child.name not in names]
     entered = dict.fromkeys(to for child in outside for _, _, to in transition_entries(child.data) if to in names)
@@ -103,18 +103,20 @@ def _entry(session: EditSession, home: NodeRef, refs: list[NodeRef]) -> str:
         entered = dict.fromkeys((initial, *entered))
     if len(entered) > 1:
         listed = " and ".join(f"`{name}`" for name in entered)
-        raise EditRefused(f"{listed} are entered from outside, but a container begins in one place", where=home.path)
+        raise EditRefused(
+            f"{listed} are all entered from outside, but a container has one initial node", where=home.path
+        )
     return next(iter(entered), refs[0].name)
 
 
 def _crossing(refs: list[NodeRef]) -> list[str]:
-    """Return where members lead to outside of them, each once."""
+    """Return the targets of members outside the group, each once."""
     names = {ref.name for ref in refs}
     return list(dict.fromkeys(to for ref in refs for _, _, to in transition_entries(ref.data) if to not in names))
 
 
 def _conditions(session: EditSession, refs: list[NodeRef]) -> list[Plain]:
-    """Return the rules of a concurrency container: all good ends together lead on, each other one leads out."""
+    """Return the rules of a concurrency container: all success outcomes together lead on, each other one leads out."""
     names = {ref.name for ref in refs}
     good = {ref.name: session.ends(ref).success for ref in refs}
     onward = dict.fromkeys(
@@ -124,7 +126,9 @@ def _conditions(session: EditSession, refs: list[NodeRef]) -> list[Plain]:
     if len(onward) == 1 and all(good.values()):
         combinations = list(product(*good.values()))
         if len(combinations) > _MOST_RULES:
-            raise EditRefused("these end well in too many ways for conditions", hint="group fewer of them")
+            raise EditRefused(
+                "these nodes have too many combinations of success outcomes for conditions", hint="group fewer nodes"
+            )
         for each in combinations:
             found.append({next(iter(onward)): dict(zip(good, each, strict=True))})
     for ref in refs:
@@ -136,7 +140,7 @@ def _conditions(session: EditSession, refs: list[NodeRef]) -> list[Plain]:
 
 
 def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> tuple[list[NodeRef], dict[str, str]]:
-    """Return members in the order in which a tree would run them, and where success and failure lead."""
+    """Return members in the order in which a tree executes them, and the targets of success and failure."""
     by_name = {ref.name: ref for ref in refs}
     onward = "success" if kind == "sequence" else "failure"
     order: list[NodeRef] = []
@@ -145,14 +149,16 @@ def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> 
     while due is not None and kind != "parallel":
         ref = by_name[due]
         if ref in order:
-            raise EditRefused(f"`{due}` is run again, but a {kind} does not go back", hint="group them as a machine")
+            raise EditRefused(
+                f"`{due}` is entered again, but a {kind} has no loops", hint="group the nodes as a machine"
+            )
         order.append(ref)
         split = _split(session, ref)
         inside = [to for to in split[onward] if to in by_name]
         other = "failure" if onward == "success" else "success"
         back = [to for to in split[other] if to in by_name]
         if len(set(inside)) > 1 or back or (inside and len(set(split[onward])) > 1):
-            raise EditRefused(f"`{due}` goes on in more than one way", hint=f"only what is a plain {kind} can be one")
+            raise EditRefused(f"`{due}` has more than one next node", hint=f"only a plain chain can become a {kind}")
         due = inside[0] if inside else None
         for status in ways:
             ways[status] |= {to: None for to in split[status] if to not in by_name}
@@ -160,25 +166,28 @@ def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> 
         order.append(ref)
         split = _split(session, ref)
         if any(to in by_name for to in (*split["success"], *split["failure"])):
-            raise EditRefused(f"`{ref.name}` leads to another of them", hint="what runs side by side does not")
+            raise EditRefused(
+                f"`{ref.name}` leads to another selected node", hint="concurrent nodes cannot lead to one another"
+            )
         for status in ways:
             ways[status] |= dict.fromkeys(split[status])
     if len(order) < len(refs):
         left = next(ref.name for ref in refs if ref not in order)
         raise EditRefused(
-            f"`{left}` is not on the way from `{entry}`", hint=f"choose what follows one another as a {kind}"
+            f"`{left}` is not reachable from `{entry}`", hint=f"select nodes that follow one another as a {kind}"
         )
     for status, targets in ways.items():
         if len(targets) > 1:
             listed = ", ".join(f"`{to}`" for to in targets)
             raise EditRefused(
-                f"their {status} leads to {listed}, but that of a {kind} leads to one", hint="group them as a machine"
+                f"their {status} leads to {listed}, but a {kind} has one target per status",
+                hint="group them as a machine",
             )
     return order, {status: next(iter(targets)) for status, targets in ways.items() if targets}
 
 
 def _split(session: EditSession, ref: NodeRef) -> dict[str, list[str]]:
-    """Return where the good ends of a node lead, and the others."""
+    """Return the targets of the success outcomes of a node, and those of the others."""
     good = session.ends(ref).success
     wired = _transitions(ref)
     others = [to for mapping, _, to in transition_entries(ref.data) if mapping is not ref.data.get("transitions")]
@@ -191,7 +200,7 @@ def _split(session: EditSession, ref: NodeRef) -> dict[str, list[str]]:
 def _in_tree(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
     if edit.kind not in GROUPS:
         raise EditRefused(
-            f"inside a tree nodes are not grouped as a {edit.kind}", hint="use sequence, selector or parallel"
+            f"nodes inside a tree cannot be grouped as a {edit.kind}", hint="use sequence, selector or parallel"
         )
     made: Plain = {edit.kind: [ref.data for ref in refs]}
     if edit.name is not None:
@@ -199,7 +208,7 @@ def _in_tree(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[N
     children = list(session.outline.children(home))
     places = [next(i for i, child in enumerate(children) if child.data is ref.data) for ref in refs]
     if places != list(range(places[0], places[0] + len(places))):
-        raise EditRefused("these do not follow one another", hint="choose neighbours")
+        raise EditRefused("these nodes are not adjacent", hint="select adjacent nodes")
     if home.kind in SLOTS and len(refs) > 1:
         raise EditRefused(f"the children of a {home.kind} have roles", hint="group one of them")
     follow = ReferenceUpdate(session)
@@ -216,9 +225,9 @@ def _in_tree(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[N
 
 
 def _around_one(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
-    """Put a container around a branch of a concurrency container, or what a foreach repeats."""
+    """Group a branch of a concurrency container, or the child of a foreach."""
     if len(refs) > 1:
-        hint = "conditions speak of each of them; put a container around one"
+        hint = "conditions name each branch; group a single branch"
         raise EditRefused(f"branches of a {home.kind} cannot be grouped", hint=hint)
     if edit.kind not in MACHINES:
         raise EditRefused(f"a branch of a {home.kind} cannot be grouped as a {edit.kind}", hint="use a machine")

@@ -1,4 +1,4 @@
-"""Edits of where nodes are and what they are called: remove, rename, move."""
+"""Edits of positions and names of nodes: remove, rename, move."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.editing.outline import GROUPS, MACHINES, NAMED, NodeRef, Plain, own_
 
 
 def remove_nodes(session: EditSession, edit: RemoveNodes) -> None:
-    """Take nodes out."""
+    """Remove nodes."""
     refs = outermost([session.at(path) for path in edit.paths])
     follow = ReferenceUpdate(session)
     for ref in refs:
@@ -22,20 +22,20 @@ def remove_nodes(session: EditSession, edit: RemoveNodes) -> None:
 
 
 def rename_node(session: EditSession, edit: RenameNode) -> None:
-    """Give a node another name."""
+    """Rename a node."""
     ref = session.at(edit.path)
     container = ref.parent
     if container is None:
-        raise EditRefused("the outermost node has no name", hint="the document has: change its `name`")
+        raise EditRefused("the root node has no name", hint="change the `name` of the document")
     if container.kind == "foreach":
-        raise EditRefused("what a foreach repeats is always called `child`", where=ref.path)
+        raise EditRefused("the child of a foreach is always named `child`", where=ref.path)
     if edit.name == ref.name:
         return
     taken = {child.name for child in session.outline.children(container)}
     if edit.name in taken:
         raise EditRefused(f"`{container.path}` has a `{edit.name}` already", hint="choose another name")
     if container.kind in MACHINES and edit.name in session.outcomes_inside(container):
-        hint = "a name is either a child or an outcome; choose another"
+        hint = "a name is either a child or an outcome; choose another name"
         raise EditRefused(f"`{edit.name}` is an outcome of `{container.path}`", hint=hint)
     follow = ReferenceUpdate(session)
     if container.kind in NAMED:
@@ -53,12 +53,12 @@ def rename_node(session: EditSession, edit: RenameNode) -> None:
 
 
 def move_nodes(session: EditSession, edit: MoveNodes) -> None:
-    """Put nodes into another container, or elsewhere among their siblings."""
+    """Move nodes to another container, or to another position among their siblings."""
     container = session.at(edit.parent)
     refs = outermost([session.at(path) for path in edit.paths])
     for ref in refs:
         if container.path == ref.path or container.path.startswith(f"{ref.path}/"):
-            raise EditRefused(f"`{ref.path}` cannot be put into itself")
+            raise EditRefused(f"`{ref.path}` cannot be moved into itself")
     if all(ref.parent is container for ref in refs):
         _among_siblings(session, container, refs, edit.index)
         return
@@ -84,10 +84,10 @@ def move_nodes(session: EditSession, edit: MoveNodes) -> None:
 
 
 def detach_node(ref: NodeRef) -> None:
-    """Take a node out of its container; what refers to it is left as it is."""
+    """Remove a node from its container; references to it are unchanged."""
     container = ref.parent
     if container is None:
-        raise EditRefused("the outermost node cannot be taken out", hint="delete the document instead")
+        raise EditRefused("the root node cannot be removed", hint="delete the document instead")
     if container.kind in NAMED:
         named_children(container).pop(ref.name, None)
     elif container.kind in GROUPS:
@@ -101,7 +101,7 @@ def detach_node(ref: NodeRef) -> None:
 
 
 def outermost(refs: list[NodeRef]) -> list[NodeRef]:
-    """Leave out nodes that are inside others of them, and such that are named twice."""
+    """Drop nodes that are inside others of the list, and duplicates."""
     found: dict[str, NodeRef] = {ref.path: ref for ref in refs}
     return [
         ref for path, ref in found.items() if not any(path.startswith(f"{other}/") for other in found if other != path)
@@ -133,7 +133,7 @@ def _among_siblings(session: EditSession, container: NodeRef, refs: list[NodeRef
 def _check_stays(session: EditSession, refs: list[NodeRef]) -> None:
     for ref in refs:
         if ref.parent is None:
-            raise EditRefused("the outermost node cannot be moved")
+            raise EditRefused("the root node cannot be moved")
     del session
 
 

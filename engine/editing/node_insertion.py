@@ -1,4 +1,4 @@
-"""Edits that put nodes into a container: new ones, copies, and such from a clipboard."""
+"""Edits that insert nodes into a container: new nodes, copies, and nodes from a clipboard."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _EMPTY: dict[str, object] = {
 
 
 def add_node(session: EditSession, edit: AddNode) -> None:
-    """Put a new node into a container."""
+    """Insert a new node into a container."""
     if edit.yaml:
         paste(session, PasteNodes(parent=edit.parent, yaml=edit.yaml, position=edit.position, index=edit.index))
         return
@@ -79,11 +79,13 @@ def add_node(session: EditSession, edit: AddNode) -> None:
 
 
 def duplicate(session: EditSession, edit: DuplicateNodes) -> None:
-    """Put copies of nodes beside them."""
+    """Insert copies of nodes next to them."""
     refs = [session.at(path) for path in edit.paths]
     for ref in refs:
         if ref.parent is None or (ref.parent.kind not in NAMED and ref.parent.kind not in GROUPS):
-            raise EditRefused(f"`{ref.path}` has room for one only", hint="duplicate it inside another container")
+            raise EditRefused(
+                f"`{ref.path}` is in a container with one child only", hint="duplicate it inside another container"
+            )
     for home in {id(ref.parent): ref.parent for ref in refs if ref.parent is not None}.values():
         mine = [ref for ref in refs if ref.parent is home]
         view = cast("Plain", session.draft.data.get("view") or {})
@@ -101,7 +103,7 @@ def duplicate(session: EditSession, edit: DuplicateNodes) -> None:
 
 
 def paste(session: EditSession, edit: PasteNodes) -> None:
-    """Put nodes from a clipboard into a container."""
+    """Insert nodes from a clipboard into a container."""
     container = session.at(edit.parent)
     try:
         pasted = session.draft.adopt(edit.yaml)
@@ -110,7 +112,7 @@ def paste(session: EditSession, edit: PasteNodes) -> None:
     for name, node in pasted.items():
         kind = kind_of(cast("Plain", node), in_tree=True) if isinstance(node, dict) else ""
         if not kind or not NAME.fullmatch(name):
-            raise EditRefused(f"`{name}` is no node", hint="paste what `copy` gave: names and their nodes")
+            raise EditRefused(f"`{name}` is not a node", hint="paste the result of `copy`: names and their nodes")
     if not pasted:
         raise EditRefused("there is nothing to paste", hint="copy some nodes first")
     nodes = {name: cast("Plain", node) for name, node in pasted.items()}
@@ -134,15 +136,15 @@ def insert_nodes(
     named: bool = False,
     foreign: bool = False,
 ) -> None:
-    """Put nodes that are in no container into one, under free names, and let them fit there.
+    """Insert detached nodes into a container, under free names, and adapt them to it.
 
     Args:
         session: The session.
-        container: Where to.
-        nodes: The nodes by the names they would like to have; transitions among them follow.
-        index: The place of the first; the end without one.
-        named: Whether the names were asked for, and so are written also where they would go without saying.
-        foreign: Whether the nodes may come from another behavior, so that nothing is known of where they lead to.
+        container: The container.
+        nodes: The nodes by preferred name; transitions among them are updated.
+        index: Position of the first node; by default the end.
+        named: Whether the names were requested, so that they are written even if they are the default.
+        foreign: Whether the nodes may come from another behavior, so that their targets are unknown.
     """
     _check_room(container, nodes)
     names: dict[str, str] = {}
@@ -164,12 +166,12 @@ def insert_nodes(
 
 
 def drop_unsupported_keys(session: EditSession, container: NodeRef, node: Plain) -> None:
-    """Take from a node what it cannot have in a container of this kind."""
+    """Remove the fields of a node that are invalid in a container of this kind."""
     tree = container.kind == "tree" or container.is_part
     kind = kind_of(node, in_tree=True)
     if not tree:
         if kind in TREE_KINDS or kind in WRAPPERS:
-            raise EditRefused(f"a `{kind}` stands only inside a tree", hint="put it into a `tree`")
+            raise EditRefused(f"a `{kind}` is valid only inside a tree", hint="insert it into a `tree`")
         node.pop("name", None)
         node.pop("success", None)
         node.pop("post", None)
@@ -187,7 +189,7 @@ def drop_unsupported_keys(session: EditSession, container: NodeRef, node: Plain)
 
 
 def snake_case(runs: str) -> str:
-    """Return a name for what is run: `motion.MoveJoints` is `move_joints`, `sub/pick.yaml` is `pick`."""
+    """Return a name for what a node executes: `motion.MoveJoints` is `move_joints`, `sub/pick.yaml` is `pick`."""
     last = PurePosixPath(runs).stem if runs.endswith((".yaml", ".yml", ".json")) else re.split(r"[.:/]", runs)[-1]
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", last).lower()
 
@@ -195,7 +197,7 @@ def snake_case(runs: str) -> str:
 def _new_node(edit: AddNode) -> Plain:
     if edit.kind in _RUNNING:
         if not edit.runs:
-            raise EditRefused(f"a {edit.kind} runs something", hint="say which in `runs`")
+            raise EditRefused(f"a {edit.kind} requires `runs`", hint="set `runs` to what it executes")
         given = cast("Plain", plain_value(edit.parameters))
         return {edit.kind: edit.runs, **({"with": given} if given else {})}
     if edit.kind not in _EMPTY:
@@ -205,32 +207,32 @@ def _new_node(edit: AddNode) -> Plain:
 
 def _check_room(container: NodeRef, nodes: dict[str, Plain]) -> None:
     if container.kind not in CONTAINERS:
-        raise EditRefused(f"`{container.path}` holds no other nodes", hint="put it into a container")
+        raise EditRefused(f"`{container.path}` cannot contain nodes", hint="insert the node into a container")
     if container.kind in SLOTS:
         free = _free_slots(container)
         if len(nodes) > len(free):
             left = f"only {', '.join(f'`{key}`' for key in free)} is free" if free else "none of its roles is free"
-            raise EditRefused(f"`{container.path}` has no room: {left}", hint="remove a child first")
+            raise EditRefused(f"`{container.path}` is full: {left}", hint="remove a child first")
     elif container.kind not in NAMED and container.kind not in GROUPS:
         inside = container.data.get("tree") if container.kind == "tree" else container.body.get("child")
         if inside or len(nodes) > 1:
             hint = (
-                "put them into a container inside"
+                "insert them into a container inside"
                 if len(nodes) > 1
-                else "remove that first, or put it into a container inside"
+                else "remove that child first, or insert into a container inside"
             )
-            raise EditRefused(f"`{container.path}` has one child only", hint=hint)
+            raise EditRefused(f"`{container.path}` can have one child only", hint=hint)
 
 
 def _free_slots(container: NodeRef, index: int | None = None) -> list[str]:
-    """Return the roles that no child has, those from a place among all on first."""
+    """Return the free roles, beginning with those from a position on."""
     order = SLOTS[container.kind]
     start = 0 if index is None else max(0, min(index, len(order) - 1))
     return [key for key in (*order[start:], *order[:start]) if not isinstance(container.body.get(key), dict)]
 
 
 def _put_in_slots(container: NodeRef, nodes: dict[str, Plain], index: int | None) -> None:
-    """Give new children the free roles, in the order in which they are asked."""
+    """Assign the free roles to new children, in order."""
     order = SLOTS[container.kind]
     free = sorted(_free_slots(container, index)[: len(nodes)], key=order.index)
     body = container.data.get(container.kind)
@@ -293,7 +295,7 @@ def _put_in_tree(
 
 
 def set_tree_node_name(node: Plain, name: str) -> None:
-    """Write the name of a part of a tree, in front of the rest."""
+    """Write the name of a tree node, before its other keys."""
     if "name" in node:
         node["name"] = name
     elif own_name(node) != name:
@@ -305,7 +307,7 @@ def set_tree_node_name(node: Plain, name: str) -> None:
 def _rewire(
     session: EditSession, container: NodeRef, nodes: dict[str, Plain], names: dict[str, str], known: set[str] | None
 ) -> None:
-    """Let new children of a machine lead to one another by their new names, and else only to what is `known`."""
+    """Update transitions among new children of a machine to their new names; remove targets that are not `known`."""
     machine = session.at(session.outline.path_of(container.data))
     for node in nodes.values():
         for mapping, key, target in list(transition_entries(node)):
@@ -330,7 +332,7 @@ def _check_edge(session: EditSession, container: NodeRef, edge: TransitionRef | 
     wired = cast("Plain", source.data.get("transitions") or {})
     if container.kind not in MACHINES or edge.outcome not in wired:
         raise EditRefused(
-            f"there is no arrow from `{source.path}` by `{edge.outcome}`", hint=did_you_mean(edge.outcome, wired)
+            f"there is no transition of `{source.path}` for `{edge.outcome}`", hint=did_you_mean(edge.outcome, wired)
         )
 
 

@@ -1,4 +1,4 @@
-"""Finds, for each entry of changed data, the entry of the text that it was before."""
+"""Matches each entry of changed data to its original entry in the text."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import cast
 from engine.editing.syntax import Collection, Member, Scalar
 
 EntryMatch = tuple[str | None, object, Member | None]
-"""A key (None in a list), its value, and the entry of the text that they were, if any."""
+"""A key (None in a list), its value, and the original entry in the text, if any."""
 
 
 def match_entries(
     source: Collection, value: dict[str, object] | list[object], sources: Mapping[int, Collection]
 ) -> list[EntryMatch]:
-    """Return the entries of `value` in order, each with the entry of `source` that it was.
+    """Return the entries of `value` in order, each with its original entry in `source`.
 
-    Collections are known by identity, under whatever key; what is left is known by its key, or in a list by
-    what it says, then by where it stands.
+    Collections match by identity, under any key; other entries match by key or, in a list, by
+    value, then by position.
     """
     if isinstance(value, dict):
         return _entries(source, value, sources)
@@ -25,7 +25,7 @@ def match_entries(
 
 
 def is_same_value(a: object, b: object) -> bool:
-    """Tell whether two values that are no collections are the same, also in kind: 1 is not 1.0 and not true."""
+    """Return whether two scalars are equal in value and type: 1 is not 1.0 and not true."""
     return type(a) is type(b) and a == b
 
 
@@ -52,7 +52,7 @@ def _entries(source: Collection, value: dict[str, object], sources: Mapping[int,
     left = [member for member in source.members if id(member) not in taken and str(_key(member)) not in value]
     fresh = [key for key in value if key not in found]
     if len(left) == len(fresh):
-        # Keys of which nothing but the name has changed.
+        # Keys of which only the name has changed.
         found |= {key: own for key, own in zip(fresh, left, strict=True) if _says(own, value[key])}
     return [(key, each, found.get(key)) for key, each in value.items()]
 
@@ -95,7 +95,7 @@ def _says(member: Member, value: object) -> bool:
 
 
 def graft(old: object, new: object) -> object:
-    """Return `new` made of the dicts and lists of `old` where they stand for the same, so that their text is kept."""
+    """Return `new` built from the dicts and lists of `old` where they correspond, so that their text is kept."""
     if isinstance(old, dict) and isinstance(new, dict):
         kept = cast("dict[str, object]", old)
         made = {
@@ -122,7 +122,7 @@ def _grafted(old: list[object], new: list[object]) -> list[object]:
         else:
             made[number] = graft(left.pop(place), each)
     for number in due:
-        # Of those that say something else now, the one of like kind that stood first.
+        # Of the entries whose value changed, the first one of the same type.
         place = next((i for i, was in enumerate(left) if type(was) is type(new[number])), None)
         made[number] = new[number] if place is None else graft(left.pop(place), new[number])
     return made

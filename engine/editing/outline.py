@@ -1,4 +1,4 @@
-"""The nodes of a document as plain data, also of one that is not finished or has mistakes."""
+"""The nodes of a document as plain data, also of an incomplete or invalid document."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ MACHINES = ("machine", "priority")
 NAMED = ("machine", "priority", "concurrency")
 """Containers whose children have keys."""
 GROUPS = ("sequence", "selector", "parallel")
-"""Parts of a tree with any number of children."""
+"""Tree nodes with any number of children."""
 SINGLES = ("inverter", "one_shot", "repeat", "cooldown", "remap", "condition")
-"""Decorators: parts of a tree with one child."""
+"""Decorators: tree nodes with one child."""
 CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *SLOTS, *WRAPPERS)
 
 
 @dataclass(frozen=True, eq=False)
 class NodeRef:
-    """A node in its place: `keys` lead to it from the document, `parent` is the node around it."""
+    """A node and its position: `keys` lead to it from the document, `parent` is the surrounding node."""
 
     path: str
     name: str
@@ -38,23 +38,23 @@ class NodeRef:
 
     @property
     def in_tree(self) -> bool:
-        """True for a part or leaf of a tree."""
+        """True for a node of a tree, inner node or leaf."""
         return self.parent is not None and (self.parent.kind == "tree" or self.parent.is_part)
 
     @property
     def is_part(self) -> bool:
-        """True for what stands only inside a tree."""
+        """True for a kind that is valid only inside a tree."""
         return self.kind in TREE_KINDS or self.kind in WRAPPERS
 
     @property
     def body(self) -> Plain:
-        """What is under the key of its kind, where that is a mapping; else an empty one."""
+        """The mapping under the key of its kind; empty if there is no mapping."""
         found = self.data.get(self.kind)
         return cast("Plain", found) if isinstance(found, dict) else {}
 
     @property
     def role(self) -> str:
-        """The key by which the part around it knows it, such as `then`; empty where children have no roles."""
+        """Its key in the surrounding tree node, such as `then`; empty if children have no roles."""
         return str(self.keys[-1]) if self.parent is not None and self.parent.kind in SLOTS else ""
 
     @property
@@ -74,7 +74,7 @@ class Outline:
             self._walk(cast("Plain", root))
 
     def at(self, path: str) -> NodeRef:
-        """Return a node; raises EditRefused where there is none."""
+        """Return a node; raises EditRefused if there is no such node."""
         if path not in self.refs:
             raise EditRefused(f"there is no node `{path}`", hint=did_you_mean(path, self.refs))
         return self.refs[path]
@@ -101,7 +101,7 @@ class Outline:
 
 
 def kind_of(node: Plain, *, in_tree: bool = False) -> str:
-    """Return the key that says what a node is; empty where it has none."""
+    """Return the key that defines the kind of a node; empty if there is none."""
     for kind in (*KINDS, *TREE_KINDS):
         if kind in node:
             return kind
@@ -142,7 +142,7 @@ def child_entries(node: Plain) -> list[tuple[str, Keys, Plain]]:
 
 
 def own_name(node: Plain) -> str:
-    """Return the name of a node inside a tree: as given, else after what it is."""
+    """Return the name of a node inside a tree: as given, else derived from its kind."""
     given = node.get("name")
     if isinstance(given, str):
         return given
@@ -153,12 +153,12 @@ def own_name(node: Plain) -> str:
 
 
 def tree_names(children: list[Plain]) -> list[str]:
-    """Name the children of a composite; a name that is taken gets a number."""
+    """Return names for the children of a composite; a name that is taken gets a number."""
     return numbered(map(own_name, children))
 
 
 def transition_entries(node: Plain) -> Iterator[tuple[Plain, str, str]]:
-    """Go through where a node leads: the mapping that says so, the key in it, the target."""
+    """Iterate over the targets of a node: the mapping that contains it, the key in it, the target."""
     transitions = node.get("transitions")
     if isinstance(transitions, dict):
         for outcome, target in list(cast("Plain", transitions).items()):

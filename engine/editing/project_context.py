@@ -1,4 +1,4 @@
-"""How the nodes of a document can end, as far as states and other documents say, also where it is not finished."""
+"""Outcomes of the nodes of a document, from states and other documents; the document may be incomplete."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from engine.errors import DocumentError, StateError
 
 @dataclass(frozen=True)
 class NodeOutcomes:
-    """The outcomes of something, and those of them that mean that nothing went wrong."""
+    """The outcomes of a node, and those of them that are a success."""
 
     outcomes: tuple[str, ...]
     success: tuple[str, ...]
 
 
 StoredEntryNames = Callable[[Path], Entries | None]
-"""The names, by kind, of the entries that the store of a cell holds, by the cell's file; None where it is not open."""
+"""Returns the names, by kind, of the entries in the store of a cell, by the cell's file; None if it is not open."""
 
 
 @dataclass
 class ProjectContext:
-    """What is known around a document.
+    """Context of a document: states, stores, and the files that it may reference.
 
     Args:
         catalogue: The states by name.
-        folder: Where the document lies; references are relative to it.
-        project: Folder that references may not lead out of.
-        stored: What the stores of open cells hold.
+        folder: Folder of the document; references are relative to it.
+        project: Folder that references must not leave.
+        stored: Entries in the stores of open cells.
     """
 
     catalogue: Catalogue
@@ -47,7 +47,7 @@ class ProjectContext:
     _known: dict[str, NodeOutcomes | None] = field(default_factory=dict[str, "NodeOutcomes | None"])
 
     def signature(self, state: str) -> StateSignature | None:
-        """Return what a state declares; None where there is none, or it is broken."""
+        """Return the signature of a state; None if there is no such state, or it is broken."""
         try:
             found = self.catalogue.get(state)
             return read_signature(found) if found is not None else None
@@ -55,20 +55,20 @@ class ProjectContext:
             return None  # the check says what is wrong with it
 
     def file_of(self, reference: str) -> Path | None:
-        """Return the file of a referred behavior; None where it is missing or outside of the project."""
+        """Return the file of a referenced behavior; None if it is missing or outside the project."""
         try:
             file = (self.folder / reference).resolve()
             return file if file.is_relative_to(self.project.resolve()) and file.is_file() else None
         except (OSError, ValueError):
-            return None  # no path that this system can have
+            return None  # not a valid path on this system
 
     def ends(self, outline: Outline, ref: NodeRef, *, known: dict[str, NodeOutcomes] | None = None) -> NodeOutcomes:
-        """Return how a node can end, apart from timeouts, guards and errors.
+        """Return the outcomes of a node, without those of timeouts, guards and errors.
 
         Args:
             outline: All nodes.
-            ref: Which.
-            known: What was found by path before, as long as nothing is changed; more comes to it.
+            ref: The node.
+            known: Cache of results by path, valid until the document changes; this call adds to it.
         """
         if known is None:
             return self._found(outline, ref, {})
@@ -148,13 +148,13 @@ class ProjectContext:
 
 
 def rules(ref: NodeRef) -> list[ConcurrencyCondition]:
-    """Return the conditions of a concurrency container in order; nothing for another node."""
+    """Return the conditions of a concurrency container in order; empty for another node."""
     found: list[ConcurrencyCondition] = []
     listed = ref.body.get("conditions")
     for entry in cast("list[object]", listed) if isinstance(listed, list) else ():
         if isinstance(entry, dict):
             written = cast("Plain", entry)
-            # One that says too much is shown as several.
+            # A condition with several consequences is shown as several conditions.
             several = ({key: value} for key, value in written.items())
             each = (written,) if read_entry(written) is not None else several
             found += [rule for one in each if (rule := read_entry(one)) is not None]
@@ -162,7 +162,7 @@ def rules(ref: NodeRef) -> list[ConcurrencyCondition]:
 
 
 def texts(value: object) -> tuple[str, ...]:
-    """Return the text items of a list; nothing for anything else."""
+    """Return the text items of a list; empty for another value."""
     items: Iterable[object] = cast("list[object]", value) if isinstance(value, list) else ()
     return tuple(item for item in items if isinstance(item, str))
 

@@ -1,4 +1,4 @@
-"""Which behaviors refer to which files, and how they follow when a file goes elsewhere."""
+"""References between behaviors, and their update when a file moves."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from engine.errors import DocumentError
 
 @dataclass(frozen=True, kw_only=True)
 class ReferringBehavior:
-    """A behavior that refers to another one: its id and name, and the nodes that do."""
+    """A behavior that references another one: its id and name, and the referencing nodes."""
 
     id: str
     name: str
@@ -26,7 +26,7 @@ class ReferringBehavior:
 
 @dataclass(frozen=True, kw_only=True)
 class MoveResult:
-    """A document at its new place; `followed` are those whose references were changed, `left` those that were not."""
+    """A moved document; `followed` are the documents whose references were updated, `left` those that failed."""
 
     opened: StoredDocument
     followed: tuple[str, ...] = ()
@@ -34,17 +34,17 @@ class MoveResult:
 
 
 def referrers(documents: DocumentRepository, document_id: str) -> tuple[ReferringBehavior, ...]:
-    """Return the behaviors of the project that refer to a document, sorted by id, itself left out."""
+    """Return the behaviors of the project that reference a document, sorted by id, without the document itself."""
     return tuple(referrer for referrer, _ in _referring(documents, document_id))
 
 
 def move_with_references(documents: DocumentRepository, document_id: str, new_id: str, *, follow: bool) -> MoveResult:
-    """Give a document another id; with `follow`, every reference to it, and its own, are written anew.
+    """Rename a document; with `follow`, update every reference to it, and its own references.
 
-    A reference that cannot be followed, as its file has mistakes or changes meanwhile, is told as `left`.
+    A document whose references cannot be updated, because it is invalid or changes concurrently, is listed in `left`.
 
     Raises:
-        DocumentError: there is no such document, the new id is taken, or it is of another format.
+        DocumentError: there is no such document, the new id is taken, or it has another format.
     """
     referring = _referring(documents, document_id) if follow else []
     documents.rename(document_id, new_id)
@@ -67,13 +67,13 @@ def _referring(documents: DocumentRepository, document_id: str) -> list[tuple[Re
     found: list[tuple[ReferringBehavior, StoredDocument]] = []
     for other in sorted(documents.stamps()):
         try:
-            # What does not even hold the name of the file is not worth being parsed.
+            # A text that does not contain the name of the file needs no parsing.
             if other == document_id or name.encode() not in documents.file_of(other).read_bytes():
                 continue
             opened = documents.open(other)
             data = Draft(opened.text, file=other).data
         except (DocumentError, OSError):
-            continue  # no behavior, or not to be read: the list of behaviors says what is wrong with it
+            continue  # not a behavior, or unreadable: the list of behaviors reports the problem
         folder = documents.file_of(other).parent
         written = ((path, ref.data.get("behavior")) for path, ref in Outline(data).refs.items())
         paths = tuple(path for path, said in written if isinstance(said, str) and _names(folder, said, target))
@@ -89,7 +89,7 @@ def _names(folder: Path, written: str, target: Path) -> bool:
     try:
         return (folder / written).resolve() == target
     except (OSError, ValueError):
-        return False  # no path that this system can have
+        return False  # not a valid path on this system
 
 
 def _relative(document_id: str, of: str) -> str:
@@ -97,7 +97,7 @@ def _relative(document_id: str, of: str) -> str:
 
 
 def _own_edits(text: str, old_id: str, new_id: str) -> Iterator[AnyEdit]:
-    """Return the edits that let what a document refers to be found from its new folder."""
+    """Return the edits that adapt the references of a document to its new folder."""
     folder = PurePosixPath(old_id).parent
     data = Draft(text, file=new_id).data
     for path, ref in Outline(data).refs.items():
@@ -116,5 +116,5 @@ def _rewrite(documents: DocumentRepository, opened: StoredDocument, edits: Seque
     try:
         documents.save(opened.id, done.text, base_hash=opened.hash)
     except DocumentError:
-        return False  # it has changed meanwhile, or is not to be written; whoever moves it is told
+        return False  # it changed concurrently, or cannot be written; the result reports it
     return True

@@ -1,6 +1,6 @@
-"""The text of a document as a tree of spans: where every key, value, comment and line of it begins and ends.
+"""The text of a document as a tree of spans: start and end of every key, value, comment and line.
 
-What is read here has passed the strict reader; these spans let a writer keep each byte it does not change.
+The text has passed the strict reader; the spans let a writer preserve each byte it does not change.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from engine.errors import DocumentError, Position
 _VALUES = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent)
 _ENDS = (yaml.MappingEndEvent, yaml.SequenceEndEvent)
 _LOST = 2
-"""By so much two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
+"""Number of characters by which two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
 
 
 class Scalar(msgspec.Struct, eq=False, gc=False, tag=True):
-    """One value that is no collection; `style` is its quote, `|`, `>` or empty for plain text."""
+    """One scalar value; `style` is its quote, `|`, `>` or empty for plain text."""
 
     start: int
     end: int
@@ -34,9 +34,9 @@ class Scalar(msgspec.Struct, eq=False, gc=False, tag=True):
 class Member(msgspec.Struct, eq=False, gc=False):
     """One entry of a mapping or item of a list, with the lines and comments that belong to it.
 
-    In a block collection `start` is where its own lines begin (blank lines and comments above it included) and `stop`
-    is the end of its last line; in a flow collection both are those of the entry itself. `at` is where
-    its key or its dash stands.
+    In a block collection, `start` is the start of its lines (including blank lines and comments above it) and `stop`
+    the end of its last line; in a flow collection, both are those of the entry itself. `at` is the position
+    of its key or dash.
     """
 
     start: int
@@ -47,7 +47,7 @@ class Member(msgspec.Struct, eq=False, gc=False):
 
 
 class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
-    """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
+    """A mapping or list; `data` is the plain dict or list parsed from it, `column` the column of its members."""
 
     origin: SourceText
     start: int
@@ -68,13 +68,13 @@ Syntax = Scalar | Collection
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
 class SourceText:
-    """A text that was read. It knows nothing of what stands in it, so that a tree goes as soon as nobody needs it."""
+    """A text that was read. It has no reference to its tree, so that the tree is freed when no one uses it."""
 
     text: str
     json: bool
 
     def indent_at(self, offset: int) -> int:
-        """Return the indentation of the line that `offset` is in."""
+        """Return the indentation of the line that contains `offset`."""
         start = self.text.rfind("\n", 0, offset) + 1
         return len(self.text) - start - len(self.text[start:].lstrip(" ")) if start < len(self.text) else 0
 
@@ -87,7 +87,7 @@ class SyntaxTree:
     root: Syntax
 
     def collections(self) -> Iterator[Collection]:
-        """Go through every collection, those outside first."""
+        """Iterate over every collection, outer ones first."""
         due: list[Syntax] = [self.root]
         while due:
             found = due.pop()
@@ -113,15 +113,15 @@ def read_syntax(text: str, *, file: str) -> SyntaxTree:
     """Read YAML or JSON text with lines that end in a line feed.
 
     Raises:
-        DocumentError: the strict reader refuses it, or it is no mapping; `where` is the position.
+        DocumentError: the strict reader rejects it, or it is not a mapping; `where` is the position.
     """
     origin = SourceText(text, file.endswith(".json"))
     reading = StrictReader(text, file=file, places=False)
     found = _Reader(origin, reading).read()
     if not isinstance(reading.source().data, dict) or found is None:
         where = Position(file=file, line=1, column=1)
-        raise DocumentError("the document is no mapping", where=where, hint="begin with `flexcell: 1`")
-    # A file may be called `.json` and hold YAML, which the reader takes: then it goes on as YAML.
+        raise DocumentError("the document is not a mapping", where=where, hint="begin it with `flexcell: 1`")
+    # A `.json` file may contain YAML, which the reader accepts: then it is treated as YAML.
     origin.json = origin.json and isinstance(found, Collection) and found.flow
     return SyntaxTree(origin, found)
 
@@ -135,18 +135,18 @@ class _Reader:
         self._events = cast("Iterator[_Event]", iter(reading))
         self._next = self._events.__next__
         pairs = SURROGATE_PAIR.finditer(self._text) if origin.json else ()
-        # Where the text that was read is shorter than the one that is looked at.
+        # The parsed text may be shorter than the original one.
         self._shorter = [pair.end() - _LOST * (number + 1) for number, pair in enumerate(pairs)]
 
     def _span(self, event: _Event) -> tuple[int, int]:
-        """Return where an event begins and ends in the text as it is."""
+        """Return start and end of an event in the original text."""
         start, end = event.start_mark.index, event.end_mark.index
         if not self._shorter:
             return start, end
         return start + _LOST * bisect_right(self._shorter, start), end + _LOST * bisect_right(self._shorter, end)
 
     def read(self) -> Syntax | None:
-        """Read all of the text and return its outermost value; None where it is empty."""
+        """Read the whole text and return its outermost value; None if it is empty."""
         found: Syntax | None = None
         for event in self._events:
             if found is None and cast("type", type(event)) in _VALUES:
@@ -154,7 +154,7 @@ class _Reader:
         return found
 
     def _value(self, event: _Event, outside: int) -> Syntax:
-        """Read a value; `outside` is where its key or dash ends, for values that are left out."""
+        """Read a value; `outside` is the end of its key or dash, for omitted values."""
         kind = cast("type", type(event))
         if kind is yaml.ScalarEvent:
             return self._scalar(event, outside)
@@ -177,7 +177,7 @@ class _Reader:
         return made
 
     def _head(self, start: int, column: int) -> int:
-        """Return where the comments begin that stand directly above the first member of a block."""
+        """Return the start of the comments directly above the first member of a block."""
         text = self._text
         line = text.rfind("\n", 0, start) + 1
         if text[line:start].strip(" "):
@@ -213,7 +213,7 @@ class _Reader:
     def _scalar(self, event: _Event, outside: int) -> Scalar:
         (start, end), style = self._span(event), event.style or ""
         if start == end:
-            # Left out altogether: it stands behind the colon, if there is one.
+            # An omitted value: its position is after the colon, if there is one.
             colon = skip_space(self._text, outside)
             start = end = colon + 1 if self._text[colon : colon + 1] == ":" else outside
         elif style in ("|", ">"):
@@ -223,12 +223,12 @@ class _Reader:
         return Scalar(start, end, self._reading.said, style)
 
     def _explicit(self, at: int, previous: int) -> int:
-        """Return where `? ` stands in front of a key, else the key."""
+        """Return the position of a `? ` before a key, else of the key."""
         before = self._text[previous:at].rstrip(" ")
         return previous + len(before) - 1 if before.endswith("?") else at
 
     def _last_line(self, end: int, column: int) -> int:
-        """Return the end of the line at `end`, or of the last comment below it that stands deeper than `column`."""
+        """Return the end of the line at `end`, or of the last comment below it indented deeper than `column`."""
         text = self._text
         stop = _line_end(text, end)
         at = stop
@@ -245,7 +245,7 @@ class _Reader:
 
 
 def skip_space(text: str, at: int) -> int:
-    """Return where something other than space, line ends, commas and comments begins, from `at` on."""
+    """Return the first position from `at` on that is not space, line end, comma or comment."""
     while at < len(text):
         if text[at] in " \t\n\r,":
             at += 1

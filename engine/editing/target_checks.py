@@ -1,4 +1,4 @@
-"""Targets of texts under edit, looked at in a process of its own: the server and its loop go on meanwhile."""
+"""Checks the targets of texts under edit in a separate process, without blocking the server and its event loop."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from engine.host.child_process import start_child
 
 START = "from engine.editing.target_process import main; main()"
 LIMIT_S = 60.0
-"""What an answer may take, with all that a first one loads and compiles on a busy machine."""
-_WHAT = "the process that looks at targets"
+"""Time limit of a response, including what the first one loads and compiles on a busy computer."""
+_WHAT = "the target check process"
 _LONGEST_LINE = 8_000_000
 _log = logging.getLogger("flexcell.documents")
 
 
 class TargetChecks:
-    """Puts arms to targets, one text after the other; belongs to one event loop. `close` ends the process.
+    """Checks targets of one text after the other; belongs to one event loop. `close` ends the process.
 
-    The process starts with the first text that names a cell. One that does not answer in time, or dies, is ended, and
-    the next text has a new one.
+    The process starts with the first text that names a cell. If it does not answer in time, or dies, it is ended, and
+    the next text starts a new one.
 
     Args:
-        project: Folder that texts may not lead out of.
-        limit_s: What an answer may take.
+        project: Folder that references of texts must not leave.
+        limit_s: Time limit of a response.
         start: The Python code of the process.
     """
 
@@ -46,17 +46,17 @@ class TargetChecks:
 
     @property
     def pid(self) -> int:
-        """The process id, 0 while there is none."""
+        """The process id; 0 while no process runs."""
         return self._process.pid if self._process is not None else 0
 
     async def findings(self, asker: str, file: Path, text: str) -> TargetFindings | None:
-        """Return the targets in a text that an arm of its cell cannot be at.
+        """Return the targets in a text that an arm of its cell cannot take.
 
-        None where the same asker has asked for a newer text before this one had its turn.
+        None if the same client has requested a check of a newer text before this check started.
 
         Args:
-            asker: Who asks: a page and its document.
-            file: Where the text would stand.
+            asker: The client: a page and its document.
+            file: File that the text belongs to.
             text: A behavior document.
         """
         self._numbers += 1
@@ -75,7 +75,7 @@ class TargetChecks:
             streams[1].close()
         process, self._process = self._process, None
         if process is not None:
-            # It holds nothing that could be lost.
+            # The process has no state that could be lost.
             process.kill()
             process.wait()
 
@@ -91,7 +91,7 @@ class TargetChecks:
             self.close()
             return self._unknown(str(error) or type(error).__name__)
         except asyncio.CancelledError:
-            # Its answer would be taken for that to the next text.
+            # Its late response would be mistaken for the response to the next text.
             self.close()
             raise
 
@@ -118,5 +118,5 @@ class TargetChecks:
         return self._streams
 
     def _unknown(self, reason: str) -> TargetFindings:
-        _log.warning("the targets of a document are not known: %s", reason)
-        return TargetFindings(problem=f"the targets are not known: {reason}")
+        _log.warning("the targets of a document cannot be checked: %s", reason)
+        return TargetFindings(problem=f"the targets cannot be checked: {reason}")

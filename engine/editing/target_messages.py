@@ -1,4 +1,4 @@
-"""What goes between the server and the process that puts arms to targets: one line of JSON each way."""
+"""Messages between the server and the target check process: one line of JSON per message."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from engine.library.behavior_library import FindingView
 
 
 class TargetRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """A text to look at, as if it stood in `file` of `project`; both are absolute."""
+    """Request: a text to check, as the content of `file` in `project`; both paths are absolute."""
 
     project: str
     file: str
@@ -16,7 +16,7 @@ class TargetRequest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TargetFindings(msgspec.Struct, frozen=True, kw_only=True):
-    """The targets that an arm cannot be at; `problem` says why they are not known."""
+    """Response: the targets that an arm cannot take; `problem` says why they could not be checked."""
 
     findings: tuple[FindingView, ...] = ()
     problem: str = ""

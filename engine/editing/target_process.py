@@ -1,4 +1,4 @@
-"""The process that puts arms to the targets of texts under edit, where the robots' libraries hold up nobody."""
+"""The target check process: computes arm postures at the targets of texts, separate from the server."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _NICER_BY = 10
 
 
 def main() -> None:
-    """Answer on the socket whose descriptor is the first argument until the other end closes it."""
+    """Serve the socket whose descriptor is the first argument until the other end closes it."""
     connection = socket.socket(fileno=int(sys.argv[1]))
     set_parent_death_signal(connection)
-    # Arms that move, and the answer to the next edit, go first.
+    # Moving arms, and the response to the next edit, have priority.
     os.nice(_NICER_BY)
     catalogues: dict[str, Catalogue] = {}
     with connection.makefile("rb") as requests:
@@ -47,9 +47,9 @@ def _answered(request: TargetRequest, catalogues: dict[str, Catalogue]) -> Targe
 
 
 def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) -> TargetFindings:
-    """Return the targets in a text, as if it stood in `file`, that an arm of its own cell cannot be at.
+    """Return the targets in a text, as the content of `file`, that an arm of its own cell cannot take.
 
-    A text that cannot be read, or leads out of the project, has none: the check says so.
+    For a text that cannot be read, or leads out of the project, the result is empty: the check reports that.
     """
     context = ProjectContext(catalogue, file.parent, project)
     try:

@@ -1,4 +1,4 @@
-"""The documents that a new behavior begins as."""
+"""Templates of new behaviors."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TEMPLATES: Mapping[str, str] = {
 
 
 def new_text(template: str, *, name: str) -> str:
-    """Return the text of a new behavior, yet without nodes.
+    """Return the text of a new behavior without nodes.
 
     Raises:
         DocumentError: there is no such template.

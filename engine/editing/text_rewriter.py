@@ -1,8 +1,8 @@
-"""Writes changed plain data into the text it was read from: what was not changed keeps each of its bytes.
+"""Writes changed plain data into the text it was read from: unchanged parts keep each of their bytes.
 
-Data is compared with the text by identity. A dict or list that was read from a text is still the one that stands
-there, wherever it has been put and under whichever key; so what is renamed, moved or reordered takes
-its text along, comments and quotes included. Only what is new, or another scalar, is written anew.
+Data matches the text by identity. A dict or list that was read from a text keeps its text wherever it is moved and
+under any key; renamed, moved or reordered parts therefore keep their text, including comments and
+quotes. Only new values and changed scalars are rendered.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax
 from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text
 
 MAX_COLUMNS = 120
-"""Columns up to which a new value stands on one line."""
+"""Maximum line length up to which a new value is written on one line."""
 _STEP = 2
 _NODES = frozenset((*KINDS, *TREE_KINDS)) - {"condition", "remap"}
 Plain = dict[str, object] | list[object]
@@ -26,18 +26,18 @@ Plain = dict[str, object] | list[object]
 
 @dataclass(frozen=True)
 class WritePosition:
-    """Where a value goes: the column of a block, the indentation of its line, and whether braces are around it."""
+    """Position of a value: column of its block, indentation of its line, and whether it is inside braces."""
 
     column: int
     indent: int
     flow: bool
     beside: bool | None = None
-    """Whether its neighbours stand between braces; None where there are none."""
+    """Whether its neighbours are in flow style; None without neighbours."""
 
 
 @dataclass(frozen=True)
 class PreviousValue:
-    """What stood in this place: a value of a text."""
+    """The previous value in this position."""
 
     origin: SourceText
     value: Syntax
@@ -45,7 +45,7 @@ class PreviousValue:
 
 @dataclass(frozen=True)
 class RenderedText:
-    """The text of a value; a `block` has lines of its own, of which the first begins at the column of its place."""
+    """The text of a value; a `block` has its own lines, the first of which begins at the column of its position."""
 
     text: str
     block: bool = False
@@ -53,7 +53,7 @@ class RenderedText:
 
 @dataclass
 class TextRewriter:
-    """Writes data whose parts come from `sources`, by the id of each dict and list."""
+    """Renders data whose parts come from `sources`, by the id of each dict and list."""
 
     sources: Mapping[int, Collection]
     json: bool
@@ -62,14 +62,14 @@ class TextRewriter:
     _whole: dict[int, bool] = field(default_factory=dict[int, bool])
 
     def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
-        """Return the text of a tree with `data` in place of its own."""
+        """Return the text of a tree with `data` instead of its own data."""
         origin, root = tree.origin, tree.root
         column = root.column if isinstance(root, Collection) else 0
         written = self.value(data, WritePosition(column, origin.indent_at(root.start), self.json))
         return origin.text[: root.start] + written.text + origin.text[root.end :]
 
     def value(self, value: object, place: WritePosition, was: PreviousValue | None = None) -> RenderedText:
-        """Return the text of a value at a place."""
+        """Return the text of a value at a position."""
         if not isinstance(value, dict | list):
             return RenderedText(self._scalar(value, place, was))
         found = cast("Plain", value)
@@ -93,7 +93,7 @@ class TextRewriter:
         return self._fresh(found, place)
 
     def _is_whole(self, source: Collection, value: Plain) -> bool:
-        """Tell whether a value is the one of a text and says what it said, all inside it too: so does its text."""
+        """Return whether a value and everything inside it is unchanged, so that its text can be reused."""
         if source.data is not value:
             return False
         known = self._whole.get(id(source))
@@ -120,7 +120,7 @@ class TextRewriter:
         return True
 
     def _stays_flow(self, source: Collection, value: Plain, place: WritePosition) -> bool:
-        """Tell whether a value stays between its braces: unless it gets something inside that has lines of its own."""
+        """Return whether a value stays in flow style: unless a block value is inserted into it."""
         if not source.flow or not source.members or source.bare or self._has_block(value):
             return False
         return place.flow or not has_node(value) or _had_node(source)
@@ -130,7 +130,7 @@ class TextRewriter:
         return None if source is not None and self.json and not source.origin.json else source
 
     def _has_block(self, value: object) -> bool:
-        """Tell whether something in it comes from lines of its own, which cannot stand between braces."""
+        """Return whether a part of it is a block value, which cannot be written in flow style."""
         if not isinstance(value, dict | list):
             return False
         found = cast("Plain", value)
@@ -150,7 +150,7 @@ class TextRewriter:
         style = old.style if isinstance(old.value, str) and isinstance(value, str) else ""
         return scalar_text(value, json=self.json, flow=place.flow, style=style)
 
-    # Between braces
+    # Flow style
 
     def _flow(self, source: Collection, entries: list[EntryMatch]) -> str:
         text, members = source.origin.text, source.members
@@ -198,7 +198,7 @@ class TextRewriter:
         name = text[member.at : member.key.end] if key == member.key.value else key_text(key, json=self.json)
         return name + gap + shown
 
-    # On lines of their own
+    # Block style
 
     def _block(self, source: Collection, entries: list[EntryMatch]) -> str:
         place = WritePosition(source.column, source.column, flow=False, beside=_beside(source))
@@ -211,7 +211,7 @@ class TextRewriter:
     def _segment(
         self, place: WritePosition, key: str | None, value: object, was: tuple[Collection, Member] | None
     ) -> str:
-        """Return the lines of one entry of a block at a place, with what stands above it."""
+        """Return the lines of one entry of a block at a position, with the comments above it."""
         elsewhere = was is None
         was = was or self._moved(value, mapping=key is not None)
         if was is None:
@@ -226,7 +226,7 @@ class TextRewriter:
         return indent_text(segment, place.column - home.column, first=True)
 
     def _moved(self, value: object, *, mapping: bool) -> tuple[Collection, Member] | None:
-        """Return the entry that a value was elsewhere, whose comments come along."""
+        """Return the original entry of a moved value, whose comments move with it."""
         if not isinstance(value, dict | list):
             return None
         origin = self._source(cast("Plain", value))
@@ -234,7 +234,7 @@ class TextRewriter:
         return home if home is not None and not home[0].flow and isinstance(home[0].data, dict) == mapping else None
 
     def _brings_comments(self, value: Plain) -> bool:
-        """Tell whether entries with comments beside them were moved into a new value."""
+        """Return whether entries with comments were moved into a new value."""
         for each in _inside(value):
             moved = self._moved(each, mapping=isinstance(value, dict))
             if moved is not None:
@@ -246,7 +246,7 @@ class TextRewriter:
         return False
 
     def _home_of(self, origin: Collection) -> tuple[Collection, Member] | None:
-        """Return the entry that a collection of a text was."""
+        """Return the original entry of a collection of a text."""
         if not self._homes:
             for collection in self.sources.values():
                 for member in collection.members:
@@ -267,7 +267,7 @@ class TextRewriter:
         written = self.value(cast("object", value), place, PreviousValue(home.origin, old))
         mark = "" if key is None else ":"
         if written.block and not stays:
-            # A comment behind the old value stays behind the key.
+            # A comment after the old value stays after the key.
             first, _, rest = tail.partition("\n")
             behind = f"{first}\n{' ' * column}" if key is not None or first else " "
             return f"{name}{mark}{behind}{written.text}" + (f"\n{rest}" if rest else "")
@@ -279,7 +279,7 @@ class TextRewriter:
         return name + gap + written.text + tail
 
     def _scalar_entry(self, home: Collection, value: object, old: Scalar, gap: str, tail: str) -> str:
-        """Return gap, value and tail of an entry that is and was no collection."""
+        """Return gap, value and tail of an entry that is and was a scalar."""
         if is_same_value(old.value, value):
             return gap + home.origin.text[old.start : old.end] + tail
         shown = None
@@ -291,7 +291,7 @@ class TextRewriter:
         return gap + ("" if gap.endswith((" ", "\n")) else " ") + shown + tail
 
     def _name(self, home: Collection, key: str | None, member: Member) -> tuple[str, str]:
-        """Return the key as it is written, or the dash, and what stands between it and the value."""
+        """Return the key as written, or the dash, and the text between it and the value."""
         text = home.origin.text
         if member.key is None or key is None:
             return "-", text[member.at + 1 : member.value.start]
@@ -312,7 +312,7 @@ class TextRewriter:
         between = f"\n{' ' * inside.column}" if written.block else " "
         return f"{key_text(key, json=self.json)}:{between}{shown}"
 
-    # Anew
+    # New values
 
     def _fresh(self, value: Plain, place: WritePosition) -> RenderedText:
         if self.json:
@@ -354,7 +354,7 @@ class TextRewriter:
 
 
 def indent_text(text: str, by: int, *, first: bool = False) -> str:
-    """Return text whose lines, but for the first unless `first`, stand so many columns further right."""
+    """Return text indented by a number of columns; the first line only if `first`."""
     if by == 0:
         return text
     lines = text.split("\n")
@@ -362,7 +362,7 @@ def indent_text(text: str, by: int, *, first: bool = False) -> str:
 
 
 def has_node(value: object) -> bool:
-    """Tell whether a value is, or holds, a node of a behavior: those get lines of their own."""
+    """Return whether a value is, or contains, a node of a behavior: nodes are written in block style."""
     if isinstance(value, list):
         return any(has_node(each) for each in cast("list[object]", value))
     if not isinstance(value, dict):
@@ -372,12 +372,12 @@ def has_node(value: object) -> bool:
 
 
 def _lists_mappings(value: Plain) -> bool:
-    """Tell whether a value is a list of mappings, such as conditions, which is easier to read line by line."""
+    """Return whether a value is a list of mappings, such as conditions, which is easier to read line by line."""
     return isinstance(value, list) and any(isinstance(each, dict) and each != {} for each in value)
 
 
 def _had_node(source: Collection) -> bool:
-    """Tell whether a collection held a node before."""
+    """Return whether a collection contained a node before."""
     return any(
         (member.key is not None and member.key.value in _NODES)
         or (isinstance(member.value, Collection) and _had_node(member.value))
@@ -412,6 +412,6 @@ def _indent_after(gap: str, otherwise: int) -> int:
 
 
 def _beside(source: Collection) -> bool | None:
-    """Tell whether the collections in a collection stand between braces; None where there are none."""
+    """Return whether the collections in a collection are in flow style; None if there are none."""
     found = [member.value for member in source.members if isinstance(member.value, Collection) and member.value.members]
     return all(each.flow for each in found) if found else None

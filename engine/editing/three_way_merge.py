@@ -1,4 +1,4 @@
-"""Three-way merge of texts by lines: what either side has changed against the base, and where they contradict."""
+"""Three-way merge of texts by lines: merges the changes of both sides and finds their conflicts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from difflib import SequenceMatcher
 
 @dataclass(frozen=True, kw_only=True)
 class MergeConflict:
-    """Lines that both sides changed differently; `line`, from 1, is where they stand in ours."""
+    """Lines that both sides changed differently; `line`, from 1, is their position in our text."""
 
     line: int
     base: str
@@ -19,7 +19,7 @@ class MergeConflict:
 
 @dataclass(frozen=True, kw_only=True)
 class MergeResult:
-    """The merged text, or the conflicts in its place."""
+    """The merged text, or the conflicts."""
 
     text: str | None
     conflicts: tuple[MergeConflict, ...] = ()
@@ -49,7 +49,7 @@ def merge_texts(base: str, ours: str, theirs: str) -> MergeResult:
 
 
 def _common(base: list[str], mine: list[str], yours: list[str]) -> Iterator[tuple[int, int, int, int]]:
-    """Go through the runs of lines that all three have, as starts in each and length; the last is empty, at the end."""
+    """Iterate over the line runs common to all three: start in each, and length; the last is empty, at the end."""
     one = SequenceMatcher(None, base, mine, autojunk=False).get_matching_blocks()
     two = SequenceMatcher(None, base, yours, autojunk=False).get_matching_blocks()
     i = j = 0

@@ -1,4 +1,4 @@
-"""Edits of what follows what: transitions, the initial child, outcomes that obviously go somewhere."""
+"""Edits of control flow: transitions, the initial child, open outcomes with an evident target."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from engine.suggestions import did_you_mean
 
 
 def set_transition(session: EditSession, edit: SetTransition) -> None:
-    """Lead an outcome of a node somewhere."""
+    """Connect an outcome of a node."""
     ref = session.at(edit.path)
     machine = _machine_around(ref)
     if edit.target == machine.name and machine.parent is not None and edit.target not in _names(session, machine):
-        raise EditRefused(f"`{edit.target}` is the container itself", hint="lead to one of its children or outcomes")
+        raise EditRefused(f"`{edit.target}` is the container itself", hint="connect to one of its children or outcomes")
     connect(session, ref, edit.outcome, edit.target)
 
 
 def clear_transition(session: EditSession, edit: ClearTransition) -> None:
-    """Lead an outcome of a node nowhere."""
+    """Remove the transition of an outcome of a node."""
     ref = session.at(edit.path)
     wired = ref.data.get("transitions")
     if not isinstance(wired, dict) or edit.outcome not in wired:
         known = cast("Plain", wired) if isinstance(wired, dict) else {}
-        raise EditRefused(f"`{edit.outcome}` of `{ref.path}` leads nowhere", hint=did_you_mean(edit.outcome, known))
+        raise EditRefused(f"`{edit.outcome}` of `{ref.path}` has no transition", hint=did_you_mean(edit.outcome, known))
     transitions = cast("Plain", wired)
     del transitions[edit.outcome]
     if not transitions:
@@ -35,10 +35,10 @@ def clear_transition(session: EditSession, edit: ClearTransition) -> None:
 
 
 def set_initial(session: EditSession, edit: SetInitial) -> None:
-    """Let a machine begin with a child."""
+    """Set the initial child of a machine."""
     ref = session.at(edit.path)
     if ref.kind not in MACHINES:
-        raise EditRefused(f"`{ref.path}` is no machine", hint="only machines begin with a child")
+        raise EditRefused(f"`{ref.path}` is not a machine", hint="only machines have an initial child")
     if edit.child not in _names(session, ref):
         raise EditRefused(
             f"`{ref.path}` has no child `{edit.child}`", hint=did_you_mean(edit.child, _names(session, ref))
@@ -48,7 +48,7 @@ def set_initial(session: EditSession, edit: SetInitial) -> None:
 
 
 def auto_connect(session: EditSession, edit: AutoConnect) -> None:
-    """Lead the open outcomes of nodes where they obviously go."""
+    """Connect the open outcomes of nodes to their evident targets."""
     for path in edit.paths:
         ref = session.at(path)
         if ref.kind in MACHINES:
@@ -57,7 +57,9 @@ def auto_connect(session: EditSession, edit: AutoConnect) -> None:
         elif ref.parent is not None and ref.parent.kind in MACHINES:
             _connect_open(session, ref)
         else:
-            raise EditRefused(f"`{path}` is neither a machine nor in one", hint="only there outcomes lead somewhere")
+            raise EditRefused(
+                f"`{path}` is neither a machine nor in one", hint="only nodes of a machine have transitions"
+            )
 
 
 def connect(session: EditSession, ref: NodeRef, outcome: str, target: str) -> None:
@@ -69,7 +71,7 @@ def connect(session: EditSession, ref: NodeRef, outcome: str, target: str) -> No
 
 
 def write_initial(machine: NodeRef, child: str) -> None:
-    """Write the initial child of a machine, in front of its states."""
+    """Write the initial child of a machine, before its states."""
     body = machine.body
     if "initial" in body:
         body["initial"] = child
@@ -80,14 +82,14 @@ def write_initial(machine: NodeRef, child: str) -> None:
 
 
 def unconnected_outcomes(session: EditSession, ref: NodeRef) -> list[str]:
-    """Return the outcomes of a child of a machine that lead nowhere."""
+    """Return the outcomes of a child of a machine without transition."""
     wired = ref.data.get("transitions")
     known = cast("Plain", wired) if isinstance(wired, dict) else {}
     return [outcome for outcome in session.ends(ref).outcomes if outcome not in known]
 
 
 def _connect_open(session: EditSession, ref: NodeRef) -> None:
-    """Good outcomes go on to the next sibling, or out by the good outcome; the others go out by their own name."""
+    """Connect success outcomes to the next sibling or the success outcome, the others to the outcome of their name."""
     machine = _machine_around(ref)
     ends, outside = session.ends(ref), session.outcomes_inside(machine)
     siblings = [child.name for child in session.outline.children(machine)]
@@ -114,9 +116,9 @@ def _good_outside(session: EditSession, machine: NodeRef) -> tuple[str, ...]:
 def _machine_around(ref: NodeRef) -> NodeRef:
     machine = ref.parent
     if machine is None or machine.kind not in MACHINES:
-        around = f"in a {machine.kind}" if machine is not None else "outermost"
-        hint = "in a concurrency container `conditions` say what follows, in a tree success and failure do"
-        raise EditRefused(f"`{ref.path}` is {around}, so its outcomes lead nowhere", hint=hint)
+        around = f"in a {machine.kind}" if machine is not None else "the outermost node"
+        hint = "in a concurrency container `conditions` define what follows, in a tree success and failure do"
+        raise EditRefused(f"`{ref.path}` is {around}, so its outcomes have no transitions", hint=hint)
     return machine
 
 

@@ -1,4 +1,4 @@
-"""Edits that take a container away and leave what was inside in its place."""
+"""Edits that replace a container with its children."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ _LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume")
 
 
 def ungroup(session: EditSession, edit: UngroupNode) -> None:
-    """Put the children of a container in its place."""
+    """Replace a container with its children."""
     ref = session.at(edit.path)
     home = ref.parent
     if home is None:
-        raise EditRefused("the outermost node has nothing around it", hint="ungroup what is inside")
+        raise EditRefused("the root node cannot be ungrouped", hint="ungroup containers inside it")
     children = session.outline.children(ref)
     if not children:
         raise EditRefused(f"`{ref.path}` is empty", hint="remove it")
     for key in _LOST:
         if key in ref.data and key != ref.kind:
-            raise EditRefused(f"the `{key}` of `{ref.path}` would be lost", hint="take it away first")
+            raise EditRefused(f"the `{key}` of `{ref.path}` would be lost", hint="remove it first")
     if ref.body.get("userdata"):
         raise EditRefused(f"the userdata of `{ref.path}` would be lost", hint="declare it further outside first")
     if home.kind in MACHINES and ref.kind == "machine":
@@ -38,7 +38,7 @@ def ungroup(session: EditSession, edit: UngroupNode) -> None:
         _only_one(session, home, ref, children[0])
     else:
         hint = "ungroup machines in machines, plain sequences, and parts of trees"
-        raise EditRefused(f"a {ref.kind} in a {home.kind} cannot be taken away and mean the same", hint=hint)
+        raise EditRefused(f"ungrouping a {ref.kind} in a {home.kind} would change the behavior", hint=hint)
 
 
 def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
@@ -59,7 +59,7 @@ def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, child
 
 
 def _put_in_place(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> dict[int, str]:
-    """Put children where their container was; returns their names by the id of their data."""
+    """Insert children at the position of their container; return their names by the id of their data."""
     taken = {child.name for child in session.outline.children(home)} - {ref.name}
     taken |= set(session.outcomes_inside(home))
     names: dict[int, str] = {}
@@ -81,20 +81,23 @@ def _put_in_place(session: EditSession, home: NodeRef, ref: NodeRef, children: t
 
 
 def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
-    """Turn a plain sequence or selector into states that follow one another."""
+    """Convert a plain sequence or selector to states connected by transitions."""
     (part,) = session.outline.children(ref)
     steps = session.outline.children(part)
     if part.kind not in ("sequence", "selector") or not steps or any(step.is_part for step in steps):
-        hint = "only a sequence or selector of states and containers can be"
-        raise EditRefused(f"`{ref.path}` cannot become states that follow one another", hint=hint)
+        hint = "only a sequence or selector of states and containers can be converted"
+        raise EditRefused(f"`{ref.path}` cannot be converted to connected states", hint=hint)
     if isinstance(part.data.get(part.kind), dict) and part.body.get("memory") is False:
         raise EditRefused(
-            f"`{part.path}` has no memory", hint="only one with memory runs its children one after the other"
+            f"`{part.path}` has no memory",
+            hint="only a composite with memory executes its children one after the other",
         )
     if any("post" in step.data for step in steps):
-        raise EditRefused(f"a step of `{ref.path}` has a `post`, which would be lost", hint="take it away first")
+        raise EditRefused(f"a step of `{ref.path}` has a `post`, which would be lost", hint="remove it first")
     if any(_guard(step).get("to") == "skipped" for step in steps):
-        raise EditRefused(f"a step of `{ref.path}` may be skipped, which a machine does not know", hint="guard it else")
+        raise EditRefused(
+            f"a step of `{ref.path}` may be skipped, which a machine does not support", hint="change its guard"
+        )
     leaving = cast("Plain", ref.data.get("transitions") or {})
     ends = {id(step.data): session.ends(step) for step in steps}
     follow = ReferenceUpdate(session)
@@ -136,7 +139,7 @@ def _guard(ref: NodeRef) -> Plain:
 
 
 def _divert(node: Plain, leaving: Plain) -> None:
-    """Let timeout, guard and on_error of what was a leaf of a tree lead where its status led."""
+    """Connect timeout, guard and on_error of a former tree leaf to the targets of its status."""
     for key in ("timeout", "guard"):
         measure = node.get(key)
         if isinstance(measure, dict) and isinstance(cast("Plain", measure).get("to"), str):
@@ -148,11 +151,9 @@ def _divert(node: Plain, leaving: Plain) -> None:
 
 def _in_tree(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
     if not ref.is_part:
-        raise EditRefused(f"a {ref.kind} cannot become parts of a tree", hint="ungroup composites and decorators")
+        raise EditRefused(f"a {ref.kind} cannot be converted to tree nodes", hint="ungroup composites and decorators")
     if len(children) > 1 and (home.kind != ref.kind or ref.kind == "parallel" or ref.kind in SLOTS):
-        raise EditRefused(
-            f"a {ref.kind} in a {home.kind} means something else without it", hint="change its kind first"
-        )
+        raise EditRefused(f"ungrouping a {ref.kind} in a {home.kind} changes its meaning", hint="change its kind first")
     first = next(iter(children))
     follow = ReferenceUpdate(session)
     if home.kind in GROUPS:
@@ -172,8 +173,8 @@ def _in_tree(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[
 def _only_one(session: EditSession, home: NodeRef, ref: NodeRef, child: NodeRef) -> None:
     wired = cast("Plain", child.data.get("transitions") or {})
     if any(outcome != to for outcome, to in wired.items()):
-        hint = "lead each outcome to one of the same name first"
-        raise EditRefused(f"the outcomes of `{ref.path}` have other names than those of `{child.name}`", hint=hint)
+        hint = "connect each outcome to an outcome of the same name first"
+        raise EditRefused(f"the outcomes of `{ref.path}` and of `{child.name}` have different names", hint=hint)
     follow = ReferenceUpdate(session)
     if home.kind in NAMED:
         states = named_children(home)

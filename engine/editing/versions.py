@@ -1,4 +1,4 @@
-"""The versions of documents: every text that was opened or saved, by its hash, in a folder beside the project."""
+"""The versions of documents: every text that was opened or saved, by its hash, in a folder next to the project."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ VersionAuthor = Literal["editor", "file"]
 class DocumentVersion:
     """One version; `saved_at_s` is when it was first seen, seconds since 1970.
 
-    `by` says whether the editor wrote it, or it was found in the file: written by another program, or before.
+    `by` says whether the editor wrote it or another program did.
     """
 
     hash: str
@@ -54,7 +54,7 @@ class VersionHistory:
         self._now_s = now_s
 
     def keep(self, document_id: str, text: str, *, by: VersionAuthor = "file") -> DocumentVersion:
-        """Keep a text unless it is kept already; what is kept again becomes the newest."""
+        """Keep a text unless it is kept already; a text that is kept again becomes the newest."""
         digest = text_hash(text)
         known = self._files(document_id)
         newest = known[-1] if known else None
@@ -78,7 +78,7 @@ class VersionHistory:
         return tuple(each.version() for each in reversed(self._files(document_id)))
 
     def ids(self) -> tuple[str, ...]:
-        """Return the ids of all documents that there are versions of, sorted."""
+        """Return the ids of all documents that have versions, sorted."""
         found = {
             file.parent.relative_to(self._folder).as_posix()
             for file in self._folder.rglob("*")
@@ -90,7 +90,7 @@ class VersionHistory:
         """Return a version.
 
         Raises:
-            DocumentError: it is not kept, or no longer.
+            DocumentError: the version is not kept, or no longer kept.
         """
         for kept in self._files(document_id):
             if kept.digest == digest:
@@ -98,7 +98,7 @@ class VersionHistory:
         raise DocumentError("this version is not kept", where=document_id, hint="see the list of versions")
 
     def rename(self, old_id: str, new_id: str) -> None:
-        """Let the versions of a document go along with it."""
+        """Move the versions of a renamed document."""
         old, new = self._folder / old_id, self._folder / new_id
         if old.is_dir():
             new.mkdir(parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ class VersionHistory:
 
 
 def write_atomically(file: Path, text: str) -> None:
-    """Write a file so that everybody sees either the old or the new one, also after a loss of power."""
+    """Replace a file atomically: readers see the old or the new content, even after a power failure."""
     fresh = file.with_name(f".{file.name}.new")
     try:
         with fresh.open("wb") as stream:

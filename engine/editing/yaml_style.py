@@ -1,4 +1,4 @@
-"""Plain data to YAML or JSON text as people write it: quotes only where they are needed, short values on one line."""
+"""Renders plain data as readable YAML or JSON: quotes only where needed, short values on one line."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _resolver = Resolver()
 
 
 def is_plain(text: str, *, flow: bool) -> bool:
-    """Tell whether text may stand without quotes, and reads as the same text in YAML 1.1 and 1.2."""
+    """Return whether text can be written without quotes and is the same text in YAML 1.1 and 1.2."""
     pattern = _PLAIN if flow else _PLAIN_IN_BLOCK
     return (
         pattern.fullmatch(text) is not None
@@ -33,7 +33,7 @@ def is_plain(text: str, *, flow: bool) -> bool:
 
 
 def is_text(text: str) -> bool:
-    """Tell whether both versions of YAML take it for text when it stands without quotes."""
+    """Return whether both YAML versions read it as text without quotes."""
     try:
         same = plain_scalar(text) == text and isinstance(plain_scalar(text), str)
     except ValueError:
@@ -54,7 +54,7 @@ def key_text(key: str, *, json: bool) -> str:
 
 
 def scalar_text(value: object, *, json: bool, flow: bool, style: str = "") -> str:
-    """Return a value that is no collection on one line; text keeps the quotes of `style` where it can."""
+    """Return a scalar on one line; text keeps the quotes of `style` if possible."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -74,7 +74,7 @@ def scalar_text(value: object, *, json: bool, flow: bool, style: str = "") -> st
 
 
 def literal_text(text: str, indent: int) -> str | None:
-    """Return text of several lines as a block that shows them; None where it cannot be shown so."""
+    """Return text of several lines as a literal block; None if that is not possible."""
     lines = text.split("\n")
     if len(lines) < 2 or not _LITERAL.fullmatch(text) or not all(line.isprintable() for line in lines):
         return None

@@ -1,7 +1,7 @@
-"""Fault injection: a port between a run and its surroundings that lets requests go wrong as a document says.
+"""Fault injection: a port between a run and the bus that injects the faults of a document into requests.
 
-`FaultPort(BusPort(bus), load_faults(file), clock=bus.clock, seed=seed)` is given to the run as its
-`skills`. The document is described in `engine.document.faults`.
+`FaultPort(BusPort(bus), load_faults(file), clock=bus.clock, seed=seed)` is passed to the run as its
+`skills`. `engine.document.faults` defines the document.
 """
 
 from engine.document.faults import Fault, Faults, FaultsDocument, load_faults, parse_faults

@@ -1,4 +1,4 @@
-"""What all faults of one run share: its clock and event log, what kills the process, and when it is over."""
+"""Shared context of all faults of one run: clock, event log, process kill, and end of the run."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from engine.runtime.record.recorder import Recorder
 
 
 class FaultContext:
-    """Where faults happen; belongs to one run, used on the loop thread."""
+    """Context of the faults of one run; used on the loop thread."""
 
     def __init__(self, clock: Clock, kill: Callable[[], None]) -> None:
         self.clock = clock
         self.kill = kill
         self.over = False
-        """True when all states are left, but for those that the run has given up."""
+        """True when all states have ended, except abandoned ones."""
         self.recorder: Recorder | None = None
 
     def apply(self, rule: FaultRule, path: str, address: str, detail: str) -> None:
@@ -26,7 +26,7 @@ class FaultContext:
         self.note(rule, path, address, detail)
 
     def note(self, rule: FaultRule, path: str, address: str, detail: str) -> None:
-        """Record what else a fault that is applied brings about."""
+        """Record a further effect of an applied fault."""
         recorder = self.recorder
         if recorder is not None:
             recorder.emit(FaultInjected, path=path, address=address, fault=rule.label, detail=detail)

@@ -1,4 +1,4 @@
-"""The skill port that lets requests go wrong: around the bus, a recording, or any other port."""
+"""The skill port that injects faults into requests; wraps the bus, a recording, or any other port."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class FaultPort:
     """Applies the faults of a document to the requests of one run.
 
     Args:
-        inner: What answers the requests.
-        faults: What goes wrong, in order of precedence.
+        inner: The port that answers the requests.
+        faults: The faults, in order of precedence.
         clock: The run's time.
         seed: The run's seed, for faults with a probability.
         kill: Ends the process for `crash`.
@@ -60,7 +60,7 @@ class FaultPort:
         self._again: dict[tuple[str, str], Any] = {}
 
     def begin(self, recorder: Recorder) -> None:
-        """Record applied faults there from now on; the run calls it before it starts."""
+        """Set the recorder of applied faults; the run calls it before it starts."""
         self._scene.recorder = recorder
         if isinstance(self._inner, RunAwarePort):
             self._inner.begin(recorder)
@@ -68,7 +68,7 @@ class FaultPort:
             recorder.watch(self._crash_at)
 
     def end(self) -> None:
-        """Log what was never applied; the run calls it when all states are left, just before its end is recorded."""
+        """Log faults that were never applied; the run calls it after all states end, before it records its end."""
         self._scene.over = True
         for line in self.unapplied():
             self._scene.warn(line)
@@ -76,7 +76,7 @@ class FaultPort:
             self._inner.end()
 
     def unapplied(self) -> tuple[str, ...]:
-        """Return a line for every fault that has not been applied: which, where it is written, and why not."""
+        """Return a line for every fault that was not applied: name, position and reason."""
         return tuple(
             f"{rule.label} ({rule.fault.kind}, {rule.position}) was never applied: {rule.why_not()}"
             for rule in self._rules
@@ -84,7 +84,7 @@ class FaultPort:
         )
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
-        """Ask a service, unless a fault has it otherwise; raises what the bus raises."""
+        """Call a service, unless a fault intervenes; raises the errors of the bus."""
         address = f"{to}/{request.skill_name()}"
         rule = self._due(holder.branch, address)
         if rule is None:
@@ -96,7 +96,7 @@ class FaultPort:
         return await apply_request_fault(rule, RepeatableRequest(holder.branch, address, ask), self._scene)
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
-        """Send a goal, unless a fault has it otherwise; raises what the bus raises."""
+        """Send a goal, unless a fault intervenes; raises the errors of the bus."""
         sending = RepeatableGoal(self._inner, goal, to, holder, goal_id)
         rule = self._due(holder.branch, sending.address)
         if rule is None:
@@ -104,7 +104,7 @@ class FaultPort:
         return send_faulty_goal(rule, sending, self._scene)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Return the newest message of a topic, unless a fault has it otherwise."""
+        """Return the newest message of a topic, unless a fault intervenes."""
 
         async def read() -> S:
             return await self._inner.latest(topic, kind, holder=holder)
@@ -112,7 +112,7 @@ class FaultPort:
         return await self._read(topic, kind, holder, read)
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Wait for the next message of a topic, unless a fault has it otherwise."""
+        """Wait for the next message of a topic, unless a fault intervenes."""
 
         async def read() -> S:
             return await self._inner.next_message(topic, kind, holder=holder)
@@ -120,7 +120,7 @@ class FaultPort:
         return await self._read(topic, kind, holder, read)
 
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call back at each new message of a topic; what goes wrong with it, goes wrong when it is read."""
+        """Call back at each new message of a topic; faults of topics apply when a message is read."""
         return self._inner.watch(topic, callback)
 
     @property
@@ -147,7 +147,7 @@ class FaultPort:
         return await apply_request_fault(rule, RepeatableRequest(holder.branch, topic, read), self._scene)
 
     def _due(self, path: str, address: str) -> FaultRule | None:
-        """Return the first fault that is due; all that match count the request."""
+        """Return the first fault that is due; every matching fault counts the request."""
         wanting = [rule for rule in self._rules if rule.wants(path, address)]
         return wanting[0] if wanting else None
 

@@ -1,4 +1,4 @@
-"""One fault of a run: which requests it is applied to, and how often it was."""
+"""One fault of a run: the requests to which it applies, and how often it was applied."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from engine.errors import Position
 
 
 class FaultRule:
-    """A fault with what it has seen of one run.
+    """A fault with its counters in one run.
 
-    Whether it is applied depends on the seed, on the state and on the how-manieth request of that
-    state it is, never on what other branches did before; only `times` counts over all of them.
+    Whether it is applied depends on the seed, the state and the number of the request of that
+    state, never on other branches; only `times` counts over all branches.
     """
 
     def __init__(self, fault: Fault, *, number: int, seed: int, position: Position) -> None:
@@ -30,24 +30,24 @@ class FaultRule:
 
     @property
     def label(self) -> str:
-        """What it is called in events and messages: its name, else its number in the document."""
+        """Its label in events and messages: its name, else its number in the document."""
         return self.fault.name or f"fault {self.number}"
 
     @property
     def failure(self) -> ErrorFault:
-        """How it fails, for a fault that is an `error`."""
+        """The failure of a fault of kind `error`."""
         failure = self.fault.failure
         if failure is None:
-            raise ValueError(f"{self.label} is no error")
+            raise ValueError(f"{self.label} is not of kind error")
         return failure
 
     @property
     def ignores_cancel(self) -> bool:
-        """Whether what hangs hears no cancel either."""
+        """Whether a hanging goal also ignores cancel requests."""
         return self.fault.hang is not None and self.fault.hang.ignore_cancel
 
     def wants(self, path: str, address: str) -> bool:
-        """Count a request that the state at `path` makes, and tell whether the fault is due for it."""
+        """Count a request of the state at `path`, and return whether the fault is due for it."""
         fault = self.fault
         if fault.crashes_at is not None or not self._path.fullmatch(path) or not self._address.fullmatch(address):
             return False
@@ -61,12 +61,12 @@ class FaultRule:
         return fault.probability >= 1.0 or self._draw(path, nth) < fault.probability
 
     def why_not(self) -> str:
-        """Say why it was never applied."""
+        """Return the reason why it was never applied."""
         fault = self.fault
         if fault.crashes_at is not None:
             return f"the run has no event {fault.crashes_at}"
         if not self._matched:
-            return f"no state at {fault.at} asked {fault.address} for anything"
+            return f"no state at {fault.at} sent a request to {fault.address}"
         if not self._in_turn:
             return f"no state made a request number {fault.request} that it matches"
         if fault.probability < 1.0:

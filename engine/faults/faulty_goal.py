@@ -1,4 +1,4 @@
-"""A faulty goal: the handle that a state gets in place of the goal that was sent, if one was."""
+"""A faulty goal: the handle that a state receives instead of the goal that was sent, if any."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class FaultyGoal:
     """The `engine.runtime.record.skill_port.Goal` of a request that a fault is applied to.
 
     Args:
-        play: Decides how and when it ends.
-        sent: What the device got: nothing, the goal, or the goal twice.
-        name: Of the task that plays.
-        ignores_cancel: Do not pass a cancel on.
+        play: Coroutine that defines how and when it ends.
+        sent: The goals that the device received: none, one, or two.
+        name: Name of the task of `play`.
+        ignores_cancel: Whether cancel requests are not forwarded.
     """
 
     def __init__(self, play: GoalScript, *, sent: tuple[Goal, ...], name: str, ignores_cancel: bool = False) -> None:
@@ -39,22 +39,22 @@ class FaultyGoal:
         return await asyncio.shield(self._task)
 
     def cancel(self) -> None:
-        """Ask for the stop, as far as the fault lets the question through."""
+        """Request a cancel, unless the fault suppresses it."""
         self.cancel_asked.set()
         if not self._ignores_cancel:
             for goal in self._sent:
                 goal.cancel()
 
     async def hold(self) -> None:
-        """Bring the device to rest; what the device never got needs none."""
+        """Hold the goal; a goal that the device never received needs no hold."""
         for goal in self._sent:
             await goal.hold()
 
     async def resume(self) -> None:
-        """Let it go on."""
+        """Resume the goal."""
         for goal in self._sent:
             await goal.resume()
 
     def deliver(self, goal: Goal) -> None:
-        """Take a goal that was sent meanwhile: it is cancelled and held along."""
+        """Add a goal that was sent later: it is cancelled and held together with the others."""
         self._sent = (*self._sent, goal)

@@ -1,4 +1,4 @@
-"""Faults of action goals: what is sent, how often, and which goal the state is given."""
+"""Faults of action goals: which goals are sent, how often, and which handle the state receives."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from engine.skill import Action
 
 @dataclass(frozen=True)
 class RepeatableGoal:
-    """A goal with where it goes and for whom; calling it sends it, any number of times."""
+    """A goal with its address and state; each call sends it."""
 
     inner: SkillPort
     goal: Action[Any, Any]
@@ -37,7 +37,7 @@ class RepeatableGoal:
 
 
 def send_faulty_goal(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
-    """Apply a fault to a goal and return what the state gets instead; raises what the bus raises."""
+    """Apply a fault to a goal and return the handle for the state; raises the errors of the bus."""
     match rule.fault.kind:
         case "late":
             return _late(rule, sending, scene)
@@ -56,16 +56,16 @@ def send_faulty_goal(rule: FaultRule, sending: RepeatableGoal, scene: FaultConte
 def _late(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     sent = sending()
     delay_s = rule.fault.late_s
-    _apply(rule, sending, scene, f"its end is told {delay_s:g} s late")
+    _apply(rule, sending, scene, f"its end is reported {delay_s:g} s late")
     return _playing(plays.delay_end(sent, delay_s, scene.clock), sending, sent)
 
 
 def _hang(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     sent = sending()
     if rule.ignores_cancel:
-        _apply(rule, sending, scene, "its end is never told and it hears no cancel")
+        _apply(rule, sending, scene, "its end is never reported and it ignores cancel requests")
         return _playing(plays.ignore_all(), sending, sent, ignores_cancel=True)
-    _apply(rule, sending, scene, "its end is never told")
+    _apply(rule, sending, scene, "its end is never reported")
     return _playing(plays.withhold_end(sent), sending, sent)
 
 
@@ -90,8 +90,8 @@ def _twice(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> Fau
         try:
             return sending()
         except FlexcellError as error:
-            # The state never learns of the copy; this line tells how the bus took it.
-            scene.note(rule, sending.holder.branch, sending.address, f"the copy of the goal was refused: {error}")
+            # The state does not know of the copy; this line records the response of the bus.
+            scene.note(rule, sending.holder.branch, sending.address, f"the copy of the goal was rejected: {error}")
             return None
 
     if rule.fault.duplicate == "after_end":

@@ -1,4 +1,4 @@
-"""How a faulty goal ends: one coroutine for each kind of fault."""
+"""End of a faulty goal: one coroutine for each kind of fault."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CANCELED: AnyGoalEnd = GoalEnd(GoalStatus.CANCELED, None, None)
 
 
 def pass_through(sent: Goal) -> GoalScript:
-    """It ends as it does."""
+    """The goal ends normally."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         return await sent.result()
@@ -24,7 +24,7 @@ def pass_through(sent: Goal) -> GoalScript:
 
 
 def delay_end(sent: Goal, delay_s: float, clock: Clock) -> GoalScript:
-    """The end is told late, that of a cancel too."""
+    """The end is reported late, also after a cancel."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -35,7 +35,7 @@ def delay_end(sent: Goal, delay_s: float, clock: Clock) -> GoalScript:
 
 
 def withhold_end(sent: Goal) -> GoalScript:
-    """The end is never told; a cancel is passed on and confirmed."""
+    """The end is never reported; a cancel is forwarded and confirmed."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         await goal.cancel_asked.wait()
@@ -46,7 +46,7 @@ def withhold_end(sent: Goal) -> GoalScript:
 
 
 def ignore_all() -> GoalScript:
-    """It has no end, whatever is asked."""
+    """The goal never ends, even after a cancel."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         endless: asyncio.Future[AnyGoalEnd] = asyncio.get_running_loop().create_future()
@@ -56,7 +56,7 @@ def ignore_all() -> GoalScript:
 
 
 def fail_goal(status: GoalStatus, cause: Cause, after_s: float, clock: Clock) -> GoalScript:
-    """It ends so, at once or after a time; the device never got it."""
+    """The goal ends with this failure, immediately or after a time; the device never received it."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         if after_s:
@@ -67,7 +67,7 @@ def fail_goal(status: GoalStatus, cause: Cause, after_s: float, clock: Clock) ->
 
 
 def abort_after(sent: Goal, after_s: float, cause: Cause) -> GoalScript:
-    """It is under way for a time, then the device stops and says that it failed."""
+    """The goal is active for a time, then the device stops and reports a failure."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         try:
@@ -82,7 +82,7 @@ def abort_after(sent: Goal, after_s: float, cause: Cause) -> GoalScript:
 
 
 def lose_request() -> GoalScript:
-    """The device never gets it; a cancel finds nothing to cancel."""
+    """The device never receives the goal; a cancel has no effect."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         await goal.cancel_asked.wait()
@@ -92,7 +92,7 @@ def lose_request() -> GoalScript:
 
 
 def lose_answer(sent: Goal) -> GoalScript:
-    """The device does it and the answer is lost; who asks for a cancel is told how it ended."""
+    """The device executes the goal and the result is lost; a cancel returns the result."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -103,7 +103,7 @@ def lose_answer(sent: Goal) -> GoalScript:
 
 
 def copy_at_once(sent: Goal, copy: Goal) -> GoalScript:
-    """Two of the same goal are under way; the end of the first counts once both are over."""
+    """Two copies of the goal are active; the end of the first is reported after both have ended."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -114,7 +114,7 @@ def copy_at_once(sent: Goal, copy: Goal) -> GoalScript:
 
 
 def copy_after_end(sent: Goal, send_again: Callable[[], Goal | None]) -> GoalScript:
-    """The same goal arrives again when it has ended; its first end counts once both are over."""
+    """The goal is sent again after its end; the first end is reported after both have ended."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -128,7 +128,7 @@ def copy_after_end(sent: Goal, send_again: Callable[[], Goal | None]) -> GoalScr
 
 
 def kill_after(sent: Goal, kill: Callable[[], None]) -> GoalScript:
-    """The process dies when the device is done, before the end is told."""
+    """The process is killed when the device has finished, before the end is reported."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()

@@ -1,4 +1,4 @@
-"""Faults of what is answered once: a service call, or the read of a topic."""
+"""Faults of requests with one response: a service call, or the read of a topic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class RepeatableRequest(Generic[R]):
-    """What the state at `path` asks at `address`; `ask` asks it, any number of times."""
+    """A request of the state at `path` to `address`; each call of `ask` sends it."""
 
     path: str
     address: str
@@ -25,7 +25,7 @@ class RepeatableRequest(Generic[R]):
 
 
 async def apply_request_fault(rule: FaultRule, question: RepeatableRequest[R], scene: FaultContext) -> R:
-    """Apply a fault to a question; raises what the fault, or whoever is asked, raises."""
+    """Apply a fault to a request; raises the errors of the fault or of the server."""
     match rule.fault.kind:
         case "late":
             return await _late(rule, question, scene)
@@ -41,7 +41,7 @@ async def apply_request_fault(rule: FaultRule, question: RepeatableRequest[R], s
 
 async def _late(rule: FaultRule, question: RepeatableRequest[R], scene: FaultContext) -> R:
     delay_s = rule.fault.late_s
-    scene.apply(rule, question.path, question.address, f"the answer is {delay_s:g} s late")
+    scene.apply(rule, question.path, question.address, f"the response is {delay_s:g} s late")
     try:
         answered = await question.ask()
     except FlexcellError:
@@ -74,7 +74,7 @@ async def _again(rule: FaultRule, question: RepeatableRequest[R], scene: FaultCo
     try:
         await question.ask()
     except FlexcellError as error:
-        # The state never learns of the copy; only its effect, and this line, tell of it.
+        # The state does not know of the copy; only its effect and this line show it.
         scene.note(rule, question.path, question.address, f"the copy of the request failed: {error}")
 
 
@@ -93,14 +93,14 @@ async def _never(rule: FaultRule, question: RepeatableRequest[R], scene: FaultCo
     if rule.fault.lost == "request":
         scene.apply(rule, question.path, question.address, "the request is lost")
     else:
-        scene.apply(rule, question.path, question.address, "the answer is lost" if rule.fault.lost else "no answer")
-        # An error is an answer too, and the answer is what is lost.
+        scene.apply(rule, question.path, question.address, "the response is lost" if rule.fault.lost else "no response")
+        # An error is a response too, and the response is lost.
         with suppress(FlexcellError):
             await question.ask()
     while True:
         try:
             await asyncio.get_running_loop().create_future()
         except asyncio.CancelledError:
-            # Even a request that ignores cancels ends when the loop closes, or the process would never end.
+            # A request that ignores cancels still ends when the loop closes; otherwise the process would never exit.
             if scene.over or not rule.ignores_cancel:
                 raise

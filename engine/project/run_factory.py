@@ -1,6 +1,6 @@
 """Creates runs: new ones, ones that start from an event of another run, and resumed ones.
 
-Whatever can be refused is refused before the journal knows of the run.
+All checks are done before the run is entered into the journal.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from engine.runtime.run_options import RunOptions
 def new_origin(
     behavior: Behavior, *, cell: OpenCell, supervision: RunOptions | None = None, source: str | None = None
 ) -> RunOrigin:
-    """Return what a journal keeps of how a run is started.
+    """Return the origin of a run: what a journal keeps about its start.
 
     Args:
-        behavior: What is executed.
+        behavior: The behavior that is executed.
         cell: The open cell.
-        supervision: How it is watched over.
-        source: How the behavior is named where its file alone does not say it: `FILE.py:NAME`.
+        supervision: Options of the run: operator, autonomy, breakpoints.
+        source: Name of the behavior, if its file alone does not identify it: `FILE.py:NAME`.
     """
     watched = supervision or RunOptions()
     document, documents = document_snapshot(behavior)
@@ -73,21 +73,21 @@ def new_run(
     """Enter a new run into the journal and return it, not yet executing.
 
     Args:
-        plan: What is executed.
-        cell: Where.
-        journal: Where its events are kept.
+        plan: The plan that is executed.
+        cell: The open cell.
+        journal: The journal of its events.
         parameters: Values for the behavior's parameters.
         inputs: Initial values of userdata keys.
-        seed: Of its random numbers.
-        origin: How it is started, for whoever resumes it; without it it cannot be resumed.
+        seed: Seed of its random numbers.
+        origin: How it is started; a run without it cannot be resumed.
         supervision: Operator, autonomy, breakpoints, time-outs.
-        skills: Stands in for the bus.
-        checkpoint: The moment of another run to begin at.
+        skills: Replaces the bus.
+        checkpoint: The state of another run to start from.
 
     Raises:
-        DocumentError: a parameter or input is not acceptable; the journal knows nothing of it.
+        DocumentError: a parameter or input is invalid; the journal has no entry of the run.
         JournalError: the journal cannot be written.
-        RobotError: it commands devices, and one of the cell is lost.
+        RobotError: the run commands devices, and a device of the cell is lost.
     """
     _require_devices(plan, cell)
     checked = plan.checked_parameters(parameters or {})
@@ -119,13 +119,13 @@ def new_run(
 
 
 def _require_devices(plan: Plan, cell: OpenCell) -> None:
-    """Refuse what commands devices while one is lost: its first motion would only fail."""
+    """Reject a run that commands devices while one is lost: its first motion would fail."""
     if plan.commands_hardware:
         cell.require_connected()
 
 
 def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) -> None:
-    """Refuse to let others stand in for nodes where a robot of the cell is real, unless that is said.
+    """Reject substitutes in a cell with real robots, unless they are explicitly allowed.
 
     Raises:
         ControlError: a robot is real.
@@ -134,30 +134,30 @@ def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) 
     real = [name for name, entry in robots.items() if not entry.simulated]
     if plan.stood_in_for and real and not allowed:
         raise ControlError(
-            f"something stands in for {plan.stood_in_for[0]}, and {real[0]} is a real robot",
+            f"{plan.stood_in_for[0]} has a substitute, but {real[0]} is a real robot",
             where=plan.name,
-            hint="run it in a simulated cell; `--substitute-on-robots` runs it here",
+            hint="run it in a simulated cell, or allow it with `--substitute-on-robots`",
         )
 
 
 def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]) -> None:
-    """Refuse a run that names what its cell does not have.
+    """Reject a run that names objects which its cell does not have.
 
     Args:
-        behavior: What is to run.
+        behavior: The behavior.
         catalogue: The states by name.
-        cell: Where.
-        parameters: What the run is given.
+        cell: The open cell.
+        parameters: The parameters of the run.
 
     Raises:
-        DocumentError: a robot, part, frame or another thing is not in the cell; `where` is the position.
+        DocumentError: a robot, part, frame or other object is not in the cell; `where` is the position.
     """
     require_no_errors(check_given(behavior, catalogue, cell, parameters))
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunPosition:
-    """An event of a run in the journal; `path` is the node to begin at, by default the state entered last."""
+    """An event of a run in the journal; `path` is the node to start at, by default the state entered last."""
 
     run: str
     seq: int
@@ -165,17 +165,17 @@ class RunPosition:
 
 
 def checkpoint_at(found: RecordedRun, plan: Plan, *, seq: int, path: str | None = None) -> Checkpoint:
-    """Return a moment of a run as the start of a new one.
+    """Return the checkpoint at an event of a run, to start a new run from.
 
     Args:
         found: The run.
-        plan: What the new run executes; it may be another version.
-        seq: The event whose data it has.
-        path: The node it begins at; by default the state that was entered last.
+        plan: The plan of the new run; it may be another version.
+        seq: The event whose data it uses.
+        path: The node it starts at; by default the state that was entered last.
 
     Raises:
-        DocumentError: the run has no such event, or had entered no state by then.
-        ControlError: it cannot begin at this node.
+        DocumentError: the run has no such event, or had not entered a state by then.
+        ControlError: a run cannot start at this node.
     """
     found.require_event(seq)
     history = read_history(plan, found.id, found.events, until_seq=seq)
@@ -184,18 +184,18 @@ def checkpoint_at(found: RecordedRun, plan: Plan, *, seq: int, path: str | None 
 
 @dataclass(frozen=True, kw_only=True)
 class ResumePlan:
-    """How an interrupted run is to go on."""
+    """How an interrupted run is resumed."""
 
     found: RecordedRun
     plan: Plan
     checkpoint: Checkpoint | None
-    """None when nothing of it had become durable: it begins anew."""
+    """None if no event of the run is durable: it starts from the beginning."""
     restores: bool
-    """Whether the simulated world is brought to where it was."""
+    """Whether the simulated world is restored."""
     autonomy: AutonomyLevel = "full"
-    """What it had last."""
+    """The last autonomy level of the run."""
     changes: tuple[str, ...] = ()
-    """What is different in a behavior that has changed since, a line for each."""
+    """Changes of the behavior since the run, one line each."""
 
 
 def plan_resume(
@@ -209,33 +209,35 @@ def plan_resume(
     restore: bool = True,
     take_over: bool = False,
 ) -> ResumePlan:
-    """Decide how an interrupted run goes on; touches nothing.
+    """Decide how an interrupted run is resumed; changes nothing.
 
     Args:
         found: The run.
         plan: Its behavior.
         catalogue: The states, for the version of the behavior that the journal holds.
-        answers: rerun, or an outcome, for states that were in mid-work.
+        answers: `rerun`, or an outcome, for states that were active.
         demanded: Whether an operator is demanded from now on, if it was not before.
-        changed: Whether the behavior may be another version than that which was executed.
-        restore: Whether the simulated world can be brought to where it was. What was done in it after
-            its last snapshot is then done anew, as in the world it never was.
-        take_over: Whether to go on although an engine seems to drive it.
+        changed: Whether the behavior may be another version than the executed one.
+        restore: Whether the simulated world can be restored. Actions after its last snapshot are
+            then executed again, because the restored world does not contain them.
+        take_over: Whether to resume although another process seems to execute the run.
 
     Raises:
-        NeedsAnswers: states in mid-work ask.
-        ControlError: it is over, is driven by an engine, or cannot go on in this version.
+        ResumeDecisionRequired: states that were active require a decision.
+        ControlError: the run has ended, another process executes it, or it cannot be resumed in this version.
         DocumentError: this version does not have a node that is active.
     """
     record = found.record
     if record.status != "running":
         raise ControlError(f"this run is over ({record.status})", where=found.id, hint="start a new one")
     if record.driver is not None and not take_over:
-        hint = "stop that process first; `--take-over` leaves it unable to go on"
-        raise ControlError(f"process {record.driver} drives this run", where=found.id, hint=hint)
+        hint = "stop that process first, or use `--take-over`, which stops its run"
+        raise ControlError(f"process {record.driver} executes this run", where=found.id, hint=hint)
     if plan.document_hash != found.document and not changed:
-        hint = "`--changed` goes on in the new version where that is possible"
-        raise ControlError(f"the behavior {plan.name} has changed since", where=found.origin.behavior, hint=hint)
+        hint = "`--changed` resumes in the new version if the change permits it"
+        raise ControlError(
+            f"the behavior {plan.name} has changed since the run", where=found.origin.behavior, hint=hint
+        )
     restores = restore and found.world is not None
     begun_with = _autonomy(found)
     if not found.events:
@@ -272,12 +274,12 @@ def _autonomy(found: RecordedRun) -> AutonomyLevel:
 
 
 def _changes(found: RecordedRun, plan: Plan, catalogue: Catalogue, until_seq: int | None) -> tuple[str, ...]:
-    """Return what has changed; refused by the same rules as a change of a paused run."""
+    """Return the changes; rejected by the same rules as a hot change of a paused run."""
     recorded = found.behavior_now()
     if recorded is None or recorded.meaning != found.document:
-        # It was changed while it ran: that version is not kept, so only what is active can be compared.
+        # The behavior was changed during the run: that version is not kept, so only active nodes can be compared.
         read_history(plan, found.id, found.events, until_seq=until_seq).checkpoint()
-        return ("the version that it was executing is not in the journal: only its active nodes were compared",)
+        return ("the executed version is not in the journal: only its active nodes were compared",)
     old = new_plan(recorded, catalogue)
     history = read_history(old, found.id, found.events, until_seq=until_seq)
     report = plan_change(
@@ -309,28 +311,28 @@ async def resume_run(
     supervision: RunOptions | None = None,
     skills: SkillPort | None = None,
 ) -> Run:
-    """Take an interrupted run over and return it, not yet executing; the engine before can write no more.
+    """Take over an interrupted run and return it, not yet executing; the previous process can no longer write.
 
     Args:
-        resumption: What `plan_resume` has decided.
-        cell: The cell it was in, opened with the seed of its origin, before anything moves.
-        journal: The journal it is in.
+        resumption: The decision of `plan_resume`.
+        cell: The cell of the run, opened with the seed of its origin, before any motion.
+        journal: The journal of the run.
         catalogue: As for `plan_resume`.
         answers: As for `plan_resume`.
         supervision: Operator, autonomy, breakpoints, time-outs.
-        skills: Stands in for the bus.
+        skills: Replaces the bus.
 
     Raises:
         JournalError: the journal cannot be written.
-        RobotError: a device of the cell is lost, or the world cannot be brought to where it was.
-        ControlError: its engine has gone on meanwhile, to where it cannot be resumed like this.
+        RobotError: a device of the cell is lost, or the world cannot be restored.
+        ControlError: its previous process has continued the run, which can no longer be resumed like this.
     """
     plan, found = resumption.plan, resumption.found
     _require_devices(plan, cell)
     entry = journal.resume(found.id)
     now = read_run(found.place, found.id)
     if now.record.last_seq != found.record.last_seq:
-        # Whoever drove it was alive until just now; what it has done since counts.
+        # The previous process was alive until now; events that it wrote since count.
         resumption = plan_resume(
             now,
             plan,

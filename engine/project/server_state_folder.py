@@ -1,4 +1,4 @@
-"""The state folder of a server: made, tried, and locked, so that only one server at a time keeps its state there."""
+"""The state folder of a server: created, checked and locked, so that only one server at a time uses it."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ LOCK_FILE = "lock"
 
 
 class ServerStateFolder:
-    """A folder that is ours: where the server says how it is reached."""
+    """A locked state folder, in which the server announces its address."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def announce(self, *, url: str, token: str, stop: StopEndpoint | None = None) -> None:
-        """Say where the server is reached, and where STOP is, readable by its owner only."""
+        """Write the addresses of the server and of STOP, readable by the owner only."""
         record = ServerRecord(
             url=url,
             token=token,
@@ -42,14 +42,14 @@ class ServerStateFolder:
 
 @contextmanager
 def lock_server_state_folder(path: Path) -> Generator[ServerStateFolder]:
-    """Hold a state folder for one server; the lock ends with the process, however it ends.
+    """Lock a state folder for one server; the lock ends with the process, however it ends.
 
     Raises:
-        FlexcellError: the folder cannot be written, or another server holds it.
+        FlexcellError: the folder cannot be written, or another server has locked it.
     """
     with _locked(path):
         folder = ServerStateFolder(path)
-        # What a server that was killed has left tells nobody where to look any more.
+        # The address file of a killed server is outdated.
         server_file(path).unlink(missing_ok=True)
         try:
             yield folder
@@ -67,13 +67,13 @@ def _locked(path: Path) -> Generator[None]:
         raise FlexcellError(
             f"the state folder cannot be written: {error.strerror}",
             where=path,
-            hint="make it writable for this user, or name another one with --state",
+            hint="make it writable for this user, or give another folder with --state",
         ) from error
     try:
         _take(descriptor, path)
         yield
     finally:
-        # Closing it gives the lock up; the file stays, as removing it could part two servers that wait for it.
+        # Closing the file releases the lock; the file stays, because removing it could separate two waiting servers.
         os.close(descriptor)
 
 
@@ -82,16 +82,16 @@ def _take(descriptor: int, path: Path) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         raise FlexcellError(
-            f"another server keeps its state here: {_holder(descriptor, path)}",
+            f"another server uses this state folder: {_holder(descriptor, path)}",
             where=path,
-            hint="stop it, or name another folder with --state",
+            hint="stop it, or give another folder with --state",
         ) from error
     try:
         os.ftruncate(descriptor, 0)
         os.pwrite(descriptor, str(os.getpid()).encode(), 0)
     except OSError as error:
         raise FlexcellError(
-            f"the state folder cannot be written: {error.strerror}", where=path, hint="make room on its disk"
+            f"the state folder cannot be written: {error.strerror}", where=path, hint="free disk space"
         ) from error
 
 

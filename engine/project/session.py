@@ -53,7 +53,7 @@ _KEPT_RUNS = 200
 
 
 class Session:
-    """What the dashboard works on; belongs to the event loop it is made on. With `recordings` its runs are recorded."""
+    """The model of the dashboard; belongs to the event loop that creates it. `recordings` records its runs."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class Session:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop every run and wait until its robots rest."""
+        """Stop every run and wait until its robots are at rest."""
         self._stops.end()
         for started in self._runs.values():
             started.run.stop("the session was closed")
@@ -116,7 +116,7 @@ class Session:
         return self._library.views()
 
     def behavior(self, behavior_id: str) -> BehaviorView:
-        """Return one behavior; raises DocumentError when the id names none."""
+        """Return one behavior; raises DocumentError if there is no such behavior."""
         return self._library.view(behavior_id)
 
     def runs(self) -> tuple[RunView, ...]:
@@ -124,7 +124,7 @@ class Session:
         return tuple(started.view(self.cell.bus.clock.now_s()) for started in reversed(self._runs.values()))
 
     def run(self, run_id: str) -> RunView:
-        """Return one run; raises FlexcellError when the id names none."""
+        """Return one run; raises FlexcellError if there is no such run."""
         return self._known(run_id).view(self.cell.bus.clock.now_s())
 
     async def start(
@@ -139,20 +139,20 @@ class Session:
         begin: RunPosition | None = None,
         faults: Faults | None = None,
     ) -> str:
-        """Start a run, once every STOP before it has ended, and return its id.
+        """Start a run after every earlier STOP has ended, and return its id.
 
         Args:
-            behavior_id: Which behavior.
-            parameters: Values for its parameters; with `begin` those of that run are the default.
-            seed: Of its random numbers.
+            behavior_id: Id of the behavior.
+            parameters: Values for its parameters; with `begin`, those of that run are the default.
+            seed: Seed of its random numbers.
             inputs: Initial values of userdata keys.
             supervision: Autonomy, whether an operator is demanded, time-outs.
-            breakpoints: Whether to use those beside the behavior's file.
-            begin: The moment of a run in the journal to begin at; the cell stays as it is.
-            faults: Go wrong in this run only.
+            breakpoints: Whether to use the breakpoints file of the behavior.
+            begin: The event of a run in the journal to start from; the cell is not restored.
+            faults: Faults injected into this run only.
 
         Raises:
-            FlexcellError: the behavior has errors, a parameter is not acceptable, or a STOP takes long.
+            FlexcellError: the behavior has errors, a parameter is invalid, or a STOP does not end in time.
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         watched = supervision or RunOptions()
@@ -167,7 +167,7 @@ class Session:
         if self.cell.document is not None:
             catalogue = self._library.catalogue
             await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
-        # Before the run, whose clock goes from here on.
+        # Before the run, whose clock starts here.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         await self._stops.over()
         run = new_run(
@@ -189,27 +189,27 @@ class Session:
         return run.id
 
     def interrupted(self) -> tuple[RunRecord, ...]:
-        """Return the runs of the journal whose engine died, oldest first."""
+        """Return the runs of the journal whose process died, oldest first."""
         return tuple(record for record in list_runs(self._journal.path) if record.interrupted)
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
-        """Go on with an interrupted run of this project and cell, once every STOP has ended, and return its id.
+        """Resume an interrupted run of this project and cell after every STOP has ended, and return its id.
 
-        A simulated world is brought to where it was unless another run is under way.
+        A simulated world is restored unless another run is active.
 
         Raises:
-            NeedsAnswers: states that were in mid-work ask.
-            FlexcellError: it cannot go on here.
+            ResumeDecisionRequired: states that were active require a decision.
+            FlexcellError: the run cannot be resumed here.
         """
         found = read_run(self._journal.path, run_id)
         behavior_id = self._library.id_of(Path(found.origin.behavior))
         if found.origin.cell != self._cell_file():
             there = found.origin.cell or "no cell"
-            raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
+            raise ControlError(f"this run was executed in {there}", where=run_id, hint="serve that cell")
         catalogue = self._library.catalogue
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id, found.substitutes)
         require_simulation(plan, self.cell.document)
-        # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
+        # Before the decision whether the world is restored: another run may start in between.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         await self._stops.over()
         alone = all(started.result is not None for started in self._runs.values())
@@ -237,11 +237,11 @@ class Session:
         return run_id
 
     def control(self, run_id: str) -> Control:
-        """Return what an operator can do with a run that is under way.
+        """Return the control interface of an active run.
 
         Raises:
-            ControlError: it is over.
-            FlexcellError: the id names none.
+            ControlError: the run has ended.
+            FlexcellError: there is no such run.
         """
         started = self._known(run_id)
         if started.run.ended:
@@ -249,19 +249,19 @@ class Session:
         return started.run.control
 
     def operate(self, run_id: str) -> RunOperator:
-        """Be an operator of a run, until `detach` or `lose` of what is returned; any number may be.
+        """Attach an operator to a run, until `detach` or `lose` of the result; any number of operators may be attached.
 
         Raises:
-            ControlError: it is over.
-            FlexcellError: the id names none.
+            ControlError: the run has ended.
+            FlexcellError: there is no such run.
         """
         return self._operators.attach(run_id, self.control(run_id))
 
     async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
-        """Let the behavior as its file is now take the place of the one that a paused run executes; see `Run.change`.
+        """Replace the behavior of a paused run with the current content of its file; see `Run.change`.
 
         Raises:
-            ControlError: the run cannot go on in the new version; it goes on as it is.
+            ControlError: the run cannot continue in the new version; it is unchanged.
             DocumentError: the file cannot be read or has errors.
         """
         self.control(run_id)
@@ -272,10 +272,10 @@ class Session:
         return started.run.change(plan, preempt=preempt, kept=kept)
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
-        """Take back what a paused run has begun last; see `engine.runtime.run.Run.step_back`.
+        """Undo the last step of a paused run; see `engine.runtime.run.Run.step_back`.
 
         Raises:
-            ControlError: the run is over, is not paused, or something cannot be undone; nothing has moved.
+            ControlError: the run has ended, is not paused, or a step cannot be undone; nothing has moved.
             JournalError: its journal cannot be read.
         """
         self.control(run_id)
@@ -283,21 +283,21 @@ class Session:
 
     @pause_gc
     def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
-        """Read, check and plan a behavior: on a thread, for it may be large."""
+        """Read, check and plan a behavior, on a thread because it may be large."""
         behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)
         return behavior, new_plan(behavior, self._library.catalogue)
 
     async def stop(self, run_id: str, *, reason: str) -> None:
-        """Ask a run to stop and return at once; stopping one that is over does nothing."""
+        """Request a run to stop and return immediately; has no effect on a run that has ended."""
         self._known(run_id).stop(reason)
 
     async def stop_all(self, *, reason: str) -> None:
-        """Ask every run to stop, cancel every goal of whomever, and return when every robot is at rest.
+        """Stop every run, cancel every goal of any client, and return when every robot is at rest.
 
-        With a stop relay the devices take no motion until every run has ended, that of a clean-up neither.
+        With a stop relay, the devices accept no motion until every run has ended, not even that of a clean-up.
 
         Raises:
-            RobotError: one could not confirm it; the others were stopped all the same, and stay latched.
+            RobotError: a robot did not confirm; the others are stopped nevertheless, and stay latched.
         """
         await self._stops.stop_all(reason=reason)
 
@@ -307,11 +307,11 @@ class Session:
         return self.cell.connection
 
     async def connect_cell(self) -> None:
-        """Connect again what is lost of the cell; does nothing where nothing is.
+        """Reconnect lost devices of the cell; has no effect if none is lost.
 
         Raises:
-            ControlError: a run is under way.
-            RobotError: a device does not come back.
+            ControlError: a run is active.
+            RobotError: a device cannot be reconnected.
         """
         for run_id, started in self._runs.items():
             if started.result is None and not self.cell.connection.connected:
@@ -319,26 +319,26 @@ class Session:
         await self.cell.reconnect()
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
-        """Return the breakpoints that are kept beside a behavior's file.
+        """Return the breakpoints of a behavior, from the file next to it.
 
         Raises:
-            DocumentError: there is no such behavior, or the file beside it is not valid.
+            DocumentError: there is no such behavior, or its breakpoints file is invalid.
         """
         return load_breakpoints(self._library.file_of(behavior_id))
 
     def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
-        """Write the breakpoints beside a behavior's file; raises DocumentError when the id names none."""
+        """Write the breakpoints file of a behavior; raises DocumentError if there is no such behavior."""
         save_breakpoints(self._library.file_of(behavior_id), breakpoints)
 
     async def wait(self, run_id: str) -> RunView:
-        """Wait until a run is over and return it."""
+        """Wait until a run has ended and return it."""
         started = self._known(run_id)
         if started.task is not None:
             await asyncio.wait({started.task})
         return self.run(run_id)
 
     def subscribe(self, callback: EventCallback) -> Callable[[], None]:
-        """Call back with (run id, event) for every event of every run; returns what ends it."""
+        """Call `callback` with (run id, event) for every event of every run; returns a function that unsubscribes."""
         self._callbacks = (*self._callbacks, callback)
         return lambda: self._unsubscribe(callback)
 
@@ -348,14 +348,14 @@ class Session:
         return events[after:]  # `seq` counts from 1 without gaps
 
     def userdata(self, run_id: str) -> UserdataHistory:
-        """Return an empty book of a run's userdata, to be read from its events on; raises FlexcellError."""
+        """Return an empty userdata history of a run, to be filled from its events; raises FlexcellError."""
         run = self._known(run_id).run
         return UserdataHistory(lambda: run.plan)
 
     def recording_files(self, run_id: str) -> tuple[Path, ...]:
-        """Return the recordings of a run, oldest first, of a run under way too; `run_id` may be a recording's path.
+        """Return the recordings of a run, oldest first, also of an active run; `run_id` may be a recording's path.
 
-        Empty where the run was not recorded. May be called on any thread.
+        Empty if the run was not recorded. Thread-safe.
 
         Raises:
             RecordingError: there is no recording at that path in the project.
@@ -369,10 +369,10 @@ class Session:
         try:
             return self.cell.bus.find_topic(topic).latest
         except FlexcellError:
-            return None  # nobody publishes it in this cell, which is not an error of the viewer
+            return None  # this cell has no such topic, which is not an error of the viewer
 
     def subscribe_topic(self, topic: str, callback: Callable[[Any], None]) -> Callable[[], None]:
-        """Call back with every new message of a topic, the newest one first, at once.
+        """Call back with every new message of a topic, beginning immediately with the newest one.
 
         Raises:
             BusError: this cell has no such topic.
@@ -413,7 +413,7 @@ class Session:
         return self._runs[run_id]
 
     def _forget_oldest(self) -> None:
-        """Keep memory bounded; the journal keeps every run."""
+        """Limit the number of runs in memory; the journal keeps every run."""
         over = [run_id for run_id, started in self._runs.items() if started.result is not None]
         for run_id in over[: max(0, len(self._runs) - _KEPT_RUNS)]:
             del self._runs[run_id]

@@ -1,4 +1,4 @@
-"""The names of the entries in the store of an open cell, kept current, for who checks behaviors meanwhile."""
+"""The current names of the entries in the store of an open cell, for the check of behaviors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.store import EntryChange
 
 
 class StoredEntries:
-    """Belongs to the event loop of its cell; `of_cell` may be asked from any thread."""
+    """Belongs to the event loop of its cell; `of_cell` is thread-safe."""
 
     def __init__(self, cell: OpenCell) -> None:
         self._cell = cell
@@ -30,16 +30,16 @@ class StoredEntries:
         self._names = {kind: frozenset(names) for kind, names in found.items()}
 
     def close(self) -> None:
-        """Follow no more."""
+        """Stop following changes."""
         self._end()
 
     def of_cell(self, file: Path) -> Mapping[str, frozenset[str]] | None:
-        """Return the names by kind, as they are now; None for the file of another cell."""
+        """Return the current names by kind; None for the file of another cell."""
         document = self._cell.document
         return self._names if document is not None and document.file.resolve() == file.resolve() else None
 
     def _take(self, change: EntryChange) -> None:
-        # A new mapping each time: others read the old one meanwhile.
+        # A new mapping each time: other threads may be reading the old one.
         names = self._names or {}
         known = names.get(change.kind, frozenset())
         changed = known - {change.name} if change.value is None else known | {change.name}

@@ -1,4 +1,4 @@
-"""The operators of the runs of a session: a run has one as long as anybody is attached to it."""
+"""The operators of the runs of a session: a run has an operator while at least one person is attached."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ class RunOperator:
         self._open = True
 
     def detach(self) -> None:
-        """Leave on purpose; may be called again."""
+        """Detach deliberately; may be called again."""
         if self._leave():
             self._control.detach_operator()
 
     def lose(self) -> None:
-        """Tell that this operator cannot be reached any more: without another one the loss policy applies."""
+        """Report that the connection to this operator is lost: without another operator the loss policy applies."""
         if self._leave():
             self._control.lose_operator()
 
     def _leave(self) -> bool:
-        """Tell whether the last one of a run that is under way has left."""
+        """Return whether this was the last operator of an active run."""
         if not self._open:
             return False
         self._open = False
@@ -33,13 +33,13 @@ class RunOperator:
 
 
 class OperatorRoster:
-    """Counts them, by run."""
+    """Counts operators by run."""
 
     def __init__(self) -> None:
         self._counts: dict[str, int] = {}
 
     def attach(self, run_id: str, control: Control) -> RunOperator:
-        """Add one; the first one turns the rules of autonomy on."""
+        """Add an operator; the first one activates the autonomy rules."""
         count = self._counts.get(run_id, 0)
         self._counts[run_id] = count + 1
         if count == 0:
@@ -47,7 +47,7 @@ class OperatorRoster:
         return RunOperator(self, run_id, control)
 
     def leave(self, run_id: str) -> bool:
-        """Take one away; tells whether it was the last."""
+        """Remove an operator; return whether it was the last one."""
         count = self._counts.pop(run_id) - 1
         if count > 0:
             self._counts[run_id] = count

@@ -1,4 +1,4 @@
-"""The recordings of a session's runs: one file each, the oldest removed where there are too many or too large ones."""
+"""The recordings of a session's runs: one file per run; the oldest are removed beyond a number or total size."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 
 RECORDINGS = "recordings"
-"""The folder below that of the journal."""
+"""Subfolder of the journal's folder."""
 RATE_HZ = 20.0
 KEPT = 100
 SIZE_MB = 2000.0
 _SUFFIX = ".mcap"
 _CLOSING_S = 5.0
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,120}")
-# An image of distances is as large as everything else of a second, and is only made for who looks at it.
+# A depth image is as large as all other messages of a second, and is produced only for viewers.
 _LEFT_OUT = ("*/depth",)
 _OVERHEARD = ("cell/occupancy",)
 
@@ -40,7 +40,7 @@ _log = logging.getLogger("flexcell.recording")
 
 @dataclass(frozen=True, kw_only=True)
 class RunStartRecord:
-    """How a run is started, for who replays it; without `documents` it is not recorded."""
+    """How a run is started, for its replay; without `documents` it is not recorded."""
 
     documents: RecordedDocuments | None = None
     inputs: Mapping[str, object] | None = None
@@ -48,12 +48,12 @@ class RunStartRecord:
 
 
 class SessionRecordings:
-    """Records runs below one folder, made when it is needed.
+    """Records runs in one folder, which is created on demand.
 
     Args:
-        folder: Where `<run id>.mcap` are.
-        kept: How many to keep.
-        size_mb: How large all together may be, in 10^6 bytes; one of them takes at most half of it.
+        folder: Folder of the files `<run id>.mcap`.
+        kept: Maximum number of recordings.
+        size_mb: Maximum total size, in 10^6 bytes; one recording takes at most half of it.
     """
 
     def __init__(self, folder: Path, *, kept: int = KEPT, size_mb: float = SIZE_MB) -> None:
@@ -64,12 +64,12 @@ class SessionRecordings:
         self._used: set[Path] = set()
 
     def files(self, run_id: str) -> tuple[Path, ...]:
-        """Return what there is of a run, oldest first, also while it is recorded; more than one when it was resumed."""
+        """Return the recordings of a run, oldest first, also while it is recorded; more than one if it was resumed."""
         pieces = self._pieces(run_id)
         return tuple(pieces[number] for number in sorted(pieces))
 
     async def prepare(self, behavior: Behavior, *, cell: OpenCell) -> RecordedDocuments | None:
-        """Make room for one more and read what goes along with it, before its run begins; None where that fails."""
+        """Make room for a recording and read its documents, before its run starts; None if that fails."""
         try:
             return await asyncio.to_thread(self._prepare, behavior, cell)
         except (RecordingError, OSError) as error:
@@ -78,7 +78,7 @@ class SessionRecordings:
 
     @asynccontextmanager
     async def around(self, run: Run, start: RunStartRecord, *, cell: OpenCell) -> AsyncGenerator[None]:
-        """Record a run that is executed in the block; whatever goes wrong with it is a warning."""
+        """Record a run that is executed in the block; recording errors are logged as warnings."""
         if start.documents is None:
             yield
             return
@@ -101,12 +101,12 @@ class SessionRecordings:
             finishing.add_done_callback(self._finishing.discard)
 
     async def finished(self) -> None:
-        """Wait until what is being finished is."""
+        """Wait until all recordings are finalized."""
         while self._finishing:
             await asyncio.wait(self._finishing)
 
     async def close(self) -> None:
-        """Wait a moment for what is being finished; the rest stays as it grew, which is as good."""
+        """Wait briefly for recordings in finalization; the others keep their live file, which is equally complete."""
         if self._finishing:
             _, late = await asyncio.wait(self._finishing, timeout=_CLOSING_S)
             for task in late:
@@ -119,7 +119,7 @@ class SessionRecordings:
             return {}
         name = re.compile(rf"{re.escape(run_id)}(?:~(\d+))?{re.escape(_SUFFIX)}(?:{re.escape(PART)})?")
         pieces: dict[int, Path] = {}
-        # The finished one comes first in this order, and stands for its part while that is still there.
+        # The finished file sorts first, and replaces its `.part` while that still exists.
         for file in sorted(self.folder.glob(f"{run_id}*")):
             named = name.fullmatch(file.name)
             if named is not None:
@@ -132,7 +132,7 @@ class SessionRecordings:
         return collect_documents(behavior, cell.document)
 
     def _open(self, run_id: str, documents: RecordedDocuments, virtual: bool) -> tuple[RunRecording, Path]:
-        # A run that is resumed has one already.
+        # A resumed run has a recording already.
         number = max(self._pieces(run_id), default=0) + 1
         path = self.folder / f"{run_id}{'' if number == 1 else f'~{number}'}{_SUFFIX}"
         order = RecordingOptions(
@@ -161,7 +161,7 @@ class SessionRecordings:
             self._used.discard(part_file(path))
 
     def _remove_oldest(self, *, room: int = 0) -> None:
-        """Remove recordings, oldest first, until `room` more are allowed; never one that is written or read."""
+        """Remove recordings, oldest first, until `room` more are allowed; never one that is being written or read."""
         listed = [path for path in self.folder.iterdir() if path.name.endswith((_SUFFIX, _SUFFIX + PART))]
         states = sorted(_present(listed), key=lambda each: each[0].st_mtime_ns)
         number, size = len(states), sum(state.st_size for state, _ in states)
@@ -174,7 +174,7 @@ class SessionRecordings:
 
 def _present(paths: Iterable[Path]) -> Generator[tuple[os.stat_result, Path]]:
     for path in paths:
-        # A recording that is finished meanwhile has another name by now.
+        # A recording that was finalized in the meantime has another name now.
         with suppress(FileNotFoundError):
             yield path.stat(), path
 
@@ -182,7 +182,7 @@ def _present(paths: Iterable[Path]) -> Generator[tuple[os.stat_result, Path]]:
 def _removed(path: Path) -> bool:
     try:
         with path.open("rb") as stream:
-            # Who writes it or reads it holds a lock.
+            # Its writer or reader holds a lock.
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
             path.unlink()
     except OSError:

@@ -15,9 +15,9 @@ from engine.runtime.run import Run, RunResult
 
 
 class RunView(msgspec.Struct, frozen=True, kw_only=True):
-    """One run, under way or over; `status` is running, stopping, finished, stopped or errored.
+    """One run, active or ended; `status` is running, stopping, finished, stopped or errored.
 
-    `control` is what an operator sees of it while it is under way.
+    `control` is the operator's view of an active run.
     """
 
     id: str
@@ -32,13 +32,13 @@ class RunView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SessionRun:
-    """One run under way or over; used on the session's event loop.
+    """One run, active or ended; used on the session's event loop.
 
     Args:
-        behavior_id: What it executes.
+        behavior_id: The behavior that it executes.
         run: The run.
         started_s: The time of the cell's clock at its start.
-        events: Those that it had before this session, when it was resumed.
+        events: The events before this session, if the run was resumed.
     """
 
     def __init__(self, behavior_id: str, run: Run, started_s: float, *, events: Iterable[Event] = ()) -> None:
@@ -52,13 +52,13 @@ class SessionRun:
         self.task: asyncio.Task[None] | None = None
 
     def stop(self, reason: str) -> None:
-        """Ask it to stop and return at once; one that is over stays as it is."""
+        """Request the run to stop and return immediately; has no effect on a run that has ended."""
         if self.result is None:
             self.stopping = True
             self.run.stop(reason)
 
     def view(self, now_s: float) -> RunView:
-        """Return how it stands at this time of the cell's clock."""
+        """Return the status of the run at this time of the cell's clock."""
         result = self.result
         return RunView(
             id=self.run.id,

@@ -1,4 +1,4 @@
-"""STOP of a session: its runs, every goal and every robot, and the release of the devices when all has ended."""
+"""STOP of a session: stops runs, goals and robots, and releases the devices when all have ended."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from engine.project.session_run import SessionRun
 from engine.stop import StopNotice
 
 _PATIENCE_S = 5.0
-"""How long a start waits for the stop before it."""
+"""How long a start waits for an earlier stop."""
 
 
 class SessionStops:
-    """Carries out every stop of a session, whether it came through the event loop or past it.
+    """Executes every stop of a session, whether it arrives through the event loop or through the relay.
 
     Args:
         cell: The cell; its relay, if it has one, latches the devices until the runs have ended.
@@ -30,12 +30,12 @@ class SessionStops:
         self._releases: set[asyncio.Task[None]] = set()
 
     def begin(self) -> None:
-        """Hear of stops that come past the event loop."""
+        """Subscribe to stops of the relay, which bypass the event loop."""
         if self._cell.relay is not None:
             self._cell.relay.on_stop(self._stopped_by_relay)
 
     def end(self) -> None:
-        """Hear of no more stops."""
+        """Unsubscribe from stops of the relay."""
         if self._cell.relay is not None:
             self._cell.relay.on_stop(None)
 
@@ -45,10 +45,10 @@ class SessionStops:
             await asyncio.wait(self._releases)
 
     async def over(self) -> None:
-        """Wait until every stop has ended: what was under way, and the latch of the devices.
+        """Wait until every stop has ended: all runs and goals, and the latch of the devices.
 
         Raises:
-            ControlError: one takes long.
+            ControlError: a stop does not end in time.
         """
         try:
             async with asyncio.timeout(_PATIENCE_S):
@@ -56,11 +56,11 @@ class SessionStops:
                     await asyncio.wait(pending)
         except TimeoutError as error:
             raise ControlError(
-                "a STOP is still being carried out", hint="start again once the stopped runs have ended"
+                "a STOP is still in progress", hint="start again after the stopped runs have ended"
             ) from error
 
     async def stop_all(self, *, reason: str) -> None:
-        """Stop everything and return when every robot is at rest; raises RobotError where one could not confirm it."""
+        """Stop everything and return when every robot is at rest; raises RobotError if one does not confirm it."""
         with self._carried_out():
             relay = self._cell.relay
             stop = await relay.order(reason) if relay is not None else None
@@ -89,14 +89,14 @@ class SessionStops:
         return tuple(started.task for started in under_way if started.task is not None)
 
     async def _stopped_by_relay(self, notice: StopNotice) -> None:
-        """End what was under way; the devices have the stop already, and are released when this returns."""
+        """End all runs and goals; the devices are already stopped, and are released when this returns."""
         with self._carried_out():
             tasks = await self._stop_everything(notice.reason)
             if tasks:
                 await asyncio.wait(tasks)
 
     async def _release(self, stop: int, tasks: tuple[asyncio.Task[None], ...]) -> None:
-        """Release the devices once nothing that was under way can send them anything any more."""
+        """Release the devices when no stopped run or goal can send them commands any more."""
         if tasks:
             await asyncio.wait(tasks)
         if self._cell.relay is not None:

@@ -1,7 +1,7 @@
-"""Recordings of runs in MCAP files: written while a run goes on, opened in Foxglove, replayed in CI.
+"""Recordings of runs in MCAP files: written during a run, opened in Foxglove, replayed in CI.
 
-`RunRecording.open` begins one, `load_recording` reads one back. A recording is a viewer: whatever
-happens to its file, the run goes on.
+`RunRecording.open` starts one, `load_recording` reads one back. A recording is passive: an error of
+its file never affects the run.
 """
 
 from engine.recording.description import RecordingDescription

@@ -1,8 +1,8 @@
-"""JSON Schemas of recorded channels, in the subset that Foxglove reads.
+"""JSON Schemas of recorded channels, in the subset that Foxglove supports.
 
-Foxglove wants an object whose properties each have one plain type, arrays of plain items, and no
-references. What a message has beyond that (unions, nested lists, free dictionaries) is left out of
-the schema, never out of the message.
+Foxglove requires an object whose properties each have one plain type, arrays of plain items, and no
+references. Other fields of a message (unions, nested lists, free dictionaries) are omitted from
+the schema, never from the message.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def channel_schema(kind: Any, *, title: str) -> bytes:
 
 
 def _any_value(kind: type) -> JsonSchema:
-    """Describe what msgspec cannot: any value."""
+    """Return a schema for a type that msgspec cannot describe: any value."""
     return {"description": f"any {kind.__name__}"}
 
 
 def _merged(objects: list[JsonSchema]) -> JsonSchema:
-    """Describe what all of these are: a property counts when everything that has it agrees on its type."""
+    """Return the common schema of several: a property is kept if all schemas with it agree on its type."""
     properties: dict[str, JsonSchema | None] = {}
     for each in objects:
         for name, schema in each["all"].items():
@@ -48,7 +48,7 @@ def _merged(objects: list[JsonSchema]) -> JsonSchema:
 
 
 def _object(schema: JsonSchema, definitions: Mapping[str, JsonSchema], depth: int) -> JsonSchema | None:
-    """Return required names and all properties (None where a type is not plain), or None for no object."""
+    """Return required names and all properties (None if a type is not plain), or None for a non-object."""
     found = _resolved(schema, definitions)
     if found.get("type") != "object" or depth == 0:
         return None

@@ -1,4 +1,4 @@
-"""Unfolds the chunks of a recording: never to more than they say, and never to more than is allowed."""
+"""Decompresses the chunks of a recording: never beyond their declared size, and never beyond the limit."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ def decompress_chunk(chunk: Chunk, allowance: ReadBudget) -> bytes:
     """Return the records in a chunk as bytes.
 
     Raises:
-        ValueError: it is too large, is packed in an unknown way, or is damaged.
+        ValueError: the chunk is too large, has an unknown compression, or is damaged.
     """
     allowance.take_chunk(chunk.uncompressed_size)
     data = _unpacked(chunk)
     if len(data) != chunk.uncompressed_size:
-        raise ValueError(f"a chunk does not unfold to the {chunk.uncompressed_size} bytes that it says")
+        raise ValueError(f"a chunk does not decompress to its declared {chunk.uncompressed_size} bytes")
     if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
         raise ValueError("the checksum of a chunk is wrong")
     return data
 
 
 def _unpacked(chunk: Chunk) -> bytes:
-    # One byte more than it says is asked for, which shows that there are more.
+    # Request one byte more than declared, to detect excess data.
     wanted = chunk.uncompressed_size + 1
     match chunk.compression:
         case "":
@@ -41,4 +41,4 @@ def _unpacked(chunk: Chunk) -> bytes:
             frame: Any = import_module("lz4.frame")
             return frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=wanted)
         case other:
-            raise ValueError(f"a chunk is packed as {other[:20]!r}, which is not known")
+            raise ValueError(f"a chunk has the unknown compression {other[:20]!r}")

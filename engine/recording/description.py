@@ -1,4 +1,4 @@
-"""What a recording says about the run that it holds: enough to run it again."""
+"""Description of the recorded run: everything required to replay it."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from engine.runtime.run_options import RunOptions
 
 FORMAT = 1
 RECORD_NAME = "flexcell"
-"""The name of the MCAP metadata record that holds it."""
+"""Name of the MCAP metadata record of the description."""
 _CHECKSUM = "crc32"
 
 
 class RecordingDescription(msgspec.Struct, frozen=True, kw_only=True):
-    """One run: which behavior, what it was given, on which clock, recorded how."""
+    """One run: behavior, parameters and inputs, clock, recording options."""
 
     format: int = FORMAT
     run: str
@@ -28,25 +28,25 @@ class RecordingDescription(msgspec.Struct, frozen=True, kw_only=True):
     document: str
     """The meaning hash of the behavior."""
     behavior_file: str
-    """The attachment that is the behavior; the others are what it refers to."""
+    """The attachment with the behavior; the others are the documents that it references."""
     cell_file: str = ""
     parameters: dict[str, object] = {}
     inputs: dict[str, object] = {}
     seed: int = 0
     clock: Literal["virtual", "real"]
     supervision: RunOptions = RunOptions()
-    """How it was watched over from the start."""
+    """The supervision of the run at its start."""
     started_unix_s: float = 0.0
     epoch_ns: int = 0
-    """What the run's time 0 is in the times of the file: 0 on a virtual clock, the wall clock on a real one."""
+    """The run's time 0 in file time: 0 on a virtual clock, the wall clock time on a real one."""
     topic_rate_hz: float = 0.0
-    """At most that many messages of a topic were kept a second."""
+    """Maximum recorded rate of a topic, in messages per second."""
     topics: tuple[str, ...] = ()
     versions: dict[str, str] = {}
 
 
 def present_versions() -> dict[str, str]:
-    """Return the versions that may matter when a replay differs."""
+    """Return the package versions that may explain a difference in a replay."""
     return {
         "flexcell": version("flexcell"),
         "python": platform.python_version(),
@@ -56,7 +56,7 @@ def present_versions() -> dict[str, str]:
 
 
 def to_metadata(description: RecordingDescription) -> dict[str, str]:
-    """Return the key-value pairs of the metadata record: text as it is, everything else as JSON."""
+    """Return the key-value pairs of the metadata record: text unchanged, all other values as JSON."""
     plain: dict[str, object] = msgspec.to_builtins(description)
     pairs = {key: each if isinstance(each, str) else msgspec.json.encode(each).decode() for key, each in plain.items()}
     return {**pairs, _CHECKSUM: _checksum(pairs)}
@@ -66,7 +66,7 @@ def from_metadata(pairs: Mapping[str, str], *, where: object) -> RecordingDescri
     """Read a description back.
 
     Raises:
-        RecordingError: it is none, or of a later version.
+        RecordingError: it is not a description, or of a later version.
     """
     if pairs.get(_CHECKSUM) != _checksum(pairs):
         raise RecordingError("its description is damaged", where=where, hint="record it again")

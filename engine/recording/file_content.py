@@ -1,7 +1,7 @@
-"""The records of a recording as they lie in the file, whole or cut off in mid-record.
+"""The records of a recording in file order, complete or truncated within a record.
 
-Whatever is in a file that calls itself a recording, reading it ends in records or in one
-`RecordingError`, with no more time and memory than its size can be a reason for (`engine.recording.read_budget`).
+For any file content, reading yields records or raises one `RecordingError`, with time and memory
+bounded in proportion to the file size (`engine.recording.read_budget`).
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ _IN_CHUNKS = frozenset({Opcode.MESSAGE, Opcode.SCHEMA, Opcode.CHANNEL})
 
 @dataclass(kw_only=True)
 class FileContent:
-    """What was read: metadata and attachments by name, messages of one topic in file order."""
+    """Metadata and attachments by name, and the messages of one topic in file order."""
 
     metadata: dict[str, dict[str, str]] = field(default_factory=dict[str, dict[str, str]])
     attachments: dict[str, bytes] = field(default_factory=dict[str, bytes])
@@ -75,10 +75,10 @@ class FileContent:
 
 
 def read_content(path: Path, topic: str) -> FileContent:
-    """Read one topic of a recording, by its index where it has one.
+    """Read one topic of a recording, through its index if there is one.
 
     Raises:
-        RecordingError: the file cannot be read, is no MCAP file, or is damaged.
+        RecordingError: the file cannot be read, is not an MCAP file, or is damaged.
     """
     with open_for_reading(path) as stream:
         return _by_index(stream, topic) or _in_sequence(stream, topic)
@@ -86,14 +86,14 @@ def read_content(path: Path, topic: str) -> FileContent:
 
 @contextmanager
 def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
-    """Open a file and give what goes through its records from the start, as often as it is called.
+    """Open a file and return a function that iterates over its records from the start on each call.
 
-    The records end where the file was cut off; chunks come unfolded. Where the file is damaged,
-    going through it raises whatever the parsing stumbles over.
+    The records end where the file is truncated; chunks are decompressed. In a damaged file,
+    the iteration raises the error of the parser.
 
     Raises:
-        OSError: it cannot be opened.
-        RecordingError: it is no MCAP file.
+        OSError: the file cannot be opened.
+        RecordingError: the file is not an MCAP file.
     """
     with path.open("rb") as stream:
         lock_against_removal(stream)
@@ -102,19 +102,19 @@ def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
 
 
 def lock_against_removal(stream: BinaryIO) -> None:
-    """Tell those who remove old recordings that this one is read, as long as it is open."""
+    """Lock an open recording against removal of old recordings."""
     try:
         fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except OSError:
-        return  # it is being written, and so in use anyway; or this file system knows no locks
+        return  # it is being written and therefore in use, or the file system does not support locks
 
 
 @contextmanager
 def open_for_reading(path: Path) -> Generator[BinaryIO]:
-    """Open a recording; whatever the parsing in the block stumbles over is told as a damaged file.
+    """Open a recording; any parser error in the block is raised as a damaged file.
 
     Raises:
-        RecordingError: the file cannot be read, is no MCAP file, or is damaged.
+        RecordingError: the file cannot be read, is not an MCAP file, or is damaged.
     """
     try:
         with path.open("rb") as stream:
@@ -126,18 +126,18 @@ def open_for_reading(path: Path) -> Generator[BinaryIO]:
         reason = error.strerror or str(error)
         raise RecordingError(f"cannot read this file: {reason}", where=path, hint="check its path") from error
     except Exception as error:
-        # Parsing raises whatever it stumbles over; for the reader all of it is a damaged file.
+        # The parser raises various exceptions; for the reader each means a damaged file.
         what = " ".join(str(error).split()) or type(error).__name__
         raise RecordingError(f"this file is damaged: {what}", where=path, hint="record it again") from error
 
 
 def _require_magic(stream: BinaryIO, path: Path) -> None:
     if stream.read(_MAGIC) != MCAP0_MAGIC:
-        raise RecordingError("this is not an MCAP file", where=path, hint="give what --record wrote")
+        raise RecordingError("this is not an MCAP file", where=path, hint="give a file that --record wrote")
 
 
 def new_read_budget(stream: BinaryIO) -> ReadBudget:
-    """Return what reading a file may take.
+    """Return the budget for reading a file.
 
     Raises:
         ValueError: it is too large.
@@ -146,7 +146,7 @@ def new_read_budget(stream: BinaryIO) -> ReadBudget:
 
 
 def read_index(stream: BinaryIO, allowance: ReadBudget) -> list[McapRecord] | None:
-    """Return the records of the index at the end of a file; None where there is none.
+    """Return the records of the index at the end of a file; None if there is no index.
 
     Raises:
         ValueError: the file is damaged.
@@ -156,7 +156,7 @@ def read_index(stream: BinaryIO, allowance: ReadBudget) -> list[McapRecord] | No
 
 
 def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
-    """Read with the index at the end of the file; None where there is none."""
+    """Read through the index at the end of the file; None if there is no index."""
     allowance = new_read_budget(stream)
     index = read_index(stream, allowance)
     if index is None:
@@ -198,7 +198,7 @@ def _index_start(stream: BinaryIO, size: int) -> int | None:
 
 
 def _verify_data(stream: BinaryIO, end: int) -> None:
-    """Raise ValueError where what lies before the record at `end`, which has its checksum, is not what was written."""
+    """Raise ValueError if the data before the record at `end` does not match the checksum in that record."""
     if end < _MAGIC:
         raise ValueError("its index begins before its data")
     stream.seek(end)
@@ -207,7 +207,7 @@ def _verify_data(stream: BinaryIO, end: int) -> None:
         raise ValueError("its data has no end")
     wanted = int.from_bytes(record[_FRAME:], "little")
     if wanted == 0:
-        # Nobody made one.
+        # The file has no checksum.
         return
     stream.seek(0)
     found = 0
@@ -253,7 +253,7 @@ def _keep(record: McapRecord, content: FileContent, allowance: ReadBudget) -> No
 
 
 def _records(stream: BinaryIO, offset: int, allowance: ReadBudget, *, only: bool = False) -> Iterator[McapRecord]:
-    """Go through the records from `offset` to the footer or to where the file was cut off."""
+    """Iterate over the records from `offset` to the footer or to the end of a truncated file."""
     size = stream.seek(0, 2)
     while offset + _FRAME <= size:
         stream.seek(offset)

@@ -1,4 +1,4 @@
-"""Turns a live recording into a finished one: compressed chunks and an index, events in chunks of their own."""
+"""Converts a live recording to a finalized one: compressed chunks with an index, events in separate chunks."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ PART = ".part"
 
 
 def part_file(path: Path) -> Path:
-    """Return where a recording lies while it grows."""
+    """Return the path of a recording while it is written."""
     return path.with_name(path.name + PART)
 
 
 def recovered_file(path: Path) -> Path:
-    """Return where what a killed process left of a recording is put: `run.mcap` → `run-recovered.mcap`."""
+    """Return the path for the recovered recording of a killed process: `run.mcap` → `run-recovered.mcap`."""
     return path.with_name(f"{path.stem}-recovered{path.suffix}")
 
 
 def finalize_recording(part: Path, target: Path) -> None:
-    """Write `target` from a live recording, closed or cut off, and remove that.
+    """Write `target` from a live recording, closed or truncated, and delete the live recording.
 
     Raises:
-        RecordingError: it cannot be read or written; it is left as it is.
+        RecordingError: a file cannot be read or written; the live recording is unchanged.
     """
     fresh = target.with_name(f".{target.name}.new")
     try:
@@ -47,10 +47,10 @@ def finalize_recording(part: Path, target: Path) -> None:
         fresh.unlink(missing_ok=True)
         reason = error.strerror or str(error)
         raise RecordingError(
-            f"the recording cannot be finished: {reason}", where=target, hint=f"it is whole in {part.name}"
+            f"the recording cannot be finalized: {reason}", where=target, hint=f"{part.name} is complete"
         ) from error
     except Exception as error:
-        # The parts of a damaged file may break in any way; what is left of it stays where it is.
+        # A damaged file may cause any parser error; the file is left unchanged.
         fresh.unlink(missing_ok=True)
         what = " ".join(str(error).split()) or type(error).__name__
         raise RecordingError(f"this file is damaged: {what}", where=part, hint="remove it") from error

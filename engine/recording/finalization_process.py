@@ -1,4 +1,4 @@
-"""Finishes a recording in a process of its own: compressing it would take the interpreter from the engine."""
+"""Finalizes a recording in a separate process: compression would block the interpreter of the engine."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ except RecordingError as error:
 
 
 async def finalize_in_subprocess(part: Path, target: Path) -> None:
-    """Do what `finalize_recording` does, at low priority; cancelled, it leaves the growing file as it is.
+    """Run `finalize_recording` in a process at low priority; if cancelled, the live file is unchanged.
 
     Raises:
-        RecordingError: it cannot be finished.
+        RecordingError: the recording cannot be finalized.
     """
-    # The process must import this very package, wherever this one found it.
+    # The process must import the same package as this process.
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)])}
     try:
         process = await asyncio.create_subprocess_exec(
@@ -38,14 +38,14 @@ async def finalize_in_subprocess(part: Path, target: Path) -> None:
             env=environment, stdin=DEVNULL, stdout=DEVNULL, stderr=PIPE, start_new_session=True,
         )  # fmt: skip
     except OSError as error:
-        raise RecordingError(f"the recording cannot be finished: {error}", where=part) from error
+        raise RecordingError(f"the recording cannot be finalized: {error}", where=part) from error
     try:
-        _, said = await process.communicate()
+        _, stderr = await process.communicate()
     except asyncio.CancelledError:
         process.kill()
         await process.wait()
         raise
     if process.returncode:
-        last = said.decode(errors="replace").strip().splitlines()[-1:]
+        last = stderr.decode(errors="replace").strip().splitlines()[-1:]
         reason = last[0] if last else f"exit code {process.returncode}"
-        raise RecordingError(reason, where=target, hint=f"it is whole in {part.name}")
+        raise RecordingError(reason, where=target, hint=f"{part.name} is complete")

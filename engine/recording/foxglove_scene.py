@@ -1,4 +1,4 @@
-"""The drawn cell as a Foxglove scene: one entity a body, fixed to its frame."""
+"""The geometry of the cell as a Foxglove scene: one entity per body, fixed to its frame."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class FoxgloveSceneUpdate(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def scene_update(scene: SceneDescription, at_ns: int) -> FoxgloveSceneUpdate:
-    """Return what the 3D panel draws; bodies of a kind that it has no primitive for are left out."""
+    """Return the scene of the 3D panel, without bodies for which Foxglove has no primitive."""
     stamp = time_of(at_ns)
     entities = (_entity(body, stamp) for body in scene.geometries)
     return FoxgloveSceneUpdate(entities=tuple(entity for entity in entities if entity is not None))

@@ -1,4 +1,4 @@
-"""What a recording shows in Foxglove without an extension: transforms, joint states, log lines.
+"""Foxglove views of a recording that need no extension: transforms, joint states, log lines.
 
 The names and fields are Foxglove's own schemas; see https://docs.foxglove.dev/docs/sdk/schemas.
 """
@@ -79,7 +79,7 @@ class FoxgloveView:
 
 
 def log_line(event: Event, at_ns: int) -> FoxgloveLog | None:
-    """Return what the log panel shows of an event; None for most."""
+    """Return the log line of an event; None for most events."""
     match event:
         case MessageLogged():
             level, name, text = _LEVELS.get(event.level, 2), event.path, event.message
@@ -130,4 +130,4 @@ VIEWS: Mapping[type, FoxgloveView] = {
         prefix="scene", schema_name="foxglove.SceneUpdate", kind=FoxgloveSceneUpdate, show=scene_update
     ),
 }
-"""How the messages of a type are shown, besides being recorded as they are."""
+"""Views of message types, in addition to the recorded messages themselves."""

@@ -1,4 +1,4 @@
-"""Random access to the topics of a recording by time, through its index; also while the recording grows.
+"""Random access to the topics of a recording by time, through its index, also during recording.
 
 Times are the run's: seconds since it began, as its events have them.
 """
@@ -49,7 +49,7 @@ class StoredMessage:
 
 @dataclass(kw_only=True)
 class _Track:
-    """The messages of one topic: when, and where. In a finished file `chunks` says which chunk, else it is empty."""
+    """Index of one topic: times and positions of its messages; `chunks` holds the chunk in a finalized file."""
 
     times_ns: array[int] = field(default_factory=lambda: array("q"))
     places: array[int] = field(default_factory=lambda: array("q"))
@@ -57,7 +57,7 @@ class _Track:
 
 
 class IndexedRecording:
-    """One recording, open for looking at its moments; belongs to one thread, a context. Make it with `open`."""
+    """One recording, open for random access; belongs to one thread; a context manager. Create it with `open`."""
 
     def __init__(self, path: Path, stream: BinaryIO) -> None:
         self.path = path
@@ -76,7 +76,7 @@ class IndexedRecording:
 
     @classmethod
     def open(cls, path: Path) -> Self:
-        """Open a recording; a finished one has an index, that of one that grows is made here.
+        """Open a recording; a finalized file has an index, for a live file it is built here.
 
         Raises:
             RecordingError: it cannot be read, or is damaged.
@@ -118,11 +118,11 @@ class IndexedRecording:
 
     @property
     def span_s(self) -> tuple[float, float]:
-        """When its first and its last message so far were; (0, 0) before the first event."""
+        """Times of its first and its last message so far; (0, 0) before the first event."""
         return (self._time_s(self._first_ns), self._time_s(self._last_ns)) if self._zero_ns is not None else (0.0, 0.0)
 
     def refresh(self) -> None:
-        """Take what has been written since into account.
+        """Read the records written since the last call.
 
         Raises:
             RecordingError: it is damaged.
@@ -132,7 +132,7 @@ class IndexedRecording:
                 self._scan()
 
     def at(self, topic: str, time_s: float) -> StoredMessage | None:
-        """Return the newest message of a topic at a moment; None before the first.
+        """Return the newest message of a topic at a time; None before the first.
 
         Raises:
             RecordingError: it is damaged.
@@ -168,7 +168,7 @@ class IndexedRecording:
             self._set_zero(events.times_ns[0], self._stored(events, 0).data)
 
     def _scan(self) -> None:
-        """Go on through a growing file, up to its last whole record."""
+        """Continue reading a live file, up to its last complete record."""
         size = self._stream.seek(0, 2)
         while self._read_to + _FRAME.size <= size:
             self._stream.seek(self._read_to)
@@ -177,7 +177,7 @@ class IndexedRecording:
             if used == 0:
                 _, length = _FRAME.unpack_from(block)
                 if length > MAX_RECORD:
-                    raise ValueError(f"a record says that it has {length} bytes, more than {MAX_RECORD}")
+                    raise ValueError(f"a record declares {length} bytes, more than {MAX_RECORD}")
                 if self._read_to + _FRAME.size + length > size:
                     return  # it is being written
                 self._stream.seek(self._read_to)
@@ -185,7 +185,7 @@ class IndexedRecording:
             self._read_to += used
 
     def _scan_block(self, block: bytes) -> int:
-        """Take all whole records of a block; returns how many bytes they are."""
+        """Process all complete records of a block; return their size in bytes."""
         at, end = 0, len(block)
         while at + _FRAME.size <= end:
             opcode, length = _FRAME.unpack_from(block, at)
@@ -196,7 +196,7 @@ class IndexedRecording:
                 channel, _, time_ns, _ = _MESSAGE.unpack_from(block, content)
                 topic = self._channels.get(channel)
                 if topic is None:
-                    raise ValueError(f"a message belongs to the channel {channel}, which it does not have")
+                    raise ValueError(f"a message belongs to the missing channel {channel}")
                 if topic == EVENT_TOPIC and self._zero_ns is None:
                     self._first_ns = time_ns
                     self._set_zero(time_ns, block[content + _MESSAGE.size : content + length])
@@ -243,7 +243,7 @@ class IndexedRecording:
         size = self._stream.seek(0, 2)
         self._stream.seek(offset)
         opcode, length = _FRAME.unpack(self._stream.read(_FRAME.size))
-        # Each entry stands once in the file; an index that is read again and again is made to.
+        # Each entry occurs once in a valid file; repeated entries indicate a crafted index.
         self._entry_bytes += length
         if opcode != Opcode.MESSAGE_INDEX or self._entry_bytes > size:
             raise ValueError("its index points outside the file")
@@ -279,7 +279,7 @@ class IndexedRecording:
 
 
 def _is_other(topic: str) -> bool:
-    """Events are told by the journal, and what is there for Foxglove is there twice."""
+    """Events come from the journal, and Foxglove views duplicate recorded messages."""
     return topic.startswith((_SHOWN_ELSEWHERE, EVENT_TOPIC))
 
 
@@ -293,6 +293,6 @@ def _told(path: Path) -> Generator[None]:
         reason = error.strerror or str(error)
         raise RecordingError(f"cannot read this file: {reason}", where=path, hint="check its path") from error
     except Exception as error:
-        # Parsing raises whatever it stumbles over; for the reader all of it is a damaged file.
+        # The parser raises various exceptions; for the reader each means a damaged file.
         what = " ".join(str(error).split()) or type(error).__name__
         raise RecordingError(f"this file is damaged: {what}", where=path, hint="record it again") from error

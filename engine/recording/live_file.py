@@ -1,8 +1,8 @@
-"""The file of a recording while it grows: MCAP without chunks, every record flushed, so a kill loses nothing.
+"""The live file of a recording: MCAP without chunks, every record flushed, so that a kill loses nothing.
 
-A recording is a viewer. What cannot be written ends the recording with a warning, never the run.
-On a virtual clock records are written at once; on a real one by a thread of its own, because a
-disk may stall for as long as it likes.
+A recording is passive: a write error ends the recording with a warning, never the run.
+On a virtual clock records are written immediately; on a real clock by a separate thread, because a
+disk may stall for an unbounded time.
 """
 
 from __future__ import annotations
@@ -23,30 +23,30 @@ from engine.host.private_files import open_private
 
 PROFILE = "flexcell"
 MAX_TOPIC_BACKLOG = 32 * 2**20
-"""Bytes that may wait for the disk before messages of topics are left out."""
+"""Maximum number of unwritten bytes; beyond it, messages of topics are dropped."""
 MAX_BACKLOG = 256 * 2**20
-"""Bytes that may wait for the disk before the recording is given up."""
+"""Maximum number of unwritten bytes; beyond it, the recording ends."""
 
 _log = logging.getLogger("flexcell.recording")
 _Job = Callable[[Writer], None]
 
 
 class LiveFile:
-    """One growing recording; used on one thread. Open it with `LiveFile.open`, end it with `close`.
+    """One live recording; used on one thread. Open it with `LiveFile.open`, end it with `close`.
 
     Args:
-        path: Where it is.
+        path: The path of the file.
         stream: The open file.
         inline: Write on the calling thread.
-        max_topic_bytes: What messages that may be left out may take.
+        max_topic_bytes: Maximum number of bytes of messages that may be dropped.
     """
 
     def __init__(self, path: Path, stream: BinaryIO, *, inline: bool, max_topic_bytes: int | None = None) -> None:
         self.path = path
         self.failure: str | None = None
-        """Why the recording ended early; None while all is well."""
+        """Why the recording ended early; None without an error."""
         self.left_out = 0
-        """Messages of topics that were left out because the disk was too slow."""
+        """Number of messages of topics dropped because the disk was too slow."""
         self._stream = stream
         self._writer = Writer(stream, use_chunking=False)
         self._schemas: dict[str, int] = {}
@@ -63,7 +63,7 @@ class LiveFile:
 
     @classmethod
     def open(cls, path: Path, *, inline: bool, max_topic_bytes: int | None = None) -> LiveFile:
-        """Create the file and keep other processes from writing to it.
+        """Create the file and lock it against other processes.
 
         Raises:
             RecordingError: it cannot be created, or another process records into it.
@@ -100,17 +100,17 @@ class LiveFile:
         return self._channels
 
     def write(self, channel: int, at_ns: int, message: bytes, *, sequence: int = 0) -> None:
-        """Add a message that must not be missing."""
+        """Add a message that must not be dropped."""
         self._do(lambda writer: writer.add_message(channel, at_ns, message, at_ns, sequence), size=len(message))
 
     def write_if_quick(self, channel: int, at_ns: int, message: bytes, *, sequence: int = 0) -> None:
-        """Add a message, or leave it out while the disk does not keep up, or where such messages have their share."""
+        """Add a message, or drop it if the disk is too slow or such messages have reached their limit."""
         if self._max_topic_bytes is not None:
             if self._topic_bytes > self._max_topic_bytes:
                 return
             self._topic_bytes += len(message)
             if self._topic_bytes > self._max_topic_bytes:
-                _log.warning("%s is as large as it may be: only events are recorded from here on", self.path)
+                _log.warning("%s has reached its maximum size: only events are recorded from here on", self.path)
                 return
         if self._taken - self._written > MAX_TOPIC_BACKLOG:
             self.left_out += 1
@@ -118,13 +118,13 @@ class LiveFile:
         self.write(channel, at_ns, message, sequence=sequence)
 
     def give_up(self, reason: str) -> None:
-        """Write nothing more; what is there stays good."""
+        """Stop writing; the file stays valid."""
         if self.failure is None:
             self.failure = reason
-            _log.warning("the recording ends here, the run goes on: %s: %s", self.path, reason)
+            _log.warning("the recording ends here, the run continues: %s: %s", self.path, reason)
 
     def close(self) -> None:
-        """Write what waits and close the file; may be called again."""
+        """Write queued records and close the file; may be called again."""
         if self._thread is not None:
             self._jobs.put(None)
             self._thread.join()
@@ -134,7 +134,7 @@ class LiveFile:
         try:
             self._stream.close()
         except OSError as error:
-            # What was still in the buffer could not be written; the rest of the file is good.
+            # The buffered data could not be written; the rest of the file is valid.
             self.give_up(_reason(error))
 
     def _do(self, job: _Job, *, size: int = 64) -> None:
@@ -154,7 +154,7 @@ class LiveFile:
             job, size = item
             if self.failure is None:
                 self._perform(job)
-            # Counted up by this thread alone, as `_taken` is by the other: neither needs a lock.
+            # Only this thread increments it, and only the other one increments `_taken`: neither needs a lock.
             self._written += size
 
     def _perform(self, job: _Job) -> None:
@@ -169,7 +169,7 @@ def require_unused(path: Path) -> None:
     """Check that no other process records into this file.
 
     Raises:
-        RecordingError: one does.
+        RecordingError: another process does.
     """
     if not path.is_file():
         return
@@ -178,10 +178,10 @@ def require_unused(path: Path) -> None:
             fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError as error:
         raise RecordingError(
-            "another process records into this file now", where=path, hint="give another file"
+            "another process is recording into this file", where=path, hint="give another file"
         ) from error
     except OSError:
-        return  # it cannot be read; creating it will say why
+        return  # unreadable; creating it raises the reason
 
 
 def _reason(error: Exception) -> str:

@@ -1,33 +1,33 @@
 """Limits the work that reading a recording may cause, in proportion to its file size.
 
-A file of a few bytes can say that it unfolds to terabytes, or hold millions of records that are empty. The limits leave
-room for what real recordings have (JSON that repeats itself is packed to about a hundredth) and end everything else
-with words. Each reading of a file has one `ReadBudget`.
+A file of a few bytes can claim to decompress to terabytes, or contain millions of empty records. The limits permit
+real recordings (repetitive JSON is compressed to about a hundredth) and reject everything else with an
+error message. Each read of a file has one `ReadBudget`.
 """
 
 from __future__ import annotations
 
 MAX_FILE = 16 * 2**30
-"""Bytes of a recording."""
+"""Maximum size of a recording in bytes."""
 MAX_RECORD = 128 * 2**20
-"""Bytes of one record as it lies in the file."""
+"""Maximum size of one record in the file, in bytes."""
 MAX_CHUNK = 64 * 2**20
-"""Bytes that one chunk may unfold to."""
+"""Maximum decompressed size of one chunk, in bytes."""
 MAX_INDEX = 64 * 2**20
-"""Bytes of the index at the end of a file."""
+"""Maximum size of the index at the end of a file, in bytes."""
 MAX_DOCUMENTS = 64 * 2**20
-"""Bytes of all attachments and all metadata."""
+"""Maximum size of all attachments and metadata, in bytes."""
 MAX_NAMES = 4096
-"""Attachments and metadata records."""
+"""Maximum number of attachments and metadata records."""
 MAX_KEPT = 2**30
-"""Bytes that the messages of one topic may take in memory."""
+"""Maximum size of the messages of one topic in memory, in bytes."""
 _MESSAGE_BYTES = 500
 _FREE_BYTES, _TIMES_UNFOLDED = 64 * 2**20, 300
 _FREE_RECORDS, _RECORDS_A_BYTE = 200_000, 0.25
 
 
 class ReadBudget:
-    """What is left of the limits while one file is read; each method raises ValueError where one is passed."""
+    """Remaining budget while one file is read; each method raises ValueError if a limit is exceeded."""
 
     def __init__(self, size: int) -> None:
         if size > MAX_FILE:
@@ -39,20 +39,20 @@ class ReadBudget:
         self._kept = MAX_KEPT
 
     def take_record(self, size: int) -> None:
-        """Count a record of so many bytes in the file or in a chunk."""
+        """Count a record of this size in the file or in a chunk."""
         if size > MAX_RECORD:
-            raise ValueError(f"a record says that it has {size} bytes, more than {MAX_RECORD}")
+            raise ValueError(f"a record declares {size} bytes, more than {MAX_RECORD}")
         self._records -= 1
         if self._records < 0:
             raise ValueError("it has more records than a file of its size can hold")
 
     def take_chunk(self, size: int) -> None:
-        """Count a chunk that says that it unfolds to so many bytes."""
+        """Count a chunk with this declared decompressed size."""
         if not 0 <= size <= MAX_CHUNK:
-            raise ValueError(f"a chunk says that it unfolds to {size} bytes, more than {MAX_CHUNK}")
+            raise ValueError(f"a chunk declares {size} decompressed bytes, more than {MAX_CHUNK}")
         self._unfolded -= size
         if self._unfolded < 0:
-            raise ValueError(f"it unfolds to more than {_TIMES_UNFOLDED} times its size")
+            raise ValueError(f"it decompresses to more than {_TIMES_UNFOLDED} times its size")
 
     def take_document(self, size: int) -> None:
         """Count an attachment or a metadata record that is kept."""

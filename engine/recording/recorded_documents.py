@@ -1,4 +1,4 @@
-"""The documents that go along with a recording, so that it can be replayed where they are gone or changed."""
+"""The documents stored in a recording, so that it can be replayed where they are missing or changed."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _SUBSTITUTES = ".substitutes.json"
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedDocuments:
-    """Texts by path below one folder; `behavior` and `cell` name two of them."""
+    """Texts by path relative to one folder; `behavior` and `cell` name two of them."""
 
     behavior: str
     cell: str = ""
     texts: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
 
     def unpack(self, folder: Path) -> Path:
-        """Write them below `folder` and return where the behavior is.
+        """Write the documents to `folder` and return the path of the behavior.
 
         Raises:
             RecordingError: a name leads out of the folder.
@@ -39,7 +39,7 @@ class RecordedDocuments:
         for name, text in self.texts.items():
             place = PurePosixPath(name)
             if place.is_absolute() or ".." in place.parts or not place.parts or "\0" in name:
-                raise RecordingError(f"a document calls itself {name!r}", hint="record it again")
+                raise RecordingError(f"a document has the invalid name {name!r}", hint="record it again")
             file = folder / place
             try:
                 file.parent.mkdir(parents=True, exist_ok=True)
@@ -50,7 +50,7 @@ class RecordedDocuments:
 
 
 def recorded_behavior(documents: RecordedDocuments) -> Behavior:
-    """Return the behavior that was executed, with what stood in for its nodes.
+    """Return the behavior that was executed, with its substitutes.
 
     Raises:
         FlexcellError: the documents are damaged.
@@ -61,7 +61,7 @@ def recorded_behavior(documents: RecordedDocuments) -> Behavior:
 
 
 def recorded_substitutes(documents: RecordedDocuments) -> Substitutes | None:
-    """Return what stood in for nodes of a behavior that was executed, None for nothing.
+    """Return the substitutes of an executed behavior; None if there were none.
 
     Raises:
         DocumentError: the document is damaged.
@@ -71,10 +71,10 @@ def recorded_substitutes(documents: RecordedDocuments) -> Substitutes | None:
 
 
 def collect_documents(behavior: Behavior, cell: Cell | None = None) -> RecordedDocuments:
-    """Read what a run is made of: the behavior, all it refers to, the cell and its entries.
+    """Read the documents of a run: the behavior, all that it references, the cell and its entries.
 
     Raises:
-        RecordingError: one of the files cannot be read any more.
+        RecordingError: one of the files can no longer be read.
     """
     texts = dict(_texts(behavior))
     cell_file = cell.file.resolve() if cell is not None else None
@@ -95,7 +95,7 @@ def _substitutes(behavior: Behavior) -> dict[str, bytes]:
 
 def _texts(behavior: Behavior) -> Iterator[tuple[Path, bytes]]:
     file = behavior.file.resolve()
-    # A behavior made in Python or parsed from text has no file of its own, whatever lies in the place of one.
+    # A behavior defined in Python or parsed from text has no file, even if its path exists.
     own = Path(behavior.source.file) == behavior.file and file.is_file()
     yield file, _read(file) if own else msgspec.json.format(msgspec.json.encode(behavior.document))
     for target in behavior.references.values():

@@ -1,4 +1,4 @@
-"""A run as its journal holds it: how it was started, its events, the world at its end, and what it executed."""
+"""A run in its journal: origin, events, state of the world at its end, and the executed behavior."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from engine.runtime.history.resume import effective_events
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedRun:
-    """One run of a journal, as of now."""
+    """One run of a journal, as currently stored."""
 
     place: Path
     record: RunRecord
@@ -28,12 +28,12 @@ class RecordedRun:
 
     @property
     def id(self) -> str:
-        """Its name."""
+        """The id of the run."""
         return self.record.id
 
     @cached_property
     def effective(self) -> tuple[Event, ...]:
-        """Its events without those that were done anew after a crash."""
+        """Its events without those that were repeated after a crash."""
         return tuple(effective_events(self.events))
 
     @cached_property
@@ -43,11 +43,11 @@ class RecordedRun:
         return changes[-1] if changes else self.record.document
 
     def knows_world_at(self, seq: int) -> bool:
-        """Tell whether the simulated world is known as it was at one of its events."""
+        """Return whether the state of the simulated world is known at an event."""
         return self.world is not None and self.world.seq == seq
 
     def require_event(self, seq: int) -> None:
-        """Check that it has an event.
+        """Check that the run has an event.
 
         Raises:
             DocumentError: it has no such event.
@@ -57,7 +57,7 @@ class RecordedRun:
             raise DocumentError(f"run {self.id} has no event {seq}", hint=f"it has 1 to {last}")
 
     def behavior(self) -> Behavior | None:
-        """Return the behavior as the run began it; None where the journal does not hold it.
+        """Return the behavior at the start of the run; None if the journal does not contain it.
 
         Raises:
             FlexcellError: the stored documents are damaged.
@@ -65,7 +65,7 @@ class RecordedRun:
         return recorded_behavior(self._documents) if self.origin.documents else None
 
     def behavior_now(self) -> Behavior | None:
-        """Return the behavior as the run executed it last, after hot changes; None where the journal does not hold it.
+        """Return the behavior at the end of the run, after hot changes; None if the journal does not contain it.
 
         Raises:
             FlexcellError: the stored documents are damaged.
@@ -77,7 +77,7 @@ class RecordedRun:
 
     @property
     def substitutes(self) -> Substitutes | None:
-        """What stood in for nodes of its behavior; None for nothing.
+        """The substitutes of its behavior; None if there were none.
 
         Raises:
             DocumentError: the document is damaged.
@@ -91,10 +91,10 @@ class RecordedRun:
 
 
 def read_run(place: Path | str, run_id: str) -> RecordedRun:
-    """Read everything that a journal has of a run.
+    """Read a run from a journal.
 
     Raises:
-        JournalError: there is no such run, it is damaged, or the journal does not tell how it was started.
+        JournalError: there is no such run, it is damaged, or the journal does not contain its origin.
     """
     path = journal_path(place)
     with open_snapshot(path) as journal:
@@ -110,7 +110,7 @@ def read_run(place: Path | str, run_id: str) -> RecordedRun:
 
 
 def changed_behavior(event: BehaviorChanged) -> Behavior | None:
-    """Return the version that took over in a hot change; None where its documents were not kept.
+    """Return the new version of a hot change; None if its documents were not kept.
 
     Raises:
         FlexcellError: they are damaged.
@@ -122,16 +122,16 @@ def changed_behavior(event: BehaviorChanged) -> Behavior | None:
 
 
 def version_snapshot(behavior: Behavior | None) -> VersionSnapshot:
-    """Return what a hot change to this version leaves in the journal; nothing where its documents cannot be kept."""
+    """Return the journal data of a hot change to this version; empty if its documents cannot be kept."""
     name, texts = document_snapshot(behavior) if behavior is not None else ("", {})
     return VersionSnapshot(behavior=name, documents=texts)
 
 
 def document_snapshot(behavior: Behavior) -> tuple[str, dict[str, str]]:
-    """Return the name and the texts under which a journal keeps what a behavior is made of; empty where it cannot."""
+    """Return the name and the texts under which a journal keeps a behavior; empty if that is not possible."""
     try:
         found = collect_documents(behavior)
         return found.behavior, {name: text.decode() for name, text in found.texts.items()}
     except (FlexcellError, UnicodeDecodeError):
-        # A file that went away since it was loaded: the run goes on, only a changed document cannot be compared.
+        # A file was deleted since it was loaded: the run continues, but a changed document cannot be compared.
         return "", {}

@@ -1,4 +1,4 @@
-"""A recording as it is read back: what run it was, its documents, its events with their exact times."""
+"""A recording in memory: description of the run, documents, events with exact times."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from engine.recording.recorded_documents import RecordedDocuments
 
 @dataclass(frozen=True, slots=True)
 class RecordedEvent:
-    """One event and when it happened; finer than its own `time_s`, which is rounded."""
+    """One event with its time, finer than its own `time_s`, which is rounded."""
 
     event: AnyEvent
     at_s: float
@@ -34,16 +34,16 @@ class Recording:
     documents: RecordedDocuments
     events: tuple[RecordedEvent, ...]
     resolution_s: float = 1e-9
-    """How finely `at_s` is known."""
+    """Resolution of `at_s`."""
 
     @property
     def complete(self) -> bool:
-        """Whether the end of the run is in it; else the process that wrote it was killed, or its disk full."""
+        """Whether it contains the end of the run; otherwise its process was killed, or the disk was full."""
         return bool(self.events) and isinstance(self.events[-1].event, RunEnded)
 
 
 def load_recording(path: Path) -> Recording:
-    """Read a recording. One that a killed process left is read from `<path>.part` as far as it goes.
+    """Read a recording. For a killed process, `<path>.part` is read up to its last complete record.
 
     Raises:
         RecordingError: it cannot be read, is damaged, or is no recording of a run.
@@ -53,10 +53,10 @@ def load_recording(path: Path) -> Recording:
     content = read_content(file, EVENT_TOPIC)
     if not content.complete and file.suffix != PART:
         raise RecordingError(
-            "this file was cut off", where=file, hint=f"rename it to *{PART} to use what there is of it"
+            "this file is truncated", where=file, hint=f"rename it to *{PART} to use its complete records"
         )
     if RECORD_NAME not in content.metadata:
-        raise RecordingError("this is not a recording of a run", where=file, hint="give what --record wrote")
+        raise RecordingError("this is not a recording of a run", where=file, hint="give a file that --record wrote")
     description = from_metadata(content.metadata[RECORD_NAME], where=file)
     documents = RecordedDocuments(
         behavior=description.behavior_file, cell=description.cell_file, texts=dict(content.attachments)

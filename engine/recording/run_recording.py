@@ -1,4 +1,4 @@
-"""Records one run into an MCAP file: its events, its documents, and what the bus carries meanwhile."""
+"""Records one run into an MCAP file: its events, its documents, and the topics of the bus."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ _log = logging.getLogger("flexcell.recording")
 
 @dataclass(frozen=True, kw_only=True)
 class RecordingOptions:
-    """What to record, and where to."""
+    """Path, documents and topics of a recording."""
 
     path: Path
     documents: RecordedDocuments
     rate_hz: float = DEFAULT_RATE_HZ
-    """At most that many messages of a topic are kept a second; 0 keeps none."""
+    """Maximum recorded rate of a topic, in messages per second; 0 records none."""
     topics: Sequence[str] = ("*",)
     """Names of topics, may hold `*` and `?`."""
     left_out: Sequence[str] = ()
-    """Names of topics that are not recorded, whatever `topics` says."""
+    """Names of topics that are never recorded, even if `topics` matches."""
     passive_topics: Sequence[str] = ()
-    """Names of topics that are recorded while somebody else listens, for what costs much to make."""
+    """Names of topics that are recorded only while another subscriber exists (expensive topics)."""
     max_topic_bytes: int | None = None
-    """What topics may take before only events are recorded; of the growing file, which is not compressed."""
+    """Maximum size of topics in the live file, which is not compressed; beyond it, only events are recorded."""
 
 
 class RunRecording:
-    """One run on its way into a file, from before its start to after its end; an async context.
+    """Recorder of one run, from before its start to after its end; an async context manager.
 
-    While it goes on the file is `<path>.part`. Make it, with `open`, before anything starts; then
-    `attach` the run before it is executed. Nothing that happens to the file reaches the run.
+    During the run the file is `<path>.part`. Create it with `open` before the run starts; then
+    `attach` the run before it is executed. File errors never affect the run.
     """
 
     def __init__(self, order: RecordingOptions, file: LiveFile) -> None:
@@ -71,14 +71,14 @@ class RunRecording:
 
     @classmethod
     def open(cls, order: RecordingOptions, *, inline: bool) -> Self:
-        """Create the file; what a killed process left of an earlier one is kept beside it.
+        """Create the file; an earlier recording of a killed process is recovered next to it.
 
         Args:
             order: What to record.
-            inline: Write on the calling thread, as behaves well on a virtual clock.
+            inline: Write on the calling thread, as required on a virtual clock.
 
         Raises:
-            RecordingError: it cannot be created, or another process records into it.
+            RecordingError: the file cannot be created, or another process records into it.
         """
         part = part_file(order.path)
         require_unused(part)
@@ -86,10 +86,10 @@ class RunRecording:
             kept = recovered_file(order.path)
             try:
                 finalize_recording(part, kept)
-                _log.warning("a recording was cut off here; what there is of it is in %s", kept)
+                _log.warning("an earlier recording is truncated; its complete records are in %s", kept)
             except RecordingError as error:
-                # What cannot be read any more is no reason to refuse the next recording.
-                _log.warning("a recording was cut off here and is lost: %s", error)
+                # An unreadable earlier recording must not prevent the new one.
+                _log.warning("an earlier recording is truncated and cannot be recovered: %s", error)
         return cls(order, LiveFile.open(part, inline=inline, max_topic_bytes=order.max_topic_bytes))
 
     def attach(
@@ -145,13 +145,13 @@ class RunRecording:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the file and finish it; a failure is a warning, as the run is over and well."""
+        """Close and finalize the file; a failure is logged as a warning, because the run is complete."""
         self.detach()
         closing = asyncio.get_running_loop().run_in_executor(None, self._finish)
         await asyncio.shield(closing)
 
     def detach(self) -> None:
-        """Record nothing more of the run."""
+        """Stop recording the run."""
         if self._run is not None:
             self._run.recorder.unwatch(self._take)
         if self._tap is not None:
@@ -159,10 +159,12 @@ class RunRecording:
             self._tap = None
 
     def close(self) -> None:
-        """Write what waits and leave the file as it grew, `<path>.part`; may wait for the disk."""
+        """Write queued records and keep the live file `<path>.part`; may block on the disk."""
         self._file.close()
         if self._file.left_out:
-            _log.warning("%d messages were left out of %s: the disk is too slow", self._file.left_out, self._order.path)
+            _log.warning(
+                "%d messages were dropped from %s: the disk is too slow", self._file.left_out, self._order.path
+            )
 
     def _finish(self) -> None:
         self.close()
@@ -184,7 +186,7 @@ class RunRecording:
         try:
             encoded = encode_event(event)
         except JournalError as error:
-            # With an event missing it could not be replayed; better that it ends here.
+            # Without this event it could not be replayed; therefore it ends here.
             self._file.give_up(error.message)
             return
         self._file.write(self._event_channel, now_ns, encoded, sequence=self._events)

@@ -1,4 +1,4 @@
-"""Records what the topics of a bus carry, each at most so many times a second."""
+"""Records the topics of a bus, each up to a maximum rate."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from engine.recording.foxglove_views import VIEWS, FoxgloveView
 from engine.recording.live_file import LiveFile
 
 _SLACK_NS = 1000
-"""A message that comes this much early is on time: clocks round."""
+"""Tolerance for early messages: clocks round."""
 
 _log = logging.getLogger("flexcell.recording")
 
 
 @dataclass(kw_only=True)
 class _Recorded:
-    """One topic on its way into the file."""
+    """Recording of one topic."""
 
     channel: int
     view: FoxgloveView | None
@@ -34,15 +34,15 @@ class _Recorded:
 
 
 class TopicTap:
-    """Subscribes to the topics whose names match, those that are made later too.
+    """Subscribes to the topics whose names match, including topics created later.
 
     Args:
-        file: Where messages go.
+        file: The file of the messages.
         now_ns: The time of the recording.
-        rate_hz: At most that many messages of a topic are kept a second.
+        rate_hz: Maximum recorded rate of a topic.
         patterns: Names, may hold `*` and `?`.
-        left_out: Names that are not recorded all the same.
-        passive_topics: Names that are recorded without being asked for.
+        left_out: Names that are never recorded.
+        passive_topics: Names that are recorded without creating demand for them.
     """
 
     def __init__(
@@ -67,11 +67,11 @@ class TopicTap:
         self._unwatch: Callable[[], None] = lambda: None
 
     def open(self, bus: SkillBus) -> None:
-        """Record from now on, beginning with the newest message of each topic."""
+        """Start recording, beginning with the newest message of each topic."""
         self._unwatch = bus.watch_topics(self._add)
 
     def close(self) -> None:
-        """Record the newest message of each topic where it was left out, and nothing more."""
+        """Record the newest message of each topic if it was dropped, and stop."""
         self._unwatch()
         for topic, subscription in self._subscriptions:
             subscription.close()
@@ -80,7 +80,7 @@ class TopicTap:
                 if newest is not None and newest != self._recorded[topic.name].last:
                     self._write(topic.name, newest)
             except Exception:
-                # As above; the run is over, and the other topics have last messages too.
+                # As above; the run has ended, and the other topics have last messages too.
                 _log.exception("the last message of topic %s is not recorded", topic.name)
         self._subscriptions.clear()
 
@@ -88,14 +88,14 @@ class TopicTap:
         if not _matches(topic.name, self._patterns) or _matches(topic.name, self._left_out):
             return
         if not issubclass(topic.kind, msgspec.Struct):
-            _log.warning("topic %s is not recorded: its messages are no structs", topic.name)
+            _log.warning("topic %s is not recorded: its messages are not structs", topic.name)
             return
         try:
             self._recorded[topic.name] = self._channels(topic)
             if topic.latest is not None:
                 self._write(topic.name, topic.latest)
         except Exception:
-            # Types and messages are a robot's; what cannot be written must not hurt who publishes it.
+            # Types and messages come from robot drivers; an encoding error must not affect the publisher.
             _log.exception("topic %s is not recorded", topic.name)
             return
         listen = topic.subscribe_passively if _matches(topic.name, self._overheard) else topic.subscribe
@@ -120,7 +120,7 @@ class TopicTap:
     def _write(self, name: str, message: object) -> None:
         recorded = self._recorded[name]
         now_ns = self._now_ns()
-        # From where it was due, not from now: else jitter would thin out what comes at about this rate.
+        # From the due time, not from now: otherwise jitter would drop messages of topics at about this rate.
         recorded.due_ns = max(recorded.due_ns, now_ns - self._period_ns) + self._period_ns
         recorded.last = message
         recorded.count += 1

@@ -1,4 +1,4 @@
-"""Deterministic re-execution of a recorded run: its results stand in for the robots, its events are compared.
+"""Deterministic re-execution of a recorded run: recorded results replace the robots, and events are compared.
 
 `replay(load_recording(path), load_states())` runs it; `report.difference` is the first difference.
 """

@@ -1,4 +1,4 @@
-"""When nodes were entered in a recording: what made a tree ask its checks again then left no other trace."""
+"""Entry times of nodes in a recording: the triggers for repeated checks of a tree leave no other trace."""
 
 from __future__ import annotations
 

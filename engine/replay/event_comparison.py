@@ -1,4 +1,4 @@
-"""Compares the events of a replay with those of its recording, one by one as they come."""
+"""Compares the events of a replay with those of its recording, one by one as they occur."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ TIME_TOLERANCE_S = 1.5e-6
 
 
 class EventComparison(Protocol):
-    """What is still to come, and whether it came."""
+    """Expected events, and whether they occurred."""
 
     @property
     def met(self) -> int:
-        """How many events were the same so far."""
+        """Number of equal events so far."""
         ...
 
     @property
     def done(self) -> bool:
-        """True when everything recorded has come again."""
+        """True when every recorded event has occurred."""
         ...
 
     def take(self, event: Event) -> ReplayDifference | None:
@@ -33,12 +33,12 @@ class EventComparison(Protocol):
         ...
 
     def missing(self, why: str) -> ReplayDifference | None:
-        """Return the first recorded event that has not come again, None when all have."""
+        """Return the first recorded event that has not occurred; None if all have."""
         ...
 
 
 class TotalOrderComparison:
-    """Every event at its place and time; for what was recorded on the virtual clock."""
+    """Compares every event in order and with its time; for recordings on the virtual clock."""
 
     def __init__(self, story: Sequence[RecordedEvent]) -> None:
         self._story = story
@@ -46,12 +46,12 @@ class TotalOrderComparison:
 
     @property
     def met(self) -> int:
-        """How many events were the same so far."""
+        """Number of equal events so far."""
         return self._met
 
     @property
     def done(self) -> bool:
-        """True when everything recorded has come again."""
+        """True when every recorded event has occurred."""
         return self._met == len(self._story)
 
     def take(self, event: Event) -> ReplayDifference | None:
@@ -63,7 +63,7 @@ class TotalOrderComparison:
         return event_difference(recorded, event, before=self._before(), why=_unknown(recorded, event))
 
     def missing(self, why: str) -> ReplayDifference | None:
-        """Return the first recorded event that has not come again, None when all have."""
+        """Return the first recorded event that has not occurred; None if all have."""
         if self.done:
             return None
         return event_difference(self._story[self._met].event, None, before=self._before(), why=why)
@@ -73,7 +73,7 @@ class TotalOrderComparison:
 
 
 class PathOrderComparison:
-    """The events of each path in their order, whenever they come; for what was recorded in real time.
+    """Compares the events of each path in order, without times; for recordings in real time.
 
     Between two branches the order of real time is chance, and so is every time.
     """
@@ -88,12 +88,12 @@ class PathOrderComparison:
 
     @property
     def met(self) -> int:
-        """How many events were the same so far."""
+        """Number of equal events so far."""
         return self._met
 
     @property
     def done(self) -> bool:
-        """True when everything recorded has come again."""
+        """True when every recorded event has occurred."""
         return self._met == len(self._story)
 
     def take(self, event: Event) -> ReplayDifference | None:
@@ -108,7 +108,7 @@ class PathOrderComparison:
         return event_difference(recorded, event, before=tuple(self._last[path]), why=_unknown(recorded, event))
 
     def missing(self, why: str) -> ReplayDifference | None:
-        """Return the first recorded event that has not come again, None when all have."""
+        """Return the first recorded event that has not occurred; None if all have."""
         left = [due[0] for due in self._due.values() if due]
         if not left:
             return None
@@ -125,12 +125,12 @@ def _is_same_time(recorded: Event, replayed: Event) -> bool:
 
 
 def _unknown(recorded: Event | None, replayed: Event) -> str:
-    """Say of a request that the recording has no answer for it."""
+    """Return the difference text of a request that the recording does not contain."""
     if not isinstance(replayed, (GoalSent, ServiceCalled)):
         return ""
     if isinstance(recorded, (GoalSent, ServiceCalled)) and recorded.path == replayed.path:
         return ""
-    return "the recording does not know this request"
+    return "the recording does not contain this request"
 
 
 def _path(event: Event) -> str:

@@ -40,7 +40,7 @@ _MISSING = object()
 
 
 def event_text(event: Event) -> str:
-    """Return a few words without the path."""
+    """Return a short text without the path."""
     match event:
         case RunStarted():
             return f"start of {event.behavior}"
@@ -85,7 +85,7 @@ def event_text(event: Event) -> str:
 
 
 def plain_event(event: Event) -> dict[str, Any]:
-    """Return what a replay has to give again: all but numbers, times, and places in files.
+    """Return the part of an event that a replay must reproduce: all but numbers, times, and file positions.
 
     Files move and lines shift without any change of what happens.
     """
@@ -103,7 +103,7 @@ def plain_event(event: Event) -> dict[str, Any]:
 
 
 def value_changes(recorded: object, replayed: object, at: str = "") -> Iterable[str]:
-    """Go through the values that are different, each as `speed: 0.5 ≠ 0.7`."""
+    """Iterate over the differing values, each as `speed: 0.5 ≠ 0.7`."""
     if isinstance(recorded, dict) and isinstance(replayed, dict):
         before, after = cast("dict[str, object]", recorded), cast("dict[str, object]", replayed)
         for key in chain(before, (key for key in after if key not in before)):

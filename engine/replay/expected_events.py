@@ -33,7 +33,7 @@ OutsideEvent = StopRequested | OperatorCommanded | OperatorChanged | BehaviorCha
 
 @dataclass(frozen=True)
 class Intervention:
-    """Something that came from outside the run: a stop, a command, an operator; `place` counts from 0."""
+    """An external intervention: a stop, a command, an operator; `place` counts from 0."""
 
     place: int
     at_s: float
@@ -43,21 +43,21 @@ class Intervention:
 
 
 def is_replayed(event: Event) -> bool:
-    """Tell whether a replay tells this event again; injected faults are in the answers already."""
+    """Return whether a replay reproduces this event; injected faults are part of the responses."""
     if isinstance(event, MessageLogged):
         return _UNAPPLIED.search(event.message) is None
     return not isinstance(event, (FaultInjected, LoopBlocked))
 
 
 def replayed_events(recording: Recording) -> tuple[RecordedEvent, ...]:
-    """Return the events that a replay tells again, from the first.
+    """Return the events that a replay reproduces, from the first.
 
     Raises:
-        RecordingError: this run cannot be run again from its start.
+        RecordingError: this run cannot be replayed from its start.
     """
     story = tuple(each for each in recording.events if is_replayed(each.event))
     if not story:
-        raise RecordingError("there is no event in this recording", where=recording.path, hint="record it again")
+        raise RecordingError("this recording contains no events", where=recording.path, hint="record it again")
     if not isinstance(story[0].event, RunStarted):
         raise RecordingError(
             "this recording does not begin with the start of its run", where=recording.path, hint="record it again"
@@ -68,7 +68,7 @@ def replayed_events(recording: Recording) -> tuple[RecordedEvent, ...]:
 
 
 def interventions(story: Sequence[RecordedEvent], supervision: RunOptions) -> Iterator[Intervention]:
-    """Go through what came from outside, without what the run did by itself because of it."""
+    """Iterate over external interventions, without the run's own reactions to them."""
     lost_s: float | None = None
     for place, each in enumerate(story):
         event = each.event
@@ -91,7 +91,7 @@ def _failure(event: OutsideEvent, end: Event) -> Cause | None:
 
 
 def _is_loss(event: OutsideEvent, after_s: float, supervision: RunOptions) -> bool:
-    """Tell whether this is what the policy for a lost operator does."""
+    """Return whether this event is the reaction of the loss policy."""
     if after_s < supervision.loss_timeout_s - _SLACK_S:
         return False
     if supervision.loss_policy == "hold":
@@ -102,9 +102,9 @@ def _is_loss(event: OutsideEvent, after_s: float, supervision: RunOptions) -> bo
 def _require_replayable(event: AnyEvent, recording: Recording) -> None:
     match event:
         case RunResumed() | OperatorCommanded(command="start_from"):
-            why = "this run did not go on from its start"
+            why = "this run was not executed from its start"
         case BehaviorChanged(documents=documents) if not documents:
-            why = "the behavior of this run was changed while it went on, and the new version was not kept"
+            why = "the behavior of this run was changed during the run, and the new version was not kept"
         case _:
             return
     raise RecordingError(

@@ -1,4 +1,4 @@
-"""A run of the journal as a recording: enough to replay it, without what the bus carried."""
+"""Converts a run of the journal to a recording that can be replayed, without topics of the bus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does to a replayed run what was done to the recorded one from outside: stops, commands, an operator."""
+"""Applies the external interventions of the recorded run to the replay: stops, commands, an operator."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _OPERATOR: Mapping[str, Callable[[Control], None]] = {
 
 
 def require_known(event: OutsideEvent) -> None:
-    """Refuse what cannot be done again.
+    """Reject interventions that cannot be replayed.
 
     Raises:
         RecordingError: this version does not know the command.
@@ -47,12 +47,12 @@ def require_known(event: OutsideEvent) -> None:
 
 
 def apply_intervention(run: Run, each: Intervention, versions: Mapping[int, Plan]) -> None:
-    """Do it again; raises ControlError where the run does not allow it now.
+    """Repeat an intervention; raises ControlError if the run does not permit it now.
 
     Args:
         run: The replayed run.
-        each: What was done to the recorded one.
-        versions: What took over in its hot changes, by the number of the event.
+        each: The intervention in the recorded run.
+        versions: New versions of its hot changes, by the number of the event.
     """
     match each.event:
         case BehaviorChanged() as event:

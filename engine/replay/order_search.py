@@ -1,4 +1,4 @@
-"""Searches the order of simultaneous answers with which a behavior reproduces its recording.
+"""Searches the order of simultaneous responses with which a behavior reproduces its recording.
 
 In the recorded run an answer took some turns of the loop from its device to the state that waited,
 during which others that were ready at that instant did things that left no event. How many turns
@@ -41,13 +41,13 @@ _MOST_ANSWERS = 8
 _TOGETHER = 3
 _INSTANT_S = 1e-9
 _EFFORT = 20_000
-"""Events to be gone through in the search, at most."""
+"""Maximum number of events processed in the search."""
 
 
 def search_order(
     first: ReplayRun, attempt: Callable[[Mapping[int, int]], ReplayRun], story: Sequence[RecordedEvent]
 ) -> ReplayRun:
-    """Return the attempt that comes furthest, beginning with `first`; always the same one."""
+    """Return the attempt with the most equal events, beginning with `first`; deterministic."""
     best = first
     left = max(1, _EFFORT // len(story))
     while not best.same and best.met < len(story):
@@ -65,9 +65,9 @@ def search_order(
 
 
 def _variants(best: ReplayRun, story: Sequence[RecordedEvent]) -> Iterator[Mapping[int, int]]:
-    """Go through other orders of the answers of the instant at which an attempt failed.
+    """Iterate over other orders of the responses at the instant at which an attempt failed.
 
-    One answer after the other is moved, the last one first, then the last few together.
+    Responses are moved one after the other, the last one first, then the last few together.
     """
     instant_s = story[best.met].at_s
     places: list[int] = []

@@ -8,7 +8,7 @@ from engine.event import Cause
 
 
 def error_from_cause(cause: Cause) -> FlexcellError:
-    """Return an error that gives the same cause again, but for places in files of code."""
+    """Return an error with the same cause, except for positions in code files."""
     found: object = getattr(errors, cause.kind, None)
     kind = found if isinstance(found, type) and issubclass(found, FlexcellError) else _kind(cause.kind)
     error = kind(cause.message, where=cause.where or None)
@@ -22,7 +22,7 @@ def _reason(cause: Cause) -> BaseException:
     found: object = getattr(errors, cause.kind, None)
     if isinstance(found, type) and issubclass(found, FlexcellError):
         return error_from_cause(cause)
-    # Somebody else's exception: only its name and its text are told.
+    # An exception of another package: only its name and its text are recorded.
     error = type(cause.kind or "Exception", (Exception,), {})(cause.message)
     if cause.because is not None:
         error.__cause__ = _reason(cause.because)

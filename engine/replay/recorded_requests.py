@@ -23,7 +23,7 @@ from engine.recording import RecordedEvent
 
 @dataclass(frozen=True)
 class RecordedInstant:
-    """Where in the story something stands, from 0, and when it was."""
+    """Index of an event in the recording, from 0, and its time."""
 
     place: int
     at_s: float
@@ -31,7 +31,7 @@ class RecordedInstant:
 
 @dataclass(kw_only=True)
 class RecordedRequest:
-    """A call or goal with what came of it; `end` is None where the recording does not tell."""
+    """A call or goal with its result; `end` is None if the recording does not contain it."""
 
     sent: ServiceCalled | GoalSent
     sent_s: float
@@ -40,9 +40,9 @@ class RecordedRequest:
     held: list[RecordedInstant] = field(default_factory=list[RecordedInstant])
     resumed: list[RecordedInstant] = field(default_factory=list[RecordedInstant])
     cancelled: bool = False
-    """Whether its state was told to stop before it had ended, even if only just."""
+    """Whether its state was cancelled before it had ended, even if only just before."""
     cannot_hold: str = ""
-    """Why its device could not be held, where somebody tried."""
+    """Why its device could not be held, if that was requested."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class RecordedRead:
 
 
 class RecordedRequests:
-    """All requests of a story; each is taken once, in the order of its path."""
+    """All requests of a recording; each is used once, in the order of its path."""
 
     def __init__(self, story: Sequence[RecordedEvent]) -> None:
         self._requests: dict[str, list[RecordedRequest]] = defaultdict(list)
@@ -63,19 +63,19 @@ class RecordedRequests:
         self._index(story)
 
     def take(self, path: str) -> RecordedRequest | None:
-        """Return the next request of a path; None when the recording has no more."""
+        """Return the next request of a path; None if the recording has no more."""
         known = self._requests.get(path, ())
         number = self._taken[path]
         self._taken[path] += 1
         return known[number] if number < len(known) else None
 
     def take_read(self, path: str, topic: str) -> RecordedRead | None:
-        """Return the next message that a path read from a topic; None when the recording has no more."""
+        """Return the next message that a path read from a topic; None if the recording has no more."""
         due = self._reads.get((path, topic))
         return due.popleft() if due else None
 
     def give_back(self, read: RecordedRead) -> None:
-        """Leave a message to the next read: a read that was given up is not in the recording."""
+        """Return a message to the queue of the next read: a cancelled read is not in the recording."""
         self._reads[read.event.path, read.event.topic].appendleft(read)
 
     def _index(self, story: Iterable[RecordedEvent]) -> None:

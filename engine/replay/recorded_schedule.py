@@ -1,4 +1,4 @@
-"""Delivers recorded answers and messages, each at its recorded time and position.
+"""Delivers recorded responses and messages, each at its recorded time and position.
 
 Time alone does not give the order of what happened at one instant, and that order decides which
 branch of a concurrency was first. So a run recorded on the virtual clock gets each answer just
@@ -16,22 +16,22 @@ from engine.replay.replay_loop import ReplayLoop
 BEFORE_CANCEL = -1
 """In place of a number of turns: what seems to have been told to stop before it ended was told so after."""
 _DRIFT_S = 0.1
-"""A request that comes this close to its recorded time is answered at the recorded time."""
+"""Tolerance within which a request is answered at the recorded time."""
 
 
 @dataclass(eq=False)
 class ScheduledDelivery:
-    """Something to hand out: where in the story, when, and how."""
+    """A scheduled delivery: index in the recording, time, and callback."""
 
     place: int
     at_s: float
     deliver: Callable[[], object]
     late: bool = False
-    """Whether everything else of its instant goes first, as long as nobody asks for it."""
+    """Whether all other events of its instant have priority while no one requests it."""
 
 
 class RecordedSchedule:
-    """Stands beside a `ReplayLoop` and lets time pass from one recorded answer to the next.
+    """Controls a `ReplayLoop`: advances time from one recorded response to the next.
 
     Args:
         loop: The loop of the replay.
@@ -74,20 +74,20 @@ class RecordedSchedule:
         return self._loop.time() - self._zero_s
 
     def time_for(self, sent_s: float, ended_s: float) -> float:
-        """Return when to end now what took from `sent_s` to `ended_s` in the recording."""
+        """Return the end time now for a request that took from `sent_s` to `ended_s` in the recording."""
         now_s = self.now_s()
         if abs(now_s - sent_s) <= _DRIFT_S:
             return max(ended_s, now_s)
         return now_s + max(0.0, ended_s - sent_s)
 
     def is_delayed(self, place: int) -> bool:
-        """Tell whether what has this place comes some turns of the loop later than it might."""
+        """Return whether the delivery with this index is delayed by some iterations of the loop."""
         return self._turns.get(place, 0) > 0
 
     def expect(
         self, place: int, at_s: float, deliver: Callable[[], object], *, late: bool = False
     ) -> ScheduledDelivery:
-        """Hand something out at its place and time, perhaps at once; `deliver` must not record anything."""
+        """Schedule a delivery at its position and time, possibly immediately; `deliver` must not record events."""
         due = ScheduledDelivery(place, at_s, deliver, late and self._turns.get(place) != BEFORE_CANCEL)
         self._dues.append(due)
         self._hand_out_if_due(due)
@@ -100,12 +100,12 @@ class RecordedSchedule:
             self._hand_out_if_due(due)
 
     def forget(self, due: ScheduledDelivery) -> None:
-        """Hand it out no more."""
+        """Cancel the delivery."""
         if due in self._dues:
             self._dues.remove(due)
 
     def count(self) -> None:
-        """One more event of the story has happened: hand out what comes next, if it is time."""
+        """Count one more event of the recording, and make the next delivery if it is due."""
         self._happened += 1
         if self._by_place:
             following = next((due for due in self._dues if due.place == self._happened), None)

@@ -1,4 +1,4 @@
-"""The first difference between a recording and its replay, as one line and with what led to it."""
+"""The first difference between a recording and its replay, as one line and with the preceding events."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NOTHING = "nothing"
 
 @dataclass(frozen=True, kw_only=True)
 class ReplayDifference:
-    """Where a replay first does something else.
+    """The first difference of a replay.
 
     `number` is that of the recorded event, or of the replayed one where the recording has none.
     """
@@ -28,7 +28,7 @@ class ReplayDifference:
     replayed: str
     detail: str = ""
     before: tuple[str, ...] = ()
-    """The recorded events that led to it, oldest first."""
+    """The preceding recorded events, oldest first."""
 
     def __str__(self) -> str:
         place = f", {self.path}" if self.path else ""
@@ -37,7 +37,7 @@ class ReplayDifference:
         return f"{head}: recorded {self.recorded}; replayed {self.replayed}{detail}"
 
     def explained(self) -> str:
-        """Return the line, and below it the events that led to it."""
+        """Return the line, followed by the preceding events."""
         return "\n".join([str(self), "after", *(f"  {line}" for line in self.before)]) if self.before else str(self)
 
 
@@ -70,7 +70,7 @@ def _said(event: Event | None, path: str) -> str:
 
 
 def _detail(recorded: Event | None, replayed: Event | None) -> str:
-    """Say which values differ, where the wordings alone do not."""
+    """Return the differing values, if the texts of the events are equal."""
     if recorded is None or replayed is None or type(recorded) is not type(replayed):
         return ""
     if _path(recorded) != _path(replayed) or event_text(recorded) != event_text(replayed):

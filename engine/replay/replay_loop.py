@@ -1,4 +1,4 @@
-"""The virtual event loop of a replay: it can let one thing go before everything else that is ready."""
+"""The virtual event loop of a replay: it can run one callback before all other ready callbacks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stands in for the bus: every request of a state is answered as the recorded run was answered."""
+"""Replaces the bus: every request of a state receives its recorded response."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ S = TypeVar("S", bound=msgspec.Struct)
 
 
 class ReplayPort:
-    """Answers with the n-th recorded answer of the state that asks.
+    """Answers a state with its n-th recorded response.
 
     What the recording does not know waits until the replay is given up; that the request is
     another one than recorded is for the comparison of events to find, which sees it first.
@@ -38,14 +38,14 @@ class ReplayPort:
         self._timetable = timetable
         self._over = False
         self.waiting: dict[str, str] = {}
-        """What each path waits for and the recording does not have, by path."""
+        """Requests that are missing in the recording, by waiting path."""
 
     def abort(self) -> None:
-        """Answer nothing more; the run is being stopped."""
+        """Stop answering; the run is being stopped."""
         self._over = True
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
-        """Give the recorded answer at its recorded time; raises what the bus raised."""
+        """Return the recorded response at its recorded time; raises the recorded error of the bus."""
         self._require_going_on()
         address = f"{to}/{request.skill_name()}"
         recorded = self._requests.take(holder.branch)
@@ -58,7 +58,7 @@ class ReplayPort:
         return _typed(recorded.end.result, request.result_type(), address)
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
-        """Start the recorded goal; raises what the bus raised."""
+        """Start the recorded goal; raises the recorded error of the bus."""
         self._require_going_on()
         address = f"{to}/{goal.skill_name()}"
         recorded = self._requests.take(holder.branch)
@@ -73,11 +73,11 @@ class ReplayPort:
         return ReplayedGoal(recorded, end, self._timetable, lambda: self._over)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Give the message that was read here in the recording."""
+        """Return the message that was read here in the recording."""
         return await self.next_message(topic, kind, holder=holder)
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Give the message that was read here in the recording, when it was."""
+        """Return the message that was read here in the recording, at its recorded time."""
         self._require_going_on()
         recorded = self._requests.take_read(holder.branch, topic)
         if recorded is None:
@@ -96,7 +96,7 @@ class ReplayPort:
 
     @property
     def entries(self) -> EntrySchedule | None:
-        """When nodes were entered in the recording."""
+        """Entry times of nodes in the recording."""
         return self._entries
 
     async def _until(self, recorded: RecordedRequest, place: int) -> None:

@@ -1,4 +1,4 @@
-"""One replay of a recorded run, on a loop of its own, up to its end or its first difference."""
+"""One replay of a recorded run, on its own loop, up to its end or its first difference."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from engine.runtime.plan import Plan
 from engine.runtime.run import Run, RunResult
 
 _PATIENCE_S = 10.0
-"""How long after its last recorded event a run on the virtual clock may go on before it counts as stuck."""
+"""Time after the last recorded event beyond which a run on the virtual clock counts as stuck."""
 _REAL_PATIENCE_S = 3600.0
 NO_VERSIONS: Mapping[int, Plan] = {}
 _BEFORE = (RunStarted, StopRequested, OperatorCommanded, OperatorChanged, PauseConfirmed, MessageLogged)
@@ -77,16 +77,16 @@ class ReplayRun:
 
     @property
     def same(self) -> bool:
-        """Whether everything recorded came again and nothing else."""
+        """Whether all recorded events occurred and no others."""
         return self.difference is None
 
     @property
     def met(self) -> int:
-        """How many events were the same."""
+        """Number of equal events."""
         return self._comparison.met
 
     async def run(self) -> RunResult:
-        """Run it to its end or to the first difference."""
+        """Execute the replay to its end or to the first difference."""
         loop = asyncio.get_running_loop()
         assert isinstance(loop, ReplayLoop)
         description = self._recording.description

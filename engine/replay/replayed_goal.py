@@ -1,4 +1,4 @@
-"""A goal of a replay: it ends, is held and goes on as it did in the recording."""
+"""A goal of a replay: it ends, is held and resumed as in the recording."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.replay.recorded_schedule import RecordedSchedule, ScheduledDelivery
 
 
 class ReplayedGoal:
-    """The recorded goal, under way.
+    """The active recorded goal.
 
     Args:
         recorded: What the recording has of it; None when it does not know it.
@@ -51,7 +51,7 @@ class ReplayedGoal:
         return self._end
 
     def cancel(self) -> None:
-        """End as recorded; where the recording does not tell how, or is given up, at once."""
+        """End as recorded; immediately if the recording has no end, or the replay is over."""
         if self._finished:
             return
         if self._due is None or self._over():
@@ -61,7 +61,7 @@ class ReplayedGoal:
             self._timetable.request_delivery(self._due)
 
     async def hold(self) -> None:
-        """Return when the recording says that it was held, or when it has ended before that.
+        """Return when the goal was held in the recording, or when it has ended before that.
 
         Raises:
             BusError: it could not be held.
@@ -72,7 +72,7 @@ class ReplayedGoal:
         await self._confirmed(self._recorded.held if self._recorded is not None else [], self._holds)
 
     async def resume(self) -> None:
-        """Return when the recording says that it went on, or when it has ended before that."""
+        """Return when the goal was resumed in the recording, or when it has ended before that."""
         self._resumes += 1
         await self._confirmed(self._recorded.resumed if self._recorded is not None else [], self._resumes)
 
@@ -110,6 +110,6 @@ class ReplayedGoal:
 
 
 def wake_waiter(waiter: asyncio.Future[None]) -> None:
-    """Let who waits go on, unless it was cancelled meanwhile."""
+    """Wake the waiting task, unless it was cancelled."""
     if not waiter.done():
         waiter.set_result(None)

@@ -1,4 +1,4 @@
-"""Runs a recorded run again, in virtual time and without its robots, and tells the first difference."""
+"""Replays a recorded run in virtual time and without its robots, and reports the first difference."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ from engine.runtime.plan import Catalogue, Plan, new_plan
 
 @dataclass(frozen=True, kw_only=True)
 class ReplayReport:
-    """What came of a replay."""
+    """The result of a replay."""
 
     recording: Recording
     difference: ReplayDifference | None
-    """None when the run was the same."""
+    """None if the runs are equal."""
     events: tuple[Event, ...]
-    """What happened this time."""
+    """The events of the replay."""
     compared: int
-    """How many recorded events came again."""
+    """Number of recorded events that occurred."""
     duration_s: float
-    """How long the replay took, on the wall clock."""
+    """Duration of the replay on the wall clock."""
 
     @property
     def same(self) -> bool:
-        """Whether everything recorded came again and nothing else."""
+        """Whether all recorded events occurred and no others."""
         return self.difference is None
 
 
 def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | None = None) -> ReplayReport:
-    """Run a recording again, with another version of its behavior if one is given.
+    """Replay a recording, with another version of its behavior if one is given.
 
     Raises:
         RecordingError: it cannot be replayed.
-        DocumentError: the behavior cannot be run with what was given to the recorded one.
+        DocumentError: the behavior cannot be executed with the recorded parameters and inputs.
     """
     started_s = perf_counter()
     story = replayed_events(recording)

@@ -1,6 +1,6 @@
-"""Teaching by the Helping Hand (RCY 7.1): buttons trigger captures of where robots are, which become named entries.
+"""Teaching by the Helping Hand (RCY 7.1): buttons trigger captures of robot states, which become named entries.
 
-Knows the bus and its skills only: triggers come from any topic, robots answer their usual skills, the store
+Depends on the bus and its skills only: triggers come from any topic, robots provide their usual skills, the store
 takes what is saved.
 """
 

@@ -1,4 +1,4 @@
-"""From taught steps in their order to a behavior: approach, grasp, carry, release, taught motions in between."""
+"""Generates a behavior from taught steps: approach, grasp, transfer, release, with taught motions in between."""
 
 from __future__ import annotations
 
@@ -14,16 +14,14 @@ from engine.skills.proposing import Proposal, ProposalOptions, TaughtStep, ToolN
 from engine.teaching.proposal_nodes import Node, ProposalNodeBuilder
 from engine.teaching.step_roles import MOTIONS, PLACES, ObservedStep, assign_step_roles, guess_part
 
-_HEADER = "# Proposed from what was taught: {names}.\n# Overwrite an entry, and the next run moves otherwise.\n"
-_UNKNOWN_WIDTH = "Nobody said how wide the part is: whatever is between the fingers counts as held."
-_UNKNOWN_PART = (
-    "Nobody said which part is grasped {where}: in a cell that knows its parts, ways with it cannot be planned."
-)
-_END_HELD = "At the end the tool still holds something."
+_HEADER = "# Proposed from taught entries: {names}.\n# If an entry is overwritten, the next run uses the new values.\n"
+_UNKNOWN_WIDTH = "The width of the part is unknown: any object between the fingers counts as held."
+_UNKNOWN_PART = "The part grasped {where} is unknown: in a cell with known parts, paths with it cannot be planned."
+_END_HELD = "The tool still holds a part at the end."
 _PARAMETERS: Mapping[str, tuple[str, float, float, str]] = {
-    "speed": ("", 0.05, 1.0, "Share of the joint speed limits"),
-    "line_speed_m_s": ("m/s", 0.01, 0.5, "Speed on the straight ways to a part and back"),
-    "approach_m": ("m", 0.01, 0.5, "Straight way in front of a place, along the axis of the tool"),
+    "speed": ("", 0.05, 1.0, "Fraction of the joint speed limits"),
+    "line_speed_m_s": ("m/s", 0.01, 0.5, "Speed of straight approach and depart motions"),
+    "approach_m": ("m", 0.01, 0.5, "Length of the straight approach, along the axis of the tool"),
 }
 
 
@@ -35,22 +33,22 @@ def build_proposal(
     tool: ToolName = "gripper",
     parts: Mapping[str, Vector3 | None] | None = None,
 ) -> Proposal:
-    """Return the behavior that goes through taught steps.
+    """Return the behavior that executes taught steps.
 
     Args:
-        steps: In their order; those without a role get one.
+        steps: The steps in order; a step without a role gets one.
         options: Its name, and the defaults of its parameters.
-        arm: Who moves.
-        tool: What the arm holds with.
-        parts: What there is to be grasped, and where its middle is in the world where that is known.
+        arm: The arm that moves.
+        tool: The tool of the arm.
+        parts: The parts that can be grasped, with their centres in the world where known.
 
     Raises:
-        SkillFailed: a role does not fit, or nothing moves.
+        SkillFailed: a role does not fit its entry, or no step moves the arm.
     """
     known = parts or {}
     roles = [_with_part(taught, known) for taught in assign_step_roles(steps)]
     if all(taught.step.kind not in (*PLACES, *MOTIONS) for taught in roles):
-        raise SkillFailed("nothing moves", where="teach", hint="choose at least one place or motion")
+        raise SkillFailed("no step moves the arm", where="teach", hint="select at least one pose or motion")
     plan = _Plan(ProposalNodeBuilder(arm, tool), options)
     index = 0
     while index < len(roles):
@@ -63,7 +61,7 @@ def build_proposal(
 
 
 def _with_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> ObservedStep:
-    """Name the part of a grasp where nobody did."""
+    """Name the part of a grasp that has none."""
     step = taught.step
     if step.role not in ("grasp", "close") or step.part is not None:
         return taught
@@ -73,7 +71,7 @@ def _with_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> Obs
 
 @dataclass
 class _Plan:
-    """The states of the behavior so far, each still to be told what comes after it."""
+    """The states of the behavior so far; their next states are set later."""
 
     nodes: ProposalNodeBuilder
     options: ProposalOptions
@@ -82,10 +80,10 @@ class _Plan:
     remarks: dict[str, None] = field(default_factory=dict[str, None])
     widths: dict[str, float] = field(default_factory=dict[str, float])
     holds: str | None = None
-    """The part that is held, empty for one without a name, None for nothing."""
+    """The held part; empty for a part without a name, None for no part."""
 
     def take(self, steps: Sequence[ObservedStep], index: int) -> int:
-        """Make the states of the step at `index` and of those that belong to it; return how many these are."""
+        """Create the states of the step at `index` and of the steps that belong to it; return the number of steps."""
         taught = steps[index]
         if taught.role == "approach":
             following = steps[index + 1] if index + 1 < len(steps) else None
@@ -121,7 +119,7 @@ class _Plan:
         return header + write_yaml(document)
 
     def all_remarks(self) -> tuple[str, ...]:
-        """What the reader should know."""
+        """Remarks for the reader."""
         return (*self.remarks, *((_END_HELD,) if self.holds is not None else ()))
 
     def _via(self, place: ObservedStep) -> None:
@@ -130,14 +128,14 @@ class _Plan:
 
     def _follow(self, motion: ObservedStep) -> None:
         name = motion.step.name
-        start = self.nodes.free_to_start(motion, _NEXT, f"Free of collisions to where {name} begins.")
+        start = self.nodes.free_to_start(motion, _NEXT, f"Free of collisions to the start of {name}.")
         self._add(f"to_start_of_{name}", start, f"Move to the start of {name}")
-        words = f"As it was shown in {name}."
+        words = f"As taught in {name}."
         self._add(f"along_{name}", self.nodes.follow(motion, _NEXT, words), f"Follow {name}")
 
     def _open(self) -> None:
         part = self.holds or ""
-        self._add("let_go", self.nodes.let_go(_NEXT, "The tool lets go.", part=part), "Let go")
+        self._add("let_go", self.nodes.let_go(_NEXT, "The tool releases.", part=part), "Release")
         if part:
             self._add(f"detach_{part}", self.nodes.detach(part, _NEXT), "")
         self.holds = None
@@ -146,15 +144,15 @@ class _Plan:
         part = taught.step.part or ""
         self._missing(part, "where the tool closes")
         self.nodes.outcomes["missed"] = None
-        words = "The tool closes where it is."
+        words = "The tool closes at the current pose."
         node = self.nodes.hold(_NEXT, "missed", words, part=part, width=self._width(taught), like=taught)
-        self._add("hold", node, f"Hold {part or 'what is there'}")
+        self._add("hold", node, f"Grasp {part or 'the object'}")
         if part:
             self._add(f"attach_{part}", self.nodes.attach(part, _NEXT), "")
         self.holds = part
 
     def _at(self, steps: Sequence[ObservedStep], index: int, *, approach: ObservedStep | None) -> int:
-        """Grasp or release at a place; takes the action of the tool there, and the depart, along."""
+        """Grasp or release at a pose; includes the action of the tool there, and the depart."""
         place, count, like = steps[index], 1, None
         closing = place.role == "grasp"
         if index + count < len(steps) and steps[index + count].role == ("close" if closing else "open"):
@@ -178,11 +176,11 @@ class _Plan:
         self._missing(part, f"at {name}")
         nodes.outcomes["missed"] = None
         inside: dict[str, Node] = {
-            "open": nodes.let_go("approach", "Nothing is in the tool."),
+            "open": nodes.let_go("approach", "The tool is empty."),
             "approach": self._in_front(place, approach, "down", "Free of collisions"),
             "down": nodes.straight(place, "grasp", f"Straight to {name}."),
             "grasp": nodes.hold(
-                "attach" if part else "up", "let_go", f"The tool takes {part or 'the part'}.",
+                "attach" if part else "up", "let_go", f"The tool grasps {part or 'the part'}.",
                 part=part, width=self._width(like), like=like,
             ),
         }  # fmt: skip
@@ -190,13 +188,13 @@ class _Plan:
             inside["attach"] = nodes.attach(part, "up")
         inside |= {
             "up": self._straight_out(place, depart, "check"),
-            "check": nodes.still_held("picked", "let_go", "It came along.", part=part),
-            "let_go": nodes.let_go("detach" if part else "back_off", "Without the part the tool opens again."),
+            "check": nodes.still_held("picked", "let_go", "The part was lifted.", part=part),
+            "let_go": nodes.let_go("detach" if part else "back_off", "The tool opens again without the part."),
         }
         if part:
             inside["detach"] = nodes.detach(part, "back_off")
         inside["back_off"] = self._straight_out(place, depart, "missed")
-        words = f"Take {part or 'a part'} at {name}"
+        words = f"Pick {part or 'a part'} at {name}"
         self._add_machine(f"pick_{part or name}", inside, "open", "picked", words)
         self.holds = part
 
@@ -205,14 +203,14 @@ class _Plan:
         nodes.outcomes["missed"] = None
         inside: dict[str, Node] = {
             "approach": self._in_front(place, approach, "check", "Free of collisions, with the part,"),
-            "check": nodes.still_held("down", "missed", "Only what is still held is put down.", part=part),
+            "check": nodes.still_held("down", "missed", "A part is placed only if it is still held.", part=part),
             "down": nodes.straight(place, "let_go", f"Straight to {name}."),
-            "let_go": nodes.let_go("detach" if part else "up", "The part is let go.", part=part),
+            "let_go": nodes.let_go("detach" if part else "up", "The part is released.", part=part),
         }
         if part:
             inside["detach"] = nodes.detach(part, "up")
         inside["up"] = self._straight_out(place, depart, "placed")
-        words = f"Put {part or 'it'} down at {name}"
+        words = f"Place {part or 'it'} at {name}"
         self._add_machine(
             f"place_{part}_at_{name}" if part else f"place_at_{name}", inside, "approach", "placed", words
         )
@@ -229,7 +227,7 @@ class _Plan:
         return self.nodes.straight(place, then, f"Straight back from {place.step.name}.", before=True)
 
     def _width(self, like: ObservedStep | None) -> str:
-        """Return the parameter that has the width of what is grasped; one for each width that was taught."""
+        """Return the parameter with the width of the grasped part; one parameter for each taught width."""
         taught = like is not None and like.step.kind == "gripper" and like.width_m > 0.0
         width_m = like.width_m if like is not None and taught else self.options.width_m
         if self.nodes.tool != "gripper":
@@ -263,7 +261,7 @@ class _Plan:
                 measured = {"unit": unit} if unit else {}
                 made[name] = {"type": "number", "default": default, **limits, **measured, "description": words}
         for name, width_m in self.widths.items():
-            words = "Width of what is grasped, between the fingers"
+            words = "Width of the grasped part, between the fingers"
             limits = {"minimum": 0.0, "maximum": max(1.0, width_m)}
             made[name] = {"type": "number", "default": width_m, **limits, "unit": "m", "description": words}
         return made
@@ -283,7 +281,7 @@ class _Plan:
 
 
 _NEXT = "\0next"
-"""Stands in a transition for whatever comes after a state."""
+"""Placeholder in a transition for the next state."""
 
 
 def _transitions(node: Node) -> dict[str, object]:

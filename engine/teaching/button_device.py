@@ -1,4 +1,4 @@
-"""Follows an input device and tells of its buttons until it goes away."""
+"""Reads the button events of an input device until it is removed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _READ_BYTES = 4096
 
 
 async def button_events(device: Path) -> AsyncGenerator[ButtonEvent]:
-    """Yield what the buttons of `device` do; buttons that are down when it goes away are let go at last.
+    """Yield the button events of `device`; buttons that are pressed when it is removed are released at the end.
 
     `device` is an event file such as `/dev/input/by-id/…-event-kbd`. The loop is never blocked.
 
     Raises:
-        RobotError: it cannot be opened or read; the hint says what to check.
+        RobotError: the device cannot be opened or read; the hint says what to check.
     """
     loop = asyncio.get_running_loop()
     try:
@@ -28,7 +28,7 @@ async def button_events(device: Path) -> AsyncGenerator[ButtonEvent]:
         raise RobotError(
             f"the input device cannot be opened: {error.strerror}",
             where=str(device),
-            hint="see /dev/input/by-id; reading it needs the group `input`",
+            hint="see /dev/input/by-id; reading it requires membership in the group `input`",
         ) from error
     readable = asyncio.Event()
     reader = EventReader()

@@ -1,4 +1,4 @@
-"""Captures that wait to be looked at and saved: in memory, and on disk so that none is lost with the process."""
+"""Captures that are not yet saved: in memory, and on disk so that none is lost with the process."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from engine.skills.teaching import Capture
 from engine.suggestions import did_you_mean
 
 MAX_CAPTURES = 200
-"""More than these are refused: the buffer is no store."""
+"""Maximum number of captures; further ones are rejected, because the buffer is not a store."""
 
 _log = logging.getLogger("flexcell.teaching")
 
 
 class CaptureBuffer:
-    """The captures by number, oldest first; without a folder they live as long as this object.
+    """The captures by number, oldest first; without a folder they exist only in memory.
 
     Args:
-        folder: Where each capture is a file of its own; made when the first one is put. Files that
-            cannot be read are left where they are and named in the log.
+        folder: Folder with one file per capture; created with the first one. Unreadable files
+            are left unchanged and named in the log.
     """
 
     def __init__(self, folder: Path | None) -> None:
@@ -36,26 +36,26 @@ class CaptureBuffer:
 
     @property
     def captures(self) -> tuple[Capture, ...]:
-        """All of them, oldest first."""
+        """All captures, oldest first."""
         return tuple(self._captures.values())
 
     def next_id(self) -> int:
-        """Return a number that none has had.
+        """Return an unused number.
 
         Raises:
             StoreError: the buffer is full.
         """
         if len(self._captures) >= MAX_CAPTURES:
             raise StoreError(
-                f"{MAX_CAPTURES} captures wait to be saved", where="teach", hint="save or discard some of them"
+                f"{MAX_CAPTURES} captures are not saved yet", where="teach", hint="save or discard some of them"
             )
         return self._last + 1
 
     def put(self, capture: Capture) -> None:
-        """Keep a capture, in the place of that with the same number.
+        """Keep a capture; it replaces the one with the same number.
 
         Raises:
-            StoreError: it cannot be written; it is kept in memory all the same.
+            StoreError: the capture cannot be written; it is still kept in memory.
         """
         number = capture.summary.id
         self._last = max(self._last, number)
@@ -64,7 +64,7 @@ class CaptureBuffer:
             self._write(self._folder, capture)
 
     def get(self, number: int) -> Capture:
-        """Return a capture; raises StoreError when there is none of that number."""
+        """Return a capture; raises StoreError if no capture has this number."""
         found = self._captures.get(number)
         if found is None:
             hint = did_you_mean(str(number), [str(one) for one in self._captures])
@@ -72,7 +72,7 @@ class CaptureBuffer:
         return found
 
     def discard(self, number: int) -> None:
-        """Throw a capture away, if there is one."""
+        """Delete a capture if it exists."""
         if self._captures.pop(number, None) is not None and self._folder is not None:
             self._file(self._folder, number).unlink(missing_ok=True)
 
@@ -81,7 +81,7 @@ class CaptureBuffer:
             try:
                 capture = msgspec.json.decode(file.read_bytes(), type=Capture)
             except (OSError, msgspec.DecodeError, ValueError, FlexcellError) as error:
-                _log.warning("%s is no capture and is left alone: %s", file, error)
+                _log.warning("%s is not a valid capture and is ignored: %s", file, error)
                 continue
             self._captures[capture.summary.id] = capture
         self._captures = dict(sorted(self._captures.items()))

@@ -1,4 +1,4 @@
-"""Makes captures: one configuration, one pose, one frame, or a recording with the primitive learned from it."""
+"""Creates captures: one configuration, one pose, one frame, or a recording with the primitive learned from it."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from engine.teaching.joint_recording import JointRecording, path_length_rad
 
 
 class CaptureBuilder:
-    """Asks robots for what is captured and puts it into the buffer; raises FlexcellError with the reason."""
+    """Reads the data of a capture from the robots and puts it into the buffer; raises FlexcellError with the reason."""
 
     def __init__(self, bus: SkillBus, buffer: CaptureBuffer) -> None:
         self._bus = bus
         self._buffer = buffer
 
     async def joints(self, trigger: Trigger, robot: str) -> Capture:
-        """Capture where the joints are, and the pose of the tool for the details."""
+        """Capture the joint positions, with the pose of the tool as a detail."""
         state = self._joint_state(robot)
         return self._keep(
             Capture(
@@ -39,7 +39,7 @@ class CaptureBuilder:
         )
 
     async def pose(self, trigger: Trigger, robot: str) -> Capture:
-        """Capture the pose of the tool centre point in the world, and the joints for the details."""
+        """Capture the pose of the tool centre point in the world, with the joint positions as a detail."""
         state = self._joint_state(robot)
         return self._keep(
             Capture(
@@ -51,7 +51,7 @@ class CaptureBuilder:
         )
 
     async def gripper(self, trigger: Trigger, robot: str) -> Capture:
-        """Capture how far the gripper is open and whether it holds something, with where the arm is."""
+        """Capture the opening of the gripper and whether it holds a part, with the pose of the arm."""
         state = self._joint_state(robot)
         measured = await self._bus.call(ReadGripper(), to=f"{robot}/gripper")
         force_n = measured.force_n if measured.held else 0.0
@@ -66,7 +66,7 @@ class CaptureBuilder:
         )
 
     async def frame(self, trigger: Trigger, robot: str) -> Capture:
-        """Capture where `source_frame` is in `target_frame`; without a source the tool of the robot is meant."""
+        """Capture the pose of `source_frame` in `target_frame`; the default source is the tool of the robot."""
         if not trigger.source_frame:
             if not robot:
                 raise SkillFailed("name a `source_frame` or a robot", where=trigger.trig_name)
@@ -79,9 +79,9 @@ class CaptureBuilder:
         return self._keep(Capture(summary=self._summary(trigger, robot, "pose"), pose=pose))
 
     async def recorded(self, trigger: Trigger, recording: JointRecording) -> Capture:
-        """Capture a recording that ends now, and learn the primitive that the trigger asks for.
+        """Capture a recording that ends now, and learn the primitive that the trigger requests.
 
-        Where nothing can be learned the recording is kept, with the reason as its remark.
+        If learning fails, the recording is kept, with the reason as its remark.
         """
         trajectory = recording.end()
         cartesian = trigger.trig_callback == "cart_dmp_save"
@@ -108,7 +108,7 @@ class CaptureBuilder:
                 whole = msgspec.structs.replace(whole, joint_dmp=joint.dmp, joint_fit=joint.fit)
             whole = msgspec.structs.replace(whole, pose=await self._pose(recording.robot, last))
         except FlexcellError as error:
-            # The demonstration is worth more than the primitive: it can be learned from later.
+            # The demonstration is kept: the primitive can be learned from it later.
             kept = msgspec.structs.replace(summary, form="trajectory", remark=describe_cause(cause_of(error)))
             whole = msgspec.structs.replace(whole, summary=kept)
         return self._keep(whole)

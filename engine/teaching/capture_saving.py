@@ -1,4 +1,4 @@
-"""Writes a capture to the store as a named entry, in the form that is asked for."""
+"""Writes a capture to the store as a named entry, in the requested form."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _STORE = "store"
 
 
 async def save_capture(bus: SkillBus, capture: Capture, request: SaveCapture) -> tuple[EntryRecord, Capture]:
-    """Return the entry that was written, and the capture that knows of it.
+    """Return the written entry, and the capture with the entry in `saved_as`.
 
     Raises:
-        FlexcellError: the capture has no such form, the entry exists, or the store refuses it.
+        FlexcellError: the capture has no such form, the entry exists, or the store rejects it.
     """
     form = request.form or capture.summary.form
     value, known = await _value(bus, capture, form)
@@ -29,7 +29,7 @@ async def save_capture(bus: SkillBus, capture: Capture, request: SaveCapture) ->
             kind=form,
             name=request.name,
             value=msgspec.to_builtins(value),
-            # 0: only where there is none.
+            # 0: only if there is no entry.
             expected_revision=None if request.replace else 0,
             tags=request.tags or None,
             by=request.by,
@@ -43,7 +43,7 @@ async def save_capture(bus: SkillBus, capture: Capture, request: SaveCapture) ->
 
 
 async def _value(bus: SkillBus, capture: Capture, form: CaptureForm) -> tuple[Message, Capture]:
-    """Return the value of an entry, and the capture with what had to be worked out for it."""
+    """Return the value of an entry, and the capture with the values computed for it."""
     robot = capture.summary.robot
     match form:
         case "joints" if capture.joints:
@@ -71,12 +71,12 @@ async def _value(bus: SkillBus, capture: Capture, form: CaptureForm) -> tuple[Me
             raise SkillFailed(
                 f"capture {capture.summary.id} cannot be saved as {form}",
                 where="teach",
-                hint="a configuration can be joints or pose, a recording anything",
+                hint="a configuration can be saved as joints or pose, a recording in any form",
             )
 
 
 def _model(bus: SkillBus, robot: str) -> str:
-    """Return the model of a robot; empty where it does not say."""
+    """Return the model of a robot; empty if it does not report one."""
     try:
         said = bus.find_topic(f"{robot}/description").latest
     except BusError:

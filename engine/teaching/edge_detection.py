@@ -1,4 +1,4 @@
-"""What a trigger makes of a topic's messages: pressed, let go, or nothing new."""
+"""Detects edges of a button in the messages of a topic: pressed, released, or no change."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class EdgeDetector:
     Args:
         kind: The type of the messages.
         field: Its field; where it is empty, one of the usual names, or the only boolean field.
-        value: What counts as pressed.
+        value: The value that means pressed.
 
     Raises:
         BusError: the messages have no such field.
@@ -37,9 +37,9 @@ class EdgeDetector:
         self.pressed = False
 
     def take(self, message: object) -> ButtonEdge | None:
-        """Return what has changed with this message, None where nothing has."""
+        """Return the change by this message; None if there is none."""
         value = getattr(message, self._field)
-        # True == 1 in Python; a button that says 1 means something else than one that says True.
+        # True == 1 in Python, but a button value 1 is different from True.
         pressed = value == self._value and isinstance(value, bool) == isinstance(self._value, bool)
         if pressed == self.pressed:
             return None

@@ -1,4 +1,4 @@
-"""Where one frame of the cell is, seen from another."""
+"""Pose of one frame of the cell relative to another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Helping Hand: listens to triggers, captures where robots are, lets them be led, saves captures (RCY 7.1)."""
+"""The Helping Hand: handles triggers, captures robot states, starts hand guiding, saves captures (RCY 7.1)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _log = logging.getLogger("flexcell.teaching")
 
 
 def guidable_robots(bus: SkillBus) -> tuple[str, ...]:
-    """Return the robots on a bus that can be led by hand, sorted."""
+    """Return the robots on a bus that support hand guiding, sorted."""
     ending = f"/{GuideArm.skill_name()}"
     return tuple(sorted(row.name.removesuffix(ending) for row in bus.listing() if row.name.endswith(ending)))
 
@@ -64,17 +64,17 @@ class _TriggerSubscription:
 
 
 class HelpingHand:
-    """Answers `teach/…` while it is open; belongs to the event loop of its bus.
+    """Serves `teach/…` while it is open; belongs to the event loop of its bus.
 
-    What a trigger asks for is done one after the other, in the order in which the buttons were pressed;
-    recordings begin and end at once. A refusal is told in the status and changes nothing.
+    Trigger actions are executed one after the other, in the order in which the buttons were pressed;
+    recordings start and end immediately. A rejected action is reported in the status and changes nothing.
 
     Args:
-        bus: With the robots and the store.
+        bus: The bus with the robots and the store.
         robots: The arms that can be taught, by their names on the bus.
-        folder: Where captures are kept until they are saved or discarded; None to keep them in memory.
-        triggers: Listened to from the start, where `file` holds none.
-        file: Where the triggers are kept; None to keep them in memory.
+        folder: Folder of captures that are not yet saved or discarded; None keeps them in memory.
+        triggers: Initial triggers, if `file` has none.
+        file: File of the triggers; None keeps them in memory.
     """
 
     def __init__(
@@ -115,21 +115,21 @@ class HelpingHand:
         try:
             self._listen(self._file.load())
         except DocumentError as error:
-            # The rest of teaching works without triggers; whoever mends the file sees the line.
-            self._say(f"the triggers are not in force: {describe_cause(cause_of(error))}")
+            # Teaching works without triggers; the message tells the user to fix the file.
+            self._say(f"the triggers are not active: {describe_cause(cause_of(error))}")
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End recordings and guiding; what was captured stays in the buffer's folder."""
+        """End recordings and guiding; captures stay in the buffer's folder."""
         self._deafen()
         for robot in tuple(self._recordings):
             self._end_recording(robot)
         self._bus.withdraw(NAMESPACE)
         worker, self._worker = self._worker, None
         if worker is not None:
-            # What was recorded is kept before the end.
+            # Recorded data is kept before the end.
             await self._due.join()
             worker.cancel()
             await asyncio.wait((worker,))
@@ -139,7 +139,7 @@ class HelpingHand:
 
     @property
     def status(self) -> TeachStatus:
-        """What it does now."""
+        """The current status."""
         return TeachStatus(
             triggers=tuple(
                 TriggerStatus(
@@ -157,7 +157,7 @@ class HelpingHand:
         )
 
     def fired(self, trigger: Trigger, edge: ButtonEdge) -> None:
-        """Do what a trigger is for; `edge` is what its button did."""
+        """Execute the action of a trigger; `edge` is the change of its button."""
         held = trigger.trig_type == "hold"
         wanted = ButtonEdge.RELEASED if trigger.trig_type == "falling_edge" else ButtonEdge.PRESSED
         if trigger.trig_callback in _RECORDS:
@@ -192,7 +192,7 @@ class HelpingHand:
                 self._took(await self._capturing.frame(trigger, robot or ""))
 
     async def _guide(self, trigger: Trigger, *, on: bool | None) -> None:
-        """Let the arm float, or hold itself again; with `on` None whichever it does not now."""
+        """Start or end hand guiding of the arm; `on` None toggles it."""
         robot = self._robot_of(trigger)
         if robot is None:
             return
@@ -202,12 +202,12 @@ class HelpingHand:
             await self._bus.call(FinishGuiding(), to=robot)
             assert running is not None
             await running.result()
-            self._say(f"{robot} holds itself")
+            self._say(f"{robot} holds its position")
         elif not floating and on is not False:
             guide = self._bus.send_goal(GuideArm(), to=robot)
             await guide.accepted()
             self._guides[robot] = guide
-            self._say(f"{robot} floats: lead it by hand")
+            self._say(f"{robot} can be guided by hand")
 
     def _begin_recording(self, robot: str, trigger: Trigger) -> None:
         try:
@@ -217,7 +217,7 @@ class HelpingHand:
             self._say(describe_cause(cause_of(error)))
 
     def _end_recording(self, robot: str, *, of: Trigger | None = None) -> None:
-        """End a recording, only that of one trigger with `of`; what was recorded is worked on in its turn."""
+        """End a recording, with `of` only that of one trigger; its data is queued for processing."""
         running = self._recordings.get(robot)
         if running is None or (of is not None and running[0] != of):
             return
@@ -229,7 +229,7 @@ class HelpingHand:
         self._due.put_nowait((trigger, keep))
 
     def _robot_of(self, trigger: Trigger) -> str | None:
-        """Return the robot that is meant, and say so where it is not clear."""
+        """Return the robot of a trigger, and report if it is ambiguous."""
         name = trigger.robot_ns.strip("/")
         if name in self._robots:
             return name
@@ -252,7 +252,7 @@ class HelpingHand:
             except Exception:
                 # One capture that fails must not end teaching.
                 _log.exception("%s failed", trigger.trig_name)
-                self._say(f"{trigger.trig_name} failed; the log says why")
+                self._say(f"{trigger.trig_name} failed; see the log for the reason")
             finally:
                 self._due.task_done()
 
@@ -267,7 +267,7 @@ class HelpingHand:
         try:
             topic = self._bus.find_topic(name)
         except BusError:
-            # Nobody has published there: it is a button that is still to be pressed.
+            # No message was published there yet: the button has not been pressed.
             topic = self._bus.topic(name, ButtonState)
         listening.message_type = topic.kind.__name__
         try:
@@ -323,7 +323,7 @@ class HelpingHand:
     async def _teach_now(self, request: TeachNow) -> TeachStatus:
         lasts = request.callback in (*_RECORDS, "grav_comp")
         if request.callback in _RECORDS and not request.pressed:
-            # Whichever trigger began it.
+            # Whichever trigger started it.
             self._end_recording(request.robot)
         else:
             trigger = Trigger(
@@ -346,7 +346,9 @@ class HelpingHand:
                 await self._due.join()
                 return self.status
         known = ", ".join(one.trigger.trig_name for one in self._listening)
-        raise SkillFailed(f"there is no trigger {request.trig_name!r}", where=NAMESPACE, hint=known or "set some")
+        raise SkillFailed(
+            f"there is no trigger {request.trig_name!r}", where=NAMESPACE, hint=known or "set triggers first"
+        )
 
     async def _read_capture(self, request: ReadCapture) -> Capture:
         return self._buffer.get(request.id)
@@ -355,7 +357,7 @@ class HelpingHand:
         capture = self._buffer.get(request.id)
         record, kept = await save_capture(self._bus, capture, request)
         self._buffer.put(kept)
-        self._say(f"capture {request.id} is the entry {record.kind} {record.name}")
+        self._say(f"capture {request.id} is saved as {record.kind} {record.name}")
         return record
 
     async def _discard_capture(self, request: DiscardCapture) -> TeachStatus:

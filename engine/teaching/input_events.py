@@ -1,4 +1,4 @@
-"""Buttons of an input device of Linux, such as a Bluetooth media controller, read from its event file.
+"""Buttons of a Linux input device, such as a Bluetooth media controller, read from its event file.
 
 The kernel writes `struct input_event` of 64-bit machines: two longs of time, type, code, value
 (`linux/input.h`); keys are type 1 with value 0 (up), 1 (down) or 2 (repeated while held).
@@ -45,9 +45,9 @@ class ButtonEvent:
 
 
 class EventReader:
-    """Bytes to button events, however the bytes are cut; a button is told once for each change.
+    """Decodes bytes, in chunks of any size, to button events: one event per change of a button.
 
-    What is no key and repeats of a held key are left out.
+    Events of other types and repeats of a held key are ignored.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class EventReader:
         self._down: dict[str, None] = {}
 
     def feed(self, data: bytes) -> Iterator[ButtonEvent]:
-        """Yield what these bytes tell."""
+        """Yield the events in these bytes."""
         data = self._left + data
         whole = len(data) // _EVENT.size * _EVENT.size
         self._left = data[whole:]
@@ -73,7 +73,7 @@ class EventReader:
             yield ButtonEvent(button=button, pressed=pressed)
 
     def release(self) -> Iterator[ButtonEvent]:
-        """Yield the release of every button that is down: a device that went away holds nothing."""
+        """Yield the release of every pressed button: a removed device has no pressed buttons."""
         for button in tuple(self._down):
             del self._down[button]
             yield ButtonEvent(button=button, pressed=False)

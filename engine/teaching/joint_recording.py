@@ -1,4 +1,4 @@
-"""Follows the joints of a robot from its topic until told to end: what becomes a trajectory."""
+"""Records the joints of a robot from its topic until it is ended; the samples become a trajectory."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from engine.messages import JointState
 from engine.messages.demonstrations import Trajectory
 
 SAMPLE_S = 0.01
-"""Least time between two samples."""
+"""Minimum time between two samples."""
 MAX_SAMPLES = 30_000
 _DIGITS = 6
 
 
 class JointRecording:
-    """Records `<robot>/joint_state` from its making until `end`; it ends by itself when it is full.
+    """Records `<robot>/joint_state` from construction until `end`; it ends automatically when it is full.
 
     Raises:
         BusError: the robot publishes no joints.
@@ -38,15 +38,15 @@ class JointRecording:
         return len(self._times)
 
     def end(self) -> Trajectory:
-        """Stop recording and return what was recorded.
+        """Stop recording and return the samples.
 
         Raises:
-            SkillFailed: that is less than two samples.
+            SkillFailed: there are fewer than two samples.
         """
         self._subscription.close()
         if self.samples < 2:
             raise SkillFailed(
-                "the recording is too short", where=self.robot, hint="hold the button while the arm is led"
+                "the recording is too short", where=self.robot, hint="hold the button while the arm is guided"
             )
         return Trajectory(times_s=tuple(self._times), joints=tuple(self._joints), names=self._names)
 
@@ -62,7 +62,7 @@ class JointRecording:
 
 
 def path_length_rad(trajectory: Trajectory) -> float:
-    """Return the way of all joints together, the sum of the lengths of all steps."""
+    """Return the path length in joint space, the sum of the lengths of all steps."""
     rows = trajectory.joints
     steps = itertools.pairwise(rows)
     return sum(sum((b - a) ** 2 for a, b in zip(one, two, strict=True)) ** 0.5 for one, two in steps)

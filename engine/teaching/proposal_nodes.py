@@ -1,4 +1,4 @@
-"""The nodes of a proposed behavior, as they stand in its document."""
+"""The nodes of a proposed behavior, as document data."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ASKS = {"gripper": "gripper.CheckHeld", "hand": "hand.CheckHeld", "magnet": "ma
 
 @dataclass
 class ProposalNodeBuilder:
-    """Makes nodes for one arm and its tool, and remembers which parameters and outcomes they need."""
+    """Creates nodes for one arm and its tool, and collects the parameters and outcomes that they require."""
 
     arm: str
     tool: ToolName
@@ -30,29 +30,29 @@ class ProposalNodeBuilder:
     outcomes: dict[str, None] = field(default_factory=dict[str, None])
 
     def free(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:
-        """Move to a place free of collisions, or to in front of it."""
+        """Move to a pose, or to the approach pose before it, along a collision-free path."""
         where = "joints" if place.step.kind == "joints" else "pose"
         given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
         return self._free(given, then, words)
 
     def free_to_start(self, motion: ObservedStep, then: str, words: str) -> Node:
-        """Move to where a taught motion begins, free of collisions."""
+        """Move to the start of a taught motion along a collision-free path."""
         return self._free({"robot": self.arm, "start_of": {motion.step.kind: motion.step.name}}, then, words)
 
     def straight(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:
-        """Move the tool straight to a place, or to in front of it."""
+        """Move the tool straight to a pose, or to the approach pose before it."""
         where = "joints" if place.step.kind == "joints" else "target"
         given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
         if place.frame == "world":
             self.needed["line_speed_m_s"] = None
             given["speed_m_s"] = LINE_SPEED
         else:
-            # How far it is in another frame is not known, and so no speed can be kept.
+            # The distance in another frame is unknown, so no speed can be set.
             given["duration_s"] = LINE_S
         return self._state("motion.MoveLinear", given, {"reached": then}, words)
 
     def follow(self, motion: ObservedStep, then: str, words: str) -> Node:
-        """Carry out a taught motion."""
+        """Execute a taught motion."""
         state, key = {
             "trajectory": ("motion.FollowRecording", "recording"),
             "dmp": ("motion.FollowJointDmp", "dmp"),
@@ -66,7 +66,7 @@ class ProposalNodeBuilder:
         return self._state(state, {**self._tool(), **_named(part)}, {outcome: then}, words)
 
     def hold(self, then: str, missed: str, words: str, *, part: str, width: str, like: ObservedStep | None) -> Node:
-        """Close the tool, or switch it on; `width` is the parameter of the width, empty where nobody knows it."""
+        """Close the tool, or switch it on; `width` is the parameter of the width, empty if it is unknown."""
         given = {**self._tool(), **_named(part)}
         if self.tool == "hand":
             given["percent"] = 80
@@ -74,26 +74,26 @@ class ProposalNodeBuilder:
             self.needed[width] = None
             given["width_m"] = f"${{{width}}}"
         elif self.tool == "gripper":
-            # Whatever is between the fingers counts.
+            # Any object between the fingers counts.
             given |= {"width_m": 0.04, "tolerance_inner_m": 0.038, "tolerance_outer_m": 0.2}
         if self.tool == "gripper" and like is not None and like.force_n > 0.0:
             given["force_n"] = round(like.force_n, 1)
         return self._state(_HOLDS[self.tool], given, {"held": then, "missed": missed}, words)
 
     def still_held(self, then: str, lost: str, words: str, *, part: str) -> Node:
-        """Ask the tool whether it holds its part."""
+        """Check whether the tool holds its part."""
         node = self._state(_ASKS[self.tool], {**self._tool(), **_named(part)}, {"held": then, "lost": lost}, words)
         node["transitions"] = {"held": then, "lost": lost}
         return node
 
     def attach(self, part: str, then: str) -> Node:
-        """Plan with the part as with a piece of the arm."""
-        words = "From now on ways are planned with the part."
+        """Attach the part: plan with it as a part of the arm."""
+        words = "Paths are now planned with the attached part."
         return self._state("scene.Attach", {"part": part, "robot": self.arm}, {"attached": then}, words)
 
     def detach(self, part: str, then: str) -> Node:
-        """Plan without the part as held."""
-        words = "From now on the part stands where it is."
+        """Detach the part: plan without it."""
+        words = "The part is now an obstacle at its pose."
         return self._state("scene.Detach", {"part": part}, {"detached": then}, words)
 
     def _free(self, given: Node, then: str, words: str) -> Node:

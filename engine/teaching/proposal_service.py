@@ -1,4 +1,4 @@
-"""Gathers what is known of taught steps, from the bus of a cell or from its document, and proposes a behavior."""
+"""Collects the data of taught steps, from the bus of a cell or from its document, and proposes a behavior."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ M = TypeVar("M", bound=msgspec.Struct)
 
 _WORLD = "world"
 _TOOLS: Mapping[str, ToolName] = {"magnet": "magnet", "synergy": "hand"}
-"""The kinds of tools that are no grippers of two fingers."""
+"""The kinds of tools other than two-finger grippers."""
 
 
 async def propose(bus: SkillBus, request: ProposeBehavior) -> Proposal:
-    """Return the behavior that goes through taught steps in an open cell.
+    """Return the behavior that executes taught steps in an open cell.
 
     Raises:
-        FlexcellError: an entry is missing, the arm is not clear, or the steps make no sense.
+        FlexcellError: an entry is missing, the arm is ambiguous, or the steps are inconsistent.
     """
     described = _described(bus)
     records = [await _record(bus, step) for step in request.steps]
@@ -47,9 +47,9 @@ async def propose(bus: SkillBus, request: ProposeBehavior) -> Proposal:
 
 
 async def propose_offline(store: Store, cell: Cell, request: ProposeBehavior) -> Proposal:
-    """Return the behavior that goes through taught steps, from the store and the document of a cell alone.
+    """Return the behavior that executes taught steps, from the store and the document of a cell alone.
 
-    Where the tool is at joint configurations is not known then.
+    The pose of the tool at joint configurations is then unknown.
 
     Raises:
         FlexcellError: as `propose`.
@@ -64,7 +64,7 @@ async def propose_offline(store: Store, cell: Cell, request: ProposeBehavior) ->
 
 
 def _described(bus: SkillBus) -> dict[str, RobotDescription]:
-    """Return what the robots of a bus say of themselves, by name."""
+    """Return the descriptions of the robots of a bus, by name."""
     ending = "/description"
     topics = sorted(row.name for row in bus.listing() if row.kind == "topic" and row.name.endswith(ending))
     said = {name.removesuffix(ending): bus.find_topic(name).latest for name in topics}
@@ -76,7 +76,7 @@ async def _record(bus: SkillBus, step: TaughtStep) -> EntryRecord | None:
 
 
 def _arm(request: ProposeBehavior, arms: Sequence[str], records: Sequence[EntryRecord | None]) -> str:
-    """Return who moves: the arm that is named, the only one, or the one that names of entries begin with."""
+    """Return the arm: the named one, the only one, or the one whose name begins the names of entries."""
     named = request.options.arm
     if named:
         if named not in arms:
@@ -87,12 +87,12 @@ def _arm(request: ProposeBehavior, arms: Sequence[str], records: Sequence[EntryR
     names = [record.name for record in records if record is not None]
     begun = [arm for arm in arms if any(name.startswith((f"{arm}_", f"{arm}/", f"{arm}.")) for name in names)]
     if len(begun) != 1:
-        raise SkillFailed("which arm?", where="teach", hint=f"name one of {', '.join(arms) or 'none'}")
+        raise SkillFailed("the arm is ambiguous", where="teach", hint=f"name one of {', '.join(arms) or 'none'}")
     return begun[0]
 
 
 def _plain(step: TaughtStep, record: EntryRecord | None) -> ObservedStep:
-    """Return what an entry itself tells."""
+    """Return the data of an entry."""
     if record is None:
         return ObservedStep(step, held=step.name == "close")
     if record.kind == "gripper":
@@ -105,7 +105,7 @@ def _plain(step: TaughtStep, record: EntryRecord | None) -> ObservedStep:
 
 
 async def _known(bus: SkillBus, arm: str, step: TaughtStep, record: EntryRecord | None) -> ObservedStep:
-    """Return what an entry tells, and where the tool is there."""
+    """Return the data of an entry, with the pose of the tool."""
     taught = _plain(step, record)
     if record is not None and record.kind == "joints":
         joints = decode_entry(record, Joints).joints

@@ -1,4 +1,4 @@
-"""What taught steps are for, as far as their order, their names and their places tell."""
+"""Infers the roles of taught steps from their order, names and poses."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _GRASPS = {"pick", "grasp", "grip", "take", "fetch", "get"}
 _RELEASES = {"place", "release", "drop", "put", "lay"}
 _IN_FRONT = {"above", "over", "before", "approach", "pre", "near", "front", "prepick", "preplace"}
 _NEAR_M = 0.4
-"""A place farther from a grasp is not in front of it."""
+"""Maximum distance of an approach pose from its grasp."""
 _BESIDE_M = 0.05
-"""How far off the axis of the tool a place in front may be."""
+"""Maximum distance of an approach pose from the axis of the tool."""
 PART_NEAR_M = 0.15
 _FITTING: Mapping[str, tuple[Role, ...]] = {
     **dict.fromkeys(PLACES, ("via", "approach", "grasp", "release", "depart")),
@@ -32,7 +32,7 @@ _FITTING: Mapping[str, tuple[Role, ...]] = {
 
 @dataclass(frozen=True)
 class ObservedStep:
-    """A step with what is known of it: where the tool is there, in the world, and what the gripper was doing.
+    """A step with its data: the pose of the tool in the world, and the state of the gripper.
 
     `frame` is the one that a pose is given in.
     """
@@ -46,12 +46,12 @@ class ObservedStep:
 
     @property
     def role(self) -> Role:
-        """What it is for, decided."""
+        """The role of the step, once it is inferred."""
         assert self.step.role is not None
         return self.step.role
 
     def with_role(self, role: Role) -> ObservedStep:
-        """Return it with a role."""
+        """Return the step with a role."""
         return replace(self, step=TaughtStep(kind=self.step.kind, name=self.step.name, role=role, part=self.step.part))
 
 
@@ -77,7 +77,7 @@ def assign_step_roles(steps: Sequence[ObservedStep]) -> tuple[ObservedStep, ...]
 
 
 def guess_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> str:
-    """Return the part that is grasped at a place: the nearest, or the only one; empty where nothing tells."""
+    """Return the part that is grasped at a pose: the nearest, or the only one; empty if unknown."""
     tool = taught.tool
     if tool is not None:
         placed = {name: math.dist(xyz, tool.xyz) for name, xyz in parts.items() if xyz is not None}
@@ -88,7 +88,7 @@ def guess_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> str
 
 
 def _alone(taught: ObservedStep) -> ObservedStep:
-    """Give what needs no look at its neighbours its role."""
+    """Assign roles that do not depend on neighbouring steps."""
     step = taught.step
     if step.role is not None:
         return taught
@@ -104,7 +104,7 @@ def _alone(taught: ObservedStep) -> ObservedStep:
 
 
 def _by_the_tool(found: list[ObservedStep]) -> None:
-    """A place where the tool closes is a grasp, one where it opens with something in it a release."""
+    """Assign grasp to poses at which the tool closes, release to poses at which it opens with a part."""
     holds = False
     for index, taught in enumerate(found):
         after = found[index + 1].step if index + 1 < len(found) else None
@@ -127,7 +127,7 @@ def _by_name(taught: ObservedStep) -> ObservedStep:
 
 
 def _around(found: list[ObservedStep]) -> None:
-    """The place before a grasp or release is its approach where it lies in front of it; the one after, its depart."""
+    """Assign approach to a pose in front of the next grasp or release, and depart to one after it."""
     for index, taught in enumerate(found):
         if taught.step.role not in ("grasp", "release"):
             continue
@@ -137,7 +137,7 @@ def _around(found: list[ObservedStep]) -> None:
         while after < len(found) and found[after].step.role in ("open", "close"):
             after += 1
         if after < len(found) and found[after].step.role is None and _is_in_front(found[after], taught):
-            # It may as well be the approach of the next one, which then is nearer.
+            # It may be the approach of the next one instead, which is then nearer.
             following = found[after + 1] if after + 1 < len(found) else None
             if following is None or following.step.role not in ("grasp", "release"):
                 found[after] = found[after].with_role("depart")

@@ -1,4 +1,4 @@
-"""Trigger documents: which button does what, in the words of the Helping Hand's own configuration (RCY figure 12).
+"""Trigger documents: actions of buttons, with the keys of the Helping Hand's configuration (RCY figure 12).
 
     flexcell: 1
     triggers:
@@ -9,8 +9,8 @@
         trig_value: true
         trig_callback: joint_save
 
-A leading `/` of topics and namespaces means nothing; without a namespace the only robot is meant. A file
-that is only the list is taken as well.
+A leading `/` of topics and namespaces is ignored; the default namespace is that of the only robot. A file
+that contains only the list is accepted.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from engine.skills.teaching import Trigger
 
 
 class TeachDocument(StrictModel, frozen=True, kw_only=True):
-    """Triggers as written; the names are each used once."""
+    """Triggers as written; their names are unique."""
 
     flexcell: Literal[1]
     triggers: list[Trigger]
@@ -35,7 +35,7 @@ def load_triggers(path: Path | str) -> tuple[Trigger, ...]:
     """Read a trigger document.
 
     Raises:
-        DocumentError: it cannot be read, is none, or uses a name twice; `where` is the position.
+        DocumentError: the file cannot be read, is no trigger document, or uses a name twice; `where` is the position.
     """
     return _triggers(load_source(Path(path)))
 
@@ -44,7 +44,7 @@ def parse_triggers(text: str, *, file: str) -> tuple[Trigger, ...]:
     """Read the text of a trigger document; `file` is its name in positions.
 
     Raises:
-        DocumentError: it is none, or uses a name twice; `where` is the position.
+        DocumentError: the text is not a trigger document, or uses a name twice; `where` is the position.
     """
     return _triggers(parse_source(text, file=file))
 
@@ -57,7 +57,7 @@ def _triggers(source: DocumentSource) -> tuple[Trigger, ...]:
         if trigger.trig_name in seen:
             at: DataPath = (index, "trig_name") if bare else ("triggers", index, "trig_name")
             raise DocumentError(
-                f"two triggers are called {trigger.trig_name!r}",
+                f"two triggers have the name {trigger.trig_name!r}",
                 where=source.position(at),
                 hint="give each its own name",
             )

@@ -1,4 +1,4 @@
-"""Where the triggers of the Helping Hand are kept as YAML: what somebody wrote by hand stays as it is."""
+"""YAML file of the triggers of the Helping Hand; manual formatting and comments are preserved."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class TriggerFile:
     """The text of a trigger document, in a file or, with `path` None, in memory only.
 
     Args:
-        path: The file; it is made with the first change.
-        triggers: What holds where there is no file.
+        path: The file; it is created with the first change.
+        triggers: The triggers if there is no file.
     """
 
     def __init__(self, path: Path | None, triggers: Sequence[Trigger] = ()) -> None:
@@ -33,14 +33,14 @@ class TriggerFile:
 
     @property
     def name(self) -> str:
-        """The file's path, empty where there is none."""
+        """The file's path; empty if there is none."""
         return str(self._path) if self._path is not None else ""
 
     def load(self) -> tuple[Trigger, ...]:
-        """Return the triggers as the file has them now.
+        """Return the triggers currently in the file.
 
         Raises:
-            DocumentError: it cannot be read, or is no trigger document; `where` is the position.
+            DocumentError: the file cannot be read, or is not a trigger document; `where` is the position.
         """
         if self._path is not None and self._path.exists():
             try:
@@ -50,7 +50,7 @@ class TriggerFile:
         return parse_triggers(self.text, file=self.name or UNNAMED)
 
     def write(self, triggers: Sequence[Trigger]) -> tuple[Trigger, ...]:
-        """Put these in the place of those before, and return them; a trigger that is as it was keeps its lines.
+        """Replace the triggers and return them; an unchanged trigger keeps its lines.
 
         Raises:
             StoreError: the file cannot be written; nothing is changed.
@@ -61,7 +61,7 @@ class TriggerFile:
         """Write a whole document and return its triggers.
 
         Raises:
-            DocumentError: it is none; `where` is the position. Nothing is changed.
+            DocumentError: the text is not a trigger document; `where` is the position. Nothing is changed.
             StoreError: the file cannot be written; nothing is changed.
         """
         triggers = parse_triggers(text, file=self.name or UNNAMED)
@@ -81,7 +81,7 @@ class TriggerFile:
 
 
 def rewrite_triggers(text: str, triggers: tuple[Trigger, ...]) -> str:
-    """Return `text` with these triggers: those it has already keep their lines, with the comments above them."""
+    """Return `text` with these triggers: existing ones keep their lines, with the comments above them."""
     head, known = _blocks(text)
     if not triggers:
         return f"{_HEAD} []\n"
@@ -90,12 +90,12 @@ def rewrite_triggers(text: str, triggers: tuple[Trigger, ...]) -> str:
 
 
 def _key(trigger: Trigger) -> bytes:
-    # Python takes True for 1; a button does not.
+    # True == 1 in Python, but not as a button value.
     return msgspec.json.encode(trigger)
 
 
 def _blocks(text: str) -> tuple[str, dict[bytes, str]]:
-    """Return the lines before the first trigger, and the lines of each; without blocks where they share lines."""
+    """Return the lines before the first trigger, and the lines of each; no blocks if triggers share lines."""
     try:
         triggers = parse_triggers(text, file=UNNAMED)
         place = parse_source(text, file=UNNAMED).place
@@ -104,7 +104,7 @@ def _blocks(text: str) -> tuple[str, dict[bytes, str]]:
     children = place.children or {}
     items = children["triggers"].children if "triggers" in children else None
     starts = [item.line for item in (items or {}).values()]
-    # A bare list, or one on a single line, is written anew.
+    # A bare list, or one on a single line, is rewritten.
     if not starts or len(set(starts)) < len(starts) or starts[0] <= children["triggers"].key_line:
         return _HEAD, {}
     lines = text.rstrip("\n").split("\n")

@@ -1,6 +1,6 @@
 """Tests of behaviors: run one headless in virtual time, replay a recording.
 
-With pytest all of it comes by itself, see `engine.pytest_plugin`.
+The pytest plugin `engine.pytest_plugin` provides both automatically.
 """
 
 from engine.document.substitutes import SubstituteEnding

@@ -1,4 +1,4 @@
-"""Runs a behavior headless in virtual time for a test: what the pytest fixture `flexcell_run` does."""
+"""Runs a behavior headless in virtual time for a test; implements the pytest fixture `flexcell_run`."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from engine.testing.substitution import StandInFor, with_substitutes
 
 @dataclass(frozen=True, kw_only=True)
 class CompletedRun:
-    """A run that is over: how it ended and everything that happened."""
+    """An ended run: its result and all its events."""
 
     result: RunResult
     events: tuple[Event, ...]
 
     @property
     def outcome(self) -> str | None:
-        """Its outcome, None where it was stopped or ended with an error."""
+        """Its outcome; None if it was stopped or ended with an error."""
         return self.result.outcome
 
 
@@ -77,19 +77,19 @@ def run_behavior(
     Args:
         file: The behavior.
         catalogue: The states that it may use.
-        store: The store file of the run, so that tests leave the cell's own alone.
+        store: The store file of the run, so that tests do not modify the cell's store.
         parameters: Values for its parameters.
         inputs: Initial userdata.
-        seed: Of random choices and of the jitter of parts; parts lie exactly without one.
-        cell: The cell to run it in; the one the behavior names by default.
-        prepare: Puts fakes of a test on an empty bus; then no cell is opened.
+        seed: Seed of random choices and of the placement noise of parts; without a seed, no placement noise.
+        cell: The cell in which it runs; by default the cell that the behavior names.
+        prepare: Registers fakes of a test on an empty bus; then no cell is opened.
         faults: A fault document.
-        substitutes: What stands in for some of its nodes: a substitutes document, or by path pattern an outcome, an
+        substitutes: Substitutes of nodes: a substitutes document, or by path pattern an outcome, an
             `Ending`, a list of these for one activation after the other, or a state class.
-        watchers: Called with every event, such as those of a coverage.
+        watchers: Functions called with every event, such as a coverage collector.
 
     Raises:
-        DocumentError: the behavior has errors, or was given what it does not take.
+        DocumentError: the behavior has errors, or an argument is invalid for it.
         ControlError: it has substitutes, and a robot of the cell is real.
     """
     behavior = load_behavior(Path(file))

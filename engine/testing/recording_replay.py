@@ -1,4 +1,4 @@
-"""Replays a recording for a test: what the pytest fixture `flexcell_replay` does."""
+"""Replays a recording for a test; implements the pytest fixture `flexcell_replay`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recordings as tests of pytest: one test each, that replays it and fails with the first difference."""
+"""Recordings as pytest tests: one test per recording, which replays it and fails with the first difference."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ MARKER = "flexcell_replay"
 
 
 class RecordingTestFile(pytest.File):
-    """A recording as pytest collects it."""
+    """The pytest collector of a recording."""
 
     def collect(self) -> Iterator[pytest.Item]:
-        """Give its one test."""
+        """Yield its only test."""
         item: RecordingTestItem = RecordingTestItem.from_parent(self, name=self.path.stem)  # pyright: ignore[reportUnknownMemberType]
         item.add_marker(MARKER)
         yield item
@@ -30,7 +30,7 @@ class RecordingTestItem(pytest.Item):
     """Replays one recording."""
 
     def runtest(self) -> None:
-        """Replay it; raises what `repr_failure` words."""
+        """Replay it; raises errors that `repr_failure` formats."""
         recording = load_recording(self.path)
         description = recording.description
         for name, value in (("run", description.run), ("document_sha256", description.document)):
@@ -49,12 +49,12 @@ class RecordingTestItem(pytest.Item):
         return str(super().repr_failure(excinfo))
 
     def reportinfo(self) -> tuple[PathLike[str], int | None, str]:
-        """Return where it is, and its name in the summary."""
+        """Return its path, and its name in the summary."""
         return Path(self.path), None, f"replay of {self.name}"
 
 
 class ReplayDiffers(AssertionError):
-    """A replay did something else than its recording."""
+    """A replay differs from its recording."""
 
     def __init__(self, difference: ReplayDifference) -> None:
         super().__init__(str(difference))

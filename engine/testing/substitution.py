@@ -11,11 +11,11 @@ from engine.document.substitutes import Substitute, SubstituteEnding, load_subst
 from engine.state import State
 
 StandInFor = str | SubstituteEnding | Sequence[str | SubstituteEnding] | type[State]
-"""An outcome, how it ends, one of these for each activation in turn, or a class that is run instead."""
+"""An outcome, an ending, a list of these for successive activations, or a class that is executed instead."""
 
 
 def with_substitutes(behavior: Behavior, substitutes: Path | str | Mapping[str, StandInFor]) -> Behavior:
-    """Return a behavior with stand-ins: those of a substitutes document, or what a test says for each path pattern.
+    """Return a behavior with substitutes: those of a substitutes document, or of a test by path pattern.
 
     Raises:
         DocumentError: the document cannot be read or is not valid.

@@ -28,7 +28,7 @@ STEPS = [
     {"kind": "pose", "name": "bin"},
     {"kind": "action", "name": "open"},
 ]
-WORDS = ["Move to home", "Take gear at tray_pick", "Put gear down at bin"]
+WORDS = ["Move to home", "Pick gear at tray_pick", "Place gear at bin"]
 
 
 @pytest.fixture
@@ -80,10 +80,10 @@ def test_a_proposal_says_what_it_will_do_and_is_written_only_where_an_id_is_give
         ({"steps": []}, 422, "at least 1 item"),
         ({"steps": [{"kind": "joints", "name": "hme"}]}, 422, "there is no joints entry called hme"),
         ({"steps": [{"kind": "action", "name": "wave"}]}, 422, "there is no action 'wave'"),
-        ({"steps": [{"kind": "action", "name": "open"}]}, 422, "nothing moves"),
+        ({"steps": [{"kind": "action", "name": "open"}]}, 422, "no step moves the arm"),
         ({"steps": [{"kind": "joints", "name": "home", "role": "follow"}]}, 422, "joints home cannot be `follow`"),
         ({"steps": STEPS, "arm": "left"}, 422, "there is no arm left"),
-        ({"steps": STEPS, "id": "../../etc/x.yaml"}, 404, "this is no id of a document"),
+        ({"steps": STEPS, "id": "../../etc/x.yaml"}, 404, "this is not the id of a document"),
         ({"steps": STEPS, "id": "behaviors/x.json"}, 422, "pattern"),
         ({"steps": STEPS, "speed": 2}, 422, "less than or equal to 1"),
     ],
@@ -130,13 +130,13 @@ def test_entries_are_chosen_in_their_order_and_the_behavior_opens_in_the_editor(
         page.get_by_label("What above_tray is for").select_option("via")
         expect(preview.get_by_role("listitem")).to_have_text(["Move to home", "Move to above_tray", *WORDS[1:]])
         page.get_by_label("What is grasped").select_option("lid")
-        expect(preview.get_by_role("listitem").nth(2)).to_have_text("Take lid at tray_pick")
+        expect(preview.get_by_role("listitem").nth(2)).to_have_text("Pick lid at tray_pick")
         page.get_by_role("listitem", name="Step 2: above_tray").get_by_role("button", name="Remove").click()
         page.get_by_role("listitem", name="Step 1: home").get_by_role("button", name="Later").click()
         expect(page.get_by_role("listitem", name="Step 2: home")).to_be_visible()
         page.get_by_role("listitem", name="Step 2: home").get_by_role("button", name="Earlier").click()
         expect(preview.get_by_role("listitem")).to_have_text(
-            ["Move to home", "Take lid at tray_pick", "Put lid down at bin"]
+            ["Move to home", "Pick lid at tray_pick", "Place lid at bin"]
         )
         page.get_by_role("button", name="Create and open").click()
         expect(page.get_by_role("alert")).to_have_text("It needs a name")

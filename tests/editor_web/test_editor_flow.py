@@ -99,7 +99,7 @@ def test_a_problem_is_mended_by_one_of_the_fixes_that_are_offered(browser: Brows
         page.keyboard.press("Control+Shift+z")
         card(page, "root/rest").click()
         own = page.get_by_label("Problems of this node")
-        own.get_by_role("button", name="Give it to duration_s").click()
+        own.get_by_role("button", name="Rename it to duration_s").click()
         expect(page.locator(".problem-count")).to_contain_text("No problems")
         save(page)
     mended = file_text(shop, SHIFT_ID)

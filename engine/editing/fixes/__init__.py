@@ -1,4 +1,4 @@
-"""Quick fixes: for a finding, the edits that would mend it, each with a title; a person chooses, nothing is guessed."""
+"""Quick fixes: the edits that would resolve a finding, each with a title; a person chooses, nothing is guessed."""
 
 from engine.editing.fixes.fix import Fix
 from engine.editing.fixes.fix_registry import fixes_of

@@ -1,4 +1,4 @@
-"""Applies the safe fixes of a text one by one; each is kept only where the check confirms it."""
+"""Applies the safe fixes of a text one by one; each is kept only if the check confirms it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from engine.library.behavior_library import FindingView
 MAX_ROUNDS = 200
 """Maximum number of checks of one text."""
 _DEEPEST = 4
-"""So often what fixes bring to light is fixed before they must have been a gain."""
+"""Maximum number of rounds in which follow-up findings are fixed before the fixes must be an improvement."""
 _Key = tuple[str, str, str]
 AppliedFix = tuple[FindingView, Fix]
 
 
 @dataclass(frozen=True, kw_only=True)
 class FixResult:
-    """A text that was mended: what was fixed, in order, and what is left with the fixes to choose from."""
+    """A fixed text: the applied fixes in order, and the remaining findings with the fixes to choose from."""
 
     text: str
     fixed: tuple[AppliedFix, ...] = ()
@@ -32,16 +32,16 @@ class FixResult:
 
 
 def fix_text(text: str, *, file: Path, context: ProjectContext, likely: bool = False) -> FixResult:
-    """Make the fixes of a text that are sure.
+    """Apply the safe fixes of a text.
 
-    A fix is kept where its finding has gone and there are fewer findings and no more errors than before, if need be
-    after what it has brought to light was fixed as well: with a state that was unknown its parameters are known.
+    A fix is kept if its finding is resolved and there are fewer findings and no more errors than before, possibly
+    after its follow-up findings are fixed as well: once an unknown state is corrected, its parameters are checked.
 
     Args:
         text: The document.
-        file: Where it stands.
+        file: The file of the document.
         context: The states and behaviors around it.
-        likely: Where no fix is sure, make the first that the editor offers, but none that deletes nodes.
+        likely: If no fix is safe, apply the first that the editor offers, but none that deletes nodes.
     """
     work = _Work(text, file, context, likely)
     work.make()
@@ -62,7 +62,7 @@ class _Work:
         self.findings = self._check(text)
 
     def make(self) -> None:
-        """Make all that go together at once, then those that do not one by one."""
+        """Apply all compatible fixes together, then the others one by one."""
         while self._attempt(self._due()):
             pass
         while self._rounds < MAX_ROUNDS:
@@ -73,7 +73,7 @@ class _Work:
                 self._tried.clear()
 
     def offered(self) -> tuple[tuple[Fix, ...], ...]:
-        """Return what the editor offers for each finding that there is."""
+        """Return the fixes that the editor offers for each finding."""
         return fixes_of(self.text, self.findings, file=str(self._file), context=self._knowledge)
 
     def _due(self) -> list[AppliedFix]:
@@ -89,14 +89,14 @@ class _Work:
             yield from (fix for fix in fixes if not any(isinstance(edit, RemoveNodes) for edit in fix.edits))
 
     def _mark(self, due: AppliedFix) -> bool:
-        """Note that a fix is tried; False for one that was, since anything else changed."""
+        """Record that a fix is tried; False if it was tried already since the last change."""
         key = (_key(due[0]), due[1].title)
         is_new = key not in self._tried
         self._tried.add(key)
         return is_new
 
     def _attempt(self, due: Sequence[AppliedFix]) -> bool:
-        """Make fixes together, and those of what they bring to light; as it was, and False, where that is no gain."""
+        """Apply fixes together, and those of follow-up findings; undo them and return False if there is no gain."""
         text, findings, fixed = self.text, self.findings, list(self.fixed)
         for _ in range(_DEEPEST):
             if not due or not self._apply(due):
@@ -108,7 +108,7 @@ class _Work:
         return False
 
     def _apply(self, due: Sequence[AppliedFix]) -> bool:
-        """Make fixes whatever comes of it; False where they cannot be made, or none takes its finding away."""
+        """Apply fixes unconditionally; False if they cannot be applied, or none resolves its finding."""
         if self._rounds >= MAX_ROUNDS:
             return False
         edits = [edit for _, fix in due for edit in fix.edits]

@@ -1,4 +1,4 @@
-"""Fixes of what a behavior declares about itself."""
+"""Fixes of the declarations of a behavior."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_
 
 
 def unused_parameter(place: FixContext) -> Iterator[Fix]:
-    """Remove a parameter that nobody reads."""
+    """Remove a parameter that is never read."""
     name = place.names[0]
     declared = mapping(place.session.draft.data.get("parameters"))
     if name in declared:
@@ -18,7 +18,7 @@ def unused_parameter(place: FixContext) -> Iterator[Fix]:
 
 
 def unknown_success(place: FixContext) -> Iterator[Fix]:
-    """Name an outcome that is declared, or none."""
+    """Replace an undeclared outcome with a declared one, or remove it."""
     wrong = place.names[1] if len(place.names) > 1 else ""
     data = place.session.draft.data
     outcomes, good = strings(data.get("outcomes")), strings(data.get("success"))

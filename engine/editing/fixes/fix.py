@@ -1,4 +1,4 @@
-"""A fix, and the place of a finding that fixes are made for."""
+"""A fix, and the position of the finding that it resolves."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from engine.library.behavior_library import FindingView
 
 _NAMES = re.compile(r"`([^`]*)`")
 _SHORTEST = 4
-"""Letters of a name below which one slip makes another word of it."""
+"""Minimum length of a name for typo detection: in shorter names, one typo gives another word."""
 MAX_FIXES = 5
 """Maximum number of fixes offered for a finding."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fix:
-    """Edits that would mend a finding; `title` says all that they do.
+    """Edits that would resolve a finding; `title` describes them completely.
 
-    A fix is `sure` where it only writes what was evidently meant, or takes away what has no effect: it may be made
-    without asking. All others are for a person to choose.
+    A fix is `sure` if it only corrects an evident typo, or removes something without effect: it may be applied
+    automatically. For all others a person must choose.
     """
 
     title: str
@@ -35,9 +35,9 @@ class Fix:
 
 @dataclass(frozen=True, kw_only=True)
 class FixContext:
-    """A finding with the node it is about.
+    """A finding with its node.
 
-    `names` are the names in the message, in its order: what a finding is about stands there in backticks.
+    `names` are the names in backticks in the message, in order: the subjects of the finding.
     """
 
     finding: FindingView
@@ -47,39 +47,39 @@ class FixContext:
 
     @property
     def machine(self) -> NodeRef | None:
-        """The machine around the node, if it is in one."""
+        """The surrounding machine of the node, if there is one."""
         parent = self.ref.parent
         return parent if parent is not None and parent.kind in MACHINES else None
 
     @property
     def siblings(self) -> tuple[str, ...]:
-        """The names of the other nodes in the machine around it."""
+        """The names of the other nodes in the surrounding machine."""
         machine = self.machine
         inside = self.session.outline.children(machine) if machine is not None else ()
         return tuple(each.name for each in inside if each.name != self.ref.name)
 
     @property
     def leaving(self) -> tuple[str, ...]:
-        """The names by which the nodes of the machine around it may lead out."""
+        """The names of the outcomes of the surrounding machine."""
         return self.session.outcomes_inside(self.machine) if self.machine is not None else ()
 
     def section(self, key: str) -> Plain:
-        """Return a mapping of the node; an empty one where it has none."""
+        """Return a mapping of the node; empty if there is none."""
         return mapping(self.ref.data.get(key))
 
 
 def quoted_names(finding: FindingView) -> tuple[str, ...]:
-    """Return the names that the message of a finding is about."""
+    """Return the names in the message of a finding."""
     return tuple(_NAMES.findall(finding.message))
 
 
 def similar_names(name: str, known: Iterable[str], *, most: int = 3) -> list[str]:
-    """Return the known names that a mistyped one may mean, the nearest first."""
+    """Return the known names similar to a mistyped one, the closest first."""
     return difflib.get_close_matches(name, sorted(set(known)), n=most, cutoff=0.6)
 
 
 def is_typo(written: str, meant: str, known: Iterable[str]) -> bool:
-    """Tell whether a name is evidently a mistyped other one: one slip away from it, and from no other known name."""
+    """Return whether a name is evidently a typo: one edit away from the right name, and from no other known name."""
     return _is_near(written, meant) and not any(each != meant and _is_near(written, each) for each in known)
 
 
@@ -96,17 +96,17 @@ def _is_near(written: str, meant: str) -> bool:
 
 
 def mapping(value: object) -> Plain:
-    """Return a mapping as it is, anything else as an empty one."""
+    """Return a mapping unchanged, and an empty one for any other value."""
     return cast("Plain", value) if isinstance(value, dict) else {}
 
 
 def with_renamed_key(given: Plain, old: str, new: str) -> Plain:
-    """Return a mapping with one key under another name, in its place."""
+    """Return a mapping with one key renamed, in its position."""
     return {new if key == old else key: value for key, value in given.items()}
 
 
 def without_key(given: Plain, name: str) -> Plain | None:
-    """Return a mapping without a key; None where nothing stays."""
+    """Return a mapping without a key; None if it becomes empty."""
     return {key: value for key, value in given.items() if key != name} or None
 
 

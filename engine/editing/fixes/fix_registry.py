@@ -1,4 +1,4 @@
-"""Finds the fixes of findings: each kind of finding has a maker, those without have no fix."""
+"""Registry of fixes: maps each kind of finding to the function that creates its fixes; others have no fix."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def fixes_of(
 
     Args:
         text: The document that the findings are of.
-        findings: What the check says of it.
+        findings: The findings of the check.
         file: Name of the document.
         context: The states and behaviors around it.
     """
@@ -69,7 +69,7 @@ def fixes_of(
 def _of(session: EditSession, finding: FindingView) -> tuple[Fix, ...]:
     maker = _MAKERS.get(finding.code)
     ref = session.outline.refs.get(finding.path)
-    # What is wrong in a behavior that is referred to is mended there.
+    # Findings in a referenced behavior are fixed in its own document.
     if maker is None or ref is None or _ELSEWHERE.match(finding.message):
         return ()
     names = quoted_names(finding)

@@ -1,4 +1,4 @@
-"""Fixes of what a state or behavior is given: names that it does not know, values that are missing or out of range."""
+"""Fixes of parameters of a state or behavior: unknown names, missing values, values out of range."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PLAIN = ("number", "integer", "string", "boolean")
 
 
 def unknown_state(place: FixContext) -> Iterator[Fix]:
-    """Run a state that there is."""
+    """Replace an unknown state with an existing one."""
     wrong, known = place.names[0], place.session.context.catalogue
     for right in similar_names(wrong, known):
         edit = SetField(path=place.ref.path, field="state", value=right)
@@ -24,7 +24,7 @@ def unknown_state(place: FixContext) -> Iterator[Fix]:
 
 
 def unknown(place: FixContext) -> Iterator[Fix]:
-    """Give the value to the parameter that was meant, or take it away."""
+    """Move the value to the intended parameter, or remove it."""
     if len(place.names) < 2:
         return
     name, given = place.names[1], place.section("with")
@@ -33,12 +33,12 @@ def unknown(place: FixContext) -> Iterator[Fix]:
     for right in similar_names(name, known):
         if right not in given:
             put = SetParameter(path=place.ref.path, name=right, value=given.get(name))
-            yield Fix(title=f"Give it to `{right}`", edits=(clear, put), sure=is_typo(name, right, known))
+            yield Fix(title=f"Rename it to `{right}`", edits=(clear, put), sure=is_typo(name, right, known))
     yield Fix(title=f"Remove `{name}`", edits=(clear,))
 
 
 def missing(place: FixContext) -> Iterator[Fix]:
-    """Give a parameter what a parameter of the behavior has, make it one, or give it a value that it takes."""
+    """Bind a parameter to one of the behavior, declare one for it, or set it to a valid value."""
     if len(place.names) < 2:
         return
     name = place.names[1]
@@ -76,7 +76,7 @@ def _handed_on(place: FixContext, name: str, schema: Mapping[str, object], decla
 
 
 def _likely(schema: Mapping[str, object]) -> list[object]:
-    """Return values that a parameter takes for certain: its choices, both truths, the number nearest to zero."""
+    """Return values that are certainly valid: the choices, true and false, the number closest to zero."""
     choices = schema.get("enum")
     if isinstance(choices, list):
         return list(cast("list[object]", choices))[:3]
@@ -93,7 +93,7 @@ def _likely(schema: Mapping[str, object]) -> list[object]:
 
 
 def bad(place: FixContext) -> Iterator[Fix]:
-    """Set a number to the limit that it is beyond, take a choice that was meant, or the default."""
+    """Set a number to the limit that it exceeds, a choice to the intended one, or a value to the default."""
     name = place.names[0] if place.names else ""
     given = place.section("with")
     schema = schemas_of(place).get(name)
@@ -114,7 +114,7 @@ def bad(place: FixContext) -> Iterator[Fix]:
             edit = SetParameter(path=path, name=name, value=right)
             yield Fix(title=f"Set `{name}` to `{right}`", edits=(edit,), sure=is_typo(value, right, known))
     if "default" in schema:
-        yield Fix(title=f"Leave `{name}` at its default", edits=(ClearParameter(path=path, name=name),))
+        yield Fix(title=f"Reset `{name}` to its default", edits=(ClearParameter(path=path, name=name),))
 
 
 def schemas_of(place: FixContext) -> dict[str, Mapping[str, object]]:

@@ -1,4 +1,4 @@
-"""Fixes of settings that have no effect or never let a run go on."""
+"""Fixes of settings that have no effect or block a run for ever."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from engine.editing.fixes.fix import Fix, FixContext, is_typo, similar_names
 
 
 def constant_guard(place: FixContext) -> Iterator[Fix]:
-    """Remove a guard that is always open."""
+    """Remove a guard that is always true."""
     if "guard" in place.ref.data and place.finding.message.endswith("open"):
         yield Fix(title="Remove the guard", edits=(SetField(path=place.ref.path, field="guard"),), sure=True)
 
 
 def idle_retry(place: FixContext) -> Iterator[Fix]:
-    """Remove a retry that never happens, or let it happen after errors."""
+    """Remove a retry that never applies, or make it apply after errors."""
     retry = place.section("retry")
     if retry:
         again = SetField(path=place.ref.path, field="retry", value={**retry, "errors": True})
@@ -24,7 +24,7 @@ def idle_retry(place: FixContext) -> Iterator[Fix]:
 
 
 def autonomy_never_passes(place: FixContext) -> Iterator[Fix]:
-    """Require what a run can have."""
+    """Require an autonomy level that a run can have."""
     outcome, asked = place.names[0], place.section("autonomy")
     if outcome in asked:
         edit = SetField(path=place.ref.path, field="autonomy", value={**asked, outcome: "high"})
@@ -32,7 +32,7 @@ def autonomy_never_passes(place: FixContext) -> Iterator[Fix]:
 
 
 def bad_resume(place: FixContext) -> Iterator[Fix]:
-    """Resume in a way that there is."""
+    """Replace an unknown resume policy with an existing one."""
     known = ("rerun", "ask", *place.session.ends(place.ref).outcomes)
     for right in dict.fromkeys((*similar_names(place.names[0], known), "ask")):
         edit = SetField(path=place.ref.path, field="resume", value=right)

@@ -1,4 +1,4 @@
-"""Fixes of what follows what: outcomes that lead nowhere, targets that are not there, nodes nothing leads to."""
+"""Fixes of transitions: unconnected outcomes, missing targets, unreachable nodes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from engine.editing.project_context import rules
 
 
 def unconnected(place: FixContext) -> Iterator[Fix]:
-    """Connect an outcome: by its name, onward, or out; or declare it where it is one of the root."""
+    """Connect an outcome: by its name, to the next node, or out; or declare it as an outcome of the behavior."""
     outcome = place.names[0]
     if place.ref.parent is None:
         listed = strings(place.session.draft.data.get("outcomes"))
@@ -37,7 +37,7 @@ def unconnected(place: FixContext) -> Iterator[Fix]:
 
 
 def _targets(place: FixContext, outcome: str) -> list[str]:
-    """Return where an outcome may lead, the likeliest first: good ones onward, the others out."""
+    """Return the possible targets of an outcome, the likeliest first: success to the next node, the others out."""
     machine = place.machine
     if machine is None:
         return []
@@ -66,7 +66,7 @@ def _lead(place: FixContext, outcome: str, target: str) -> SetTransition:
 
 
 def unknown_outcome(place: FixContext) -> Iterator[Fix]:
-    """Take an outcome that the node has, or drop what names another one."""
+    """Replace an unknown outcome with one of the node, or remove the reference."""
     if len(place.names) < 2:
         return
     name, outcome = place.names[:2]
@@ -121,7 +121,7 @@ def _swapped(listed: object, old: str, new: str) -> list[object]:
 
 
 def unused_outcome(place: FixContext) -> Iterator[Fix]:
-    """Remove an outcome that nothing leads to, of the behavior or from transitions."""
+    """Remove an outcome that is never reached, from the behavior or from transitions."""
     outcome = place.names[-1]
     if len(place.names) > 1:
         yield from _other_outcome(place, outcome)
@@ -136,7 +136,7 @@ def unused_outcome(place: FixContext) -> Iterator[Fix]:
 
 
 def unknown_target(place: FixContext) -> Iterator[Fix]:
-    """Lead elsewhere, or make the name an outcome of the behavior."""
+    """Change the target, or declare the name as an outcome of the behavior."""
     target = place.names[0]
     leaving = [name for name in place.leaving if name != target]
     known = (*place.siblings, place.ref.name, *leaving)
@@ -150,7 +150,7 @@ def unknown_target(place: FixContext) -> Iterator[Fix]:
         if place.ref.data.get("on_error") == target:
             edits.append(SetField(path=place.ref.path, field="on_error", value=right))
         if edits:
-            title = f"Lead to `{right}` instead of `{target}`"
+            title = f"Connect to `{right}` instead of `{target}`"
             yield Fix(title=title, edits=tuple(edits), sure=is_typo(target, right, known))
     if place.machine is not None and place.machine.parent is None:
         listed = strings(place.session.draft.data.get("outcomes"))
@@ -161,7 +161,7 @@ def unknown_target(place: FixContext) -> Iterator[Fix]:
 
 
 def missing_initial(place: FixContext) -> Iterator[Fix]:
-    """Begin with a child that there is."""
+    """Set the initial state to an existing child."""
     names = [child.name for child in place.session.outline.children(place.ref)]
     for name in dict.fromkeys((*similar_names(place.names[0], names), *names)):
         sure = len(names) == 1 or is_typo(place.names[0], name, names)
@@ -169,15 +169,15 @@ def missing_initial(place: FixContext) -> Iterator[Fix]:
 
 
 def unreachable(place: FixContext) -> Iterator[Fix]:
-    """Delete a node that nothing leads to."""
+    """Delete an unreachable node."""
     if place.machine is not None:
         inside = len(place.session.outline.children(place.ref))
-        more = " and all that is in it" if inside else ""
+        more = " and all nodes inside it" if inside else ""
         yield Fix(title=f"Delete `{place.ref.name}`{more}", edits=(RemoveNodes(paths=(place.ref.path,)),))
 
 
 def ambiguous(place: FixContext) -> Iterator[Fix]:
-    """Give a state that is called like an outcome another name."""
+    """Rename a state that has the name of an outcome."""
     if place.machine is not None:
         name = place.session.free_name(place.machine, f"{place.ref.name}_state")
         edit = RenameNode(path=place.ref.path, name=name)
@@ -185,7 +185,7 @@ def ambiguous(place: FixContext) -> Iterator[Fix]:
 
 
 def unknown_child(place: FixContext) -> Iterator[Fix]:
-    """Name a child that there is where a condition asks for, or preempts, one that is not."""
+    """Replace an unknown child in a condition, or in its `preempt`, with an existing one."""
     name = place.names[0]
     names = [child.name for child in place.session.outline.children(place.ref)]
     for right in similar_names(name, names):
@@ -199,7 +199,7 @@ def unknown_child(place: FixContext) -> Iterator[Fix]:
 
 
 def preempts_itself(place: FixContext) -> Iterator[Fix]:
-    """Leave a child that has ended when a condition holds out of those that it preempts; it goes with the last one."""
+    """Remove a child that has ended when a condition is true from its `preempt`, and `preempt` with the last one."""
     name = place.names[0]
     kept: list[object] = []
     for entry in _entries(place):
@@ -213,7 +213,7 @@ def preempts_itself(place: FixContext) -> Iterator[Fix]:
 
 
 def uncovered(place: FixContext) -> Iterator[Fix]:
-    """Say how a concurrency container ends when no condition holds."""
+    """Set the outcome of a concurrency container for the case that no condition is true."""
     for outcome in dict.fromkeys(rule.outcome for rule in deciding(rules(place.ref))):
         edit = SetField(path=place.ref.path, field="otherwise", value=outcome)
         yield Fix(title=f"Otherwise end with `{outcome}`", edits=(edit,))

@@ -1,4 +1,4 @@
-"""Fixes of userdata: keys that a state does not have, and keys that nobody has defined."""
+"""Fixes of userdata: keys that a state does not have, and undefined keys."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _BEGINNINGS: Mapping[str, object] = {"number": 0, "integer": 0, "string": "", "b
 
 
 def unknown_input(place: FixContext) -> Iterator[Fix]:
-    """Map the input that was meant, or none."""
+    """Map the intended input, or remove the mapping."""
     yield from _remapped(place, "in", _keys(place, "inputs"))
 
 
 def unknown_output(place: FixContext) -> Iterator[Fix]:
-    """Map the output that was meant, or none."""
+    """Map the intended output, or remove the mapping."""
     yield from _remapped(place, "out", _keys(place, "outputs"))
 
 
@@ -35,7 +35,7 @@ def _remapped(place: FixContext, section: str, known: Iterable[str]) -> Iterator
 
 
 def undefined(place: FixContext) -> Iterator[Fix]:
-    """Read a key that somebody defines instead; or give the key an initial value."""
+    """Read a defined key instead, or give the key an initial value."""
     key = next((name for name in place.names if name in _read_keys(place)), None)
     if key is None:
         return
@@ -51,7 +51,7 @@ def undefined(place: FixContext) -> Iterator[Fix]:
 
 
 def maybe_undefined(place: FixContext) -> Iterator[Fix]:
-    """Give a key an initial value, so that it is defined on every way."""
+    """Give a key an initial value, so that it is defined on every path."""
     key = next((name for name in place.names if name in _read_keys(place)), None)
     if key is not None:
         mapped = next((name for name, of in place.section("in").items() if of == key), key)
@@ -59,7 +59,7 @@ def maybe_undefined(place: FixContext) -> Iterator[Fix]:
 
 
 def _declared(place: FixContext, key: str, mapped: str) -> Iterator[Fix]:
-    """Offer an initial value where the kind of the key is known; which value is right only a person can say."""
+    """Offer an initial value if the type of the key is known; a person must decide the value."""
     signature = _keys(place, "inputs").get(mapped)
     kind = signature.schema.get("type") if signature is not None else None
     if not isinstance(kind, str) or kind not in _BEGINNINGS:
@@ -87,7 +87,7 @@ def _read_keys(place: FixContext) -> set[str]:
 
 
 def _defined(place: FixContext) -> set[str]:
-    """All names that somebody declares or writes anywhere in the behavior."""
+    """All keys that are declared or written anywhere in the behavior."""
     data = place.session.draft.data
     names = {*mapping(data.get("parameters")), *mapping(data.get("userdata"))}
     for ref in place.session.outline.refs.values():

@@ -79,7 +79,7 @@ def test_the_text_form_says_how_to_learn_more(tmp_path: Path) -> None:
     said = flexcell("check", "bad.yaml", cwd=tmp_path)
     assert said.err.splitlines() == [
         "1 checked: 1 errors, 0 warnings",
-        "what a finding means: flexcell check --explain unknown-state",
+        "to explain a finding: flexcell check --explain unknown-state",
     ]
     page = (Path(__file__).resolve().parents[3] / "docs" / "findings" / "unknown-state.md").read_text(encoding="utf-8")
     explained = flexcell("check", "--explain", "unknown-state", cwd=tmp_path)

@@ -67,7 +67,7 @@ def test_slips_are_fixed_and_told_and_everything_else_stays(file: Path) -> None:
     said = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert said.out.splitlines() == [
         "x.yaml:11:16: fixed: there is no state `flow.Wiat`: Run `flow.Wait` [unknown-state]",
-        "x.yaml:12:16: fixed: `flow.Wait` has no parameter `duraton_s`: Give it to `duration_s` [unknown-parameter]",
+        "x.yaml:12:16: fixed: `flow.Wait` has no parameter `duraton_s`: Rename it to `duration_s` [unknown-parameter]",
     ]
     assert (said.code, said.err, file.read_text(encoding="utf-8")) == (0, "1 checked: 0 errors, 0 warnings\n", GOOD)
     before = (file.stat().st_mtime_ns, file.stat().st_ino)
@@ -91,7 +91,7 @@ def test_what_a_person_must_choose_is_left_and_named(file: Path) -> None:
     file.write_text(UNDECIDED, encoding="utf-8")
     said = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert (said.code, file.read_text(encoding="utf-8")) == (2, UNDECIDED)
-    assert "x.yaml:10:7: not fixed, to choose: Connect `false` to" in said.out
+    assert "x.yaml:10:7: not fixed, choose one: Connect `false` to" in said.out
     assert ": error: outcome `false` of `wait` is not connected" in said.out
     likely = flexcell("check", "x.yaml", "--fix-likely", cwd=file.parent)
     assert (likely.code, "fixed: outcome `false` of `wait` is not connected: Connect `false` to" in likely.out) == (
@@ -111,7 +111,7 @@ def test_a_read_only_file_is_told_and_left(file: Path) -> None:
     other = file.with_name("y.yaml")
     other.write_text(WRONG, encoding="utf-8")
     said = flexcell("check", "x.yaml", "y.yaml", "--fix", cwd=file.parent)
-    assert "flexcell: x.yaml: the file is read-only (nothing was fixed in it" in said.err
+    assert "flexcell: x.yaml: the file is read-only (no fix was written" in said.err
     assert (said.code, file.read_text(encoding="utf-8"), other.read_text(encoding="utf-8")) == (2, WRONG, GOOD)
 
 
@@ -133,7 +133,7 @@ def test_a_file_that_was_changed_meanwhile_is_left(file: Path, monkeypatch: pyte
         return real(text, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(check_fix, "fix_text", slow)
-    with pytest.raises(FlexcellError, match="changed meanwhile"):
+    with pytest.raises(FlexcellError, match="changed during the check"):
         check_fix.fix_file(file, load_states(file.parent), likely=False)
     assert file.read_text(encoding="utf-8").endswith("# of somebody else\n")
 

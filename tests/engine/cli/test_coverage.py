@@ -38,7 +38,7 @@ def test_runs_accumulate_until_all_is_covered(behavior: Path) -> None:
     """`--fail-under` judges with the exit code."""
     _run(behavior, "--journal", "none", "--coverage", "c.json")
     said = flexcell("coverage", "report", "c.json", "--fail-under", "90", cwd=behavior.parent)
-    assert (said.code, said.err) == (1, "flexcell: 66.7 % is covered, 90 % is asked for\n")
+    assert (said.code, said.err) == (1, "flexcell: coverage 66.7 % is below the required 90 %\n")
     assert "choose.yaml:10:93: false → failed" in said.out
     _run(behavior, "--journal", "none", "--coverage", "c.json", "--input", "flag=false")
     said = flexcell("coverage", "report", "c.json", "--fail-under", "100", cwd=behavior.parent)
@@ -54,7 +54,7 @@ def test_coverage_is_collected_from_what_was_kept_of_earlier_runs(behavior: Path
     logs = ("run.jsonl", "run.mcap", "runs")
     said = flexcell("coverage", "collect", behavior, *logs, "--to", "c.json", cwd=behavior.parent)
     assert (said.code, said.err) == (
-        0, "3 runs added to c.json, 1 of other documents left out: 66.7 % covered by them\n",
+        0, "3 runs added to c.json, 1 of other documents skipped: 66.7 % covered by them\n",
     )  # fmt: skip
     (kept,) = json.loads((behavior.parent / "c.json").read_text(encoding="utf-8"))["behaviors"]
     assert {item.get("count", 0) for item in kept["items"]} == {0, 3}
@@ -67,7 +67,7 @@ def test_bad_usage_is_exit_code_2_and_one_line(behavior: Path) -> None:
     _run(other, "--journal", "none", "--events", "other.jsonl")
     for arguments, message in (
         (("report", "nowhere.json"), "nowhere.json: cannot read this file"),
-        (("report", "choose.yaml"), "choose.yaml: this is no coverage file"),
+        (("report", "choose.yaml"), "choose.yaml: this is not a coverage file"),
         (("collect", "choose.yaml", "choose.yaml"), "choose.yaml:1: this is not an event"),
         (("collect", "choose.yaml", "other.jsonl"), "other.jsonl: this is a run of choose, document"),
     ):

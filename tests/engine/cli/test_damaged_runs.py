@@ -52,4 +52,4 @@ def test_a_run_of_an_older_version_is_said_to_be_unverified(tmp_path: Path) -> N
     listed = json.loads(CliRunner().invoke(app, ["--json", "--journal", str(tmp_path)]).stdout)
     assert [(line["id"], line["verified"], line["damage"]) for line in listed] == [("old", False, "")]
     shown = CliRunner().invoke(app, ["show", "old", "--journal", str(tmp_path)])
-    assert "unverified: an older version, which made no checksums, wrote some of it" in shown.stdout
+    assert "unverified: an older version, which wrote no checksums, wrote part of this run" in shown.stdout

@@ -69,7 +69,7 @@ def test_the_same_behavior_runs_from_python_and_from_yaml(folder: Path) -> None:
             "this file has several behaviors: rest, work, wrong (select one: cell_work.py:NAME)",
         ),
         ("export", "cell_work.py:wrk", "this file has no behavior named `wrk`"),
-        ("export", "cell_work.yaml", "this is no Python file (give FILE.py:NAME)"),
+        ("export", "cell_work.yaml", "this is not a Python file (give FILE.py:NAME)"),
         ("export", "cell_work.py:wrong", "cell_work.py:13:38: error:"),
         ("run", "cell_work.py:wrong", "cell_work.py:13:38: error:"),
         ("run", "absent.py:x", "absent.py:1:1: there is no such file"),

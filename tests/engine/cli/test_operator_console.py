@@ -94,7 +94,7 @@ def gates(folder: Path) -> list[str]:
 def test_a_request_is_shown_and_answered(nested: Path) -> None:
     said = operated(nested, "wait\nanswer\n", "--autonomy", "low", "--operator-loss", "continue")
     assert said.code == 0
-    assert "? root/two wants to end with out (requires high): answer root/two | force root/two OUTCOME" in said.err
+    assert "? root/two requests outcome out (requires high): answer root/two | force root/two OUTCOME" in said.err
     assert commanded(nested.parent) == ["answer root/two"]
     assert [e.status for e in events_in(nested.parent) if isinstance(e, OperatorChanged)] == ["attached", "detached"]
 
@@ -149,7 +149,11 @@ def test_steps_back_one_after_the_other(nested: Path) -> None:
     assert commanded(nested.parent) == [
         "breakpoints", "step_back root/three", "step_back root/two", "breakpoints", "resume",
     ]  # fmt: skip
-    for line in ("back before root/two", "back before root/one", "root/one: the run is at its beginning"):
+    for line in (
+        "stepped back to before root/two",
+        "stepped back to before root/one",
+        "root/one: the run is at its beginning",
+    ):
         assert line in said.err
 
 
@@ -170,14 +174,14 @@ detach
     lines = said.err.splitlines()[:9]
     assert [line.partition(" (")[0] for line in lines] == [
         "there is no command 'stpe'",
-        "one path is needed; usage: lock PATH",
+        "one path is required; usage: lock PATH",
         "root/tow: there is no such node",
-        "a path and an outcome are needed; usage: force PATH OUTCOME",
+        "a path and an outcome are required; usage: force PATH OUTCOME",
         "the run is not paused",
-        "'much' is none of off, low, high, full; usage: autonomy off|low|high|full",
+        "'much' is not one of off, low, high, full; usage: autonomy off|low|high|full",
         "`${1 +}`: Syntax error: mismatched input end",
-        "'0' is no count; usage: break [PATH [after] [if EXPR] [hits N]]",
-        "nothing is asked",
+        "'0' is not a positive integer; usage: break [PATH [after] [if EXPR] [hits N]]",
+        "no question is open",
     ]
     assert commanded(nested.parent) == []
 
@@ -232,7 +236,7 @@ def test_what_waits_for_ever_in_virtual_time_is_named_and_its_events_kept(nested
     )  # fmt: skip
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")
-    assert "waiting for ever: root/two (autonomy)" in result["cause"][0]["message"]
+    assert "waiting forever: root/two (autonomy)" in result["cause"][0]["message"]
     last = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert (last["event"], last["status"]) == ("run_ended", "errored")
 
@@ -286,9 +290,9 @@ def test_the_second_signal_says_what_is_waited_for_and_the_third_leaves(tmp_path
         process.send_signal(signal.SIGINT)
         read_until(process.stderr, "no")
         process.send_signal(signal.SIGINT)
-        read_until(process.stderr, "waiting for root/ear to come to rest; once more leaves at once")
+        read_until(process.stderr, "waiting for root/ear to come to rest; press Ctrl-C again to exit immediately")
         process.send_signal(signal.SIGINT)
-        read_until(process.stderr, "left at once")
+        read_until(process.stderr, "exited immediately")
         process.wait(timeout=60)
     assert process.returncode == 130
 
@@ -299,7 +303,7 @@ def test_a_state_that_never_stops_is_abandoned_and_the_process_ends(tmp_path: Pa
     said = flexcell("run", "deaf.py:deaf", "--clock", "virtual", "--timeout", "5", "--json", cwd=tmp_path)
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")
-    assert said.err.endswith("flexcell: abandoned: root/ear; the process ends without waiting for it\n")
+    assert said.err.endswith("flexcell: abandoned: root/ear; the process exits without waiting for it\n")
     assert isinstance(events_in(tmp_path)[-1], RunEnded)
 
 

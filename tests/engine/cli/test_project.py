@@ -55,7 +55,7 @@ def test_a_journal_runs_no_python_file_by_itself(project: ProjectFolder) -> None
     run_id = run.partition('"id":"')[2].partition('"')[0]
     refused = flexcell("resume", run_id, cwd=project.path)
     assert (refused.code, imports_of(project, "resting")) == (2, 1)
-    assert "say that you want it with --behavior" in refused.err
+    assert "if you trust the file, give --behavior" in refused.err
     told = flexcell("resume", run_id, "--behavior", "resting.py:rest", cwd=project.path)
     assert imports_of(project, "resting") == 2, told.err
 

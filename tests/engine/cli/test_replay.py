@@ -75,7 +75,7 @@ def test_json_and_junit_tell_all_of_several(project: Path) -> None:
     assert unusable == {
         "recording": "bad.mcap",
         "status": "unusable",
-        "error": "bad.mcap: this is not an MCAP file (give what --record wrote)",
+        "error": "bad.mcap: this is not an MCAP file (give a file that --record wrote)",
     }
     suites = ElementTree.parse(project / "r.xml").getroot()
     assert [(suite.get("failures"), suite.get("errors")) for suite in suites] == [("1", "0"), ("0", "1")]
@@ -91,7 +91,7 @@ def test_json_and_junit_tell_all_of_several(project: Path) -> None:
             ("nowhere.mcap",),
             "flexcell: nowhere.mcap: cannot read this file: No such file or directory (check its path)",
         ),
-        (("wait.yaml",), "flexcell: wait.yaml: this is not an MCAP file (give what --record wrote)"),
+        (("wait.yaml",), "flexcell: wait.yaml: this is not an MCAP file (give a file that --record wrote)"),
         (("run.mcap", "--behavior", "no.yaml"), "no.yaml:1:1: cannot read this file"),
         (("some-run", "--journal", "."), "there is no journal here"),
     ],
@@ -139,7 +139,7 @@ def test_what_is_wrong_with_a_file_to_be_written_is_said_before_the_run(project:
     assert flexcell(*asked, "new/folder/r.xml", cwd=project).code == 0
     assert (project / "new" / "folder" / "r.xml").read_bytes().startswith(b"<?xml")
     (project / "e.jsonl").unlink()
-    for junit, message in (("new", "this is a folder"), ("wait.yaml/r.xml", "cannot be written")):
+    for junit, message in (("new", "the output path is a folder"), ("wait.yaml/r.xml", "cannot be written")):
         said = flexcell(*asked, junit, cwd=project)
         assert (said.code, (project / "e.jsonl").exists()) == (2, False)
         assert message in said.err

@@ -130,7 +130,7 @@ def test_a_question_without_answer_is_one_line_and_nothing_is_started(tmp_path: 
     run = killed(tmp_path, TWO.replace("RESUME", "ask"), at="root/second")
     said = flexcell("resume", run, cwd=tmp_path)
     assert (said.code, said.out) == (2, "")
-    assert said.err == "root/second: what became of it? --answer root/second=… (rerun, done)\n"
+    assert said.err == "root/second: was active, how to resume? --answer root/second=… (rerun, done)\n"
     wrong = flexcell("resume", run, "--answer", "root/second=dnoe", cwd=tmp_path)
     assert (wrong.code, wrong.err) == (2, "flexcell: root/second: there is no outcome 'dnoe' (did you mean done?)\n")
     assert runs_in(tmp_path)[0].epoch == 1
@@ -212,8 +212,8 @@ def test_a_run_that_a_process_drives_is_left_alone_or_taken_over(tmp_path: Path)
         refused = flexcell("resume", run, cwd=tmp_path)
         assert (refused.code, refused.err) == (
             2,
-            f"flexcell: {run}: process {before.pid} drives this run "
-            "(stop that process first; `--take-over` leaves it unable to go on)\n",
+            f"flexcell: {run}: process {before.pid} executes this run "
+            "(stop that process first, or use `--take-over`, which stops its run)\n",
         )
         with started("resume", run, "--take-over", "-q", cwd=tmp_path) as after:
             out, _ = before.communicate(timeout=60)
@@ -272,4 +272,4 @@ def test_on_a_terminal_it_asks_until_the_answer_fits(tmp_path: Path) -> None:
         process.communicate(timeout=60)
     os.close(ours)
     assert process.returncode == 0
-    assert shown.count(b"root/second was in mid-work: rerun, done?") == 2
+    assert shown.count(b"root/second was active: rerun, done?") == 2

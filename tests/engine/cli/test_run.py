@@ -123,7 +123,7 @@ def test_a_timeout_stops_the_run(behavior: Path) -> None:
     )
     result = json.loads(said.out)
     assert (said.code, result["status"], result["duration_s"]) == (1, "stopped", 5.0)
-    assert "it took longer than 5 s" in result["cause"][0]["message"]
+    assert "the run took longer than 5 s" in result["cause"][0]["message"]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -54,7 +54,7 @@ def test_a_fault_reaches_the_state_and_the_log(folder: Path) -> None:
     assert (said.code, result["outcome"]) == (1, "failed")
     assert "the disk is full" in str(result["cause"])
     assert said.err == (
-        "flexcell: fault 2 (hang, faults.yaml:4:3) was never applied: no state at root/wirte asked ** for anything\n"
+        "flexcell: fault 2 (hang, faults.yaml:4:3) was never applied: no state at root/wirte sent a request to **\n"
     )
     events = [json.loads(line) for line in (folder / "run.jsonl").read_text(encoding="utf-8").splitlines()]
     (fault,) = [event for event in events if event["event"] == "fault"]
@@ -67,7 +67,7 @@ def test_a_fault_reaches_the_state_and_the_log(folder: Path) -> None:
 def test_progress_shows_faults(folder: Path) -> None:
     """Where and what."""
     said = _run(folder, "- {name: slow disk, late: 2 s}")
-    assert (said.code, "root/write  slow disk: the answer is 2 s late" in said.err) == (0, True)
+    assert (said.code, "root/write  slow disk: the response is 2 s late" in said.err) == (0, True)
 
 
 @pytest.mark.parametrize("crash", ["{on_request: before}", "{at_event: 4}"])

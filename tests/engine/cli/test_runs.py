@@ -133,7 +133,7 @@ def test_it_may_begin_elsewhere_and_with_another_version(behavior: Path) -> None
         (("--from", "{run}@1"), "no state was entered before event 1"),
         (("--from", "{run}@5", "--at", "root/tow"), "root/tow: there is no such node (did you mean root/two"),
         (("--from", "nobody@5"), "there is no run nobody"),
-        (("--at", "root/two"), "--at needs --from"),
+        (("--at", "root/two"), "--at requires --from"),
     ],
 )
 def test_moments_that_are_not_there_start_nothing(behavior: Path, options: tuple[str, ...], reason: str) -> None:

@@ -110,4 +110,4 @@ def test_whatever_answers_in_place_of_the_relay_the_server_is_asked(
         assert stop_cell(tmp_path, "tea") == 0
     said = capsys.readouterr()
     assert "the stop relay does not answer" in said.err
-    assert said.out == "Stopped: the server has confirmed that every robot is at rest.\n"
+    assert said.out == "Stopped: the server confirms that every robot is at rest.\n"

@@ -95,7 +95,7 @@ def test_data_of_mongodb_store_is_imported_and_what_changed_is_said(tmp_path: Pa
     (tmp_path / "dump.json").write_text("\n".join(map(json.dumps, documents)))
     done = flexcell("store", "import", "dump.json", "--format", "mongodb_store", "--store", "s.db", cwd=tmp_path)
     assert (done.code, done.out) == (0, "2 of 2 entries written\n")
-    assert done.err == "flexcell: 'Home 1' is named home_1 here\n"
+    assert done.err == "flexcell: 'Home 1' is imported as home_1\n"
     exported = flexcell("store", "export", "--format", "mongodb_store", "--store", "s.db", cwd=tmp_path)
     assert [json.loads(line)["_meta"]["stored_type"] for line in exported.out.splitlines()] == [
         "sensor_msgs/JointState",

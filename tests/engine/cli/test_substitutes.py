@@ -56,7 +56,7 @@ def test_what_stood_in_is_told(folder: Path) -> None:
     assert (result["outcome"], result["duration_s"], result["stood_in_for"]) == ("finished", 5.0, ["root/read"])
     assert result["userdata"] == {"width": 0.03}
     shown = flexcell("run", "rounds.yaml", "--substitutes", "substitutes.yaml", "--clock", "virtual", cwd=folder)
-    assert "substitutes stood in for root/read" in shown.err
+    assert "substituted nodes: root/read" in shown.err
     kinds = {event.path: event.kind for event in events_in(folder) if isinstance(event, NodeEntered)}
     assert kinds["root/read"] == "substitute"
 

@@ -33,7 +33,7 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
     """Its cell is named relative to it, what was said are the defaults of its parameters."""
     steps = ("home", "approach_pick=approach", "pick", "+close", "place=release", "+open")
     told = said(*steps, "--out", "sub/taught.yaml", "--width", "0.05", "--speed", "0.4", "--approach", "0.2")
-    assert told.splitlines() == ["1. Move to home", "2. Take payload at pick", "3. Put payload down at place"]
+    assert told.splitlines() == ["1. Move to home", "2. Pick payload at pick", "3. Place payload at place"]
     file = tmp_path / "sub" / "taught.yaml"
     assert check_file(file, load_states()) == ()
     behavior = load_behavior(file)
@@ -42,7 +42,7 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
         "speed": 0.4, "line_speed_m_s": 0.1, "approach_m": 0.2, "width_m": 0.05,
     }  # fmt: skip
     assert said("home", "--out", "sub/taught.yaml").startswith(
-        "error: sub/taught.yaml: the file is there (another name"
+        "error: sub/taught.yaml: the file exists (give another name"
     )
     assert said("home", "--out", "sub/taught.yaml", "--replace") == "1. Move to home\n"
 
@@ -50,12 +50,12 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("steps", "says"),
     [
-        (("hme",), "there is no entry hme that a motion can be made of (did you mean home?)"),
+        (("hme",), "there is no entry hme that defines a motion (did you mean home?)"),
         (("pose:home",), "there is no entry pose:home"),
         (("home=grap",), "there is no role grap (did you mean grasp?)"),
         (("home=follow",), "joints home cannot be `follow`"),
         (("+wave", "home"), "there is no action 'wave'"),
-        (("+open",), "nothing moves"),
+        (("+open",), "no step moves the arm"),
         (("home", "--arm", "left"), "there is no arm left"),
     ],
 )

@@ -58,6 +58,6 @@ def test_what_is_no_coverage_file_is_refused(tmp_path: Path, content: str) -> No
     """With its name, in one line."""
     file = tmp_path / "coverage.json"
     file.write_text(content, encoding="utf-8")
-    with pytest.raises(FlexcellError, match=r"coverage\.json: this is no coverage file") as raised:
+    with pytest.raises(FlexcellError, match=r"coverage\.json: this is not a coverage file") as raised:
         read_coverage(file)
     assert "\n" not in str(raised.value)

@@ -50,7 +50,7 @@ def test_the_table_names_what_is_missing_with_its_place(coverages: tuple[Behavio
     assert report(coverages, "text", time_s=0.0) == (
         "test (main.yaml), 1 run\n"
         "\n"
-        "node                entered     ways\n"
+        "node                entered    exits\n"
         "root                      1      1/2\n"
         "    main.yaml:3:18: outcome bad\n"
         "root/one                  1      1/2\n"
@@ -145,7 +145,7 @@ def test_a_document_that_was_changed_since_is_not_shown(coverages: tuple[Behavio
     """Its lines would be other lines."""
     Path("sub.yaml").write_text(f"# changed\n{SUB}", encoding="utf-8")
     html = report(coverages, "html", time_s=0.0)
-    assert html.count("not as it was when it was run") == 1
+    assert html.count("has changed since the run") == 1
     assert "takes" not in html
 
 

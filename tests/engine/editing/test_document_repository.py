@@ -51,7 +51,7 @@ def test_a_project_that_cannot_be_written_is_read_and_says_so_when_it_is_saved(t
     (tmp_path / ".flexcell").write_text("")
     documents = DocumentRepository(tmp_path, STATES)
     assert documents.open(ID).text == TEXT
-    refused = rf"{ID}: the document cannot be written: .*let this server write"
+    refused = rf"{ID}: the document cannot be written: .*grant this server write permission"
     with pytest.raises(DocumentError, match=refused):
         documents.save(ID, TEXT + "# more\n", base_hash=text_hash(TEXT))
     with pytest.raises(DocumentError, match=refused):

@@ -22,7 +22,7 @@ def test_a_cleared_transition_goes_and_comes_back_at_the_end() -> None:
     assert difference(TEXT, made) == ["-          c: bad"]
     again = edited(made, {"edit": "set_transition", "path": "root/second", "outcome": "c", "target": "bad"})
     assert again == TEXT
-    assert "leads nowhere" in refusal(TEXT, {"edit": "clear_transition", "path": "root/second", "outcome": "x"})
+    assert "has no transition" in refusal(TEXT, {"edit": "clear_transition", "path": "root/second", "outcome": "x"})
 
 
 def test_outcomes_lead_somewhere_only_in_machines() -> None:
@@ -177,8 +177,8 @@ def test_what_the_document_declares_is_set_where_people_write_it() -> None:
 def test_edits_are_made_all_or_none() -> None:
     good = {"edit": "set_initial", "path": "root", "child": "third"}
     assert "no node" in refusal(TEXT, good, {"edit": "set_initial", "path": "root/x", "child": "third"})
-    assert "this is no edit" in refusal(TEXT, good, {"edit": "explode"})
-    assert "this is no edit" in refusal(TEXT, {"edit": "set_initial", "path": "root", "child": "a b"})
+    assert "this is not an edit" in refusal(TEXT, good, {"edit": "explode"})
+    assert "this is not an edit" in refusal(TEXT, {"edit": "set_initial", "path": "root", "child": "a b"})
 
 
 def test_json_documents_are_edited_as_json() -> None:

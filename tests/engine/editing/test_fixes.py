@@ -69,7 +69,7 @@ SLIPS = [
             "first: {state: flow.Wait, with: {duration_s: 1}, transitions: {done: secnd}}",
             "second: {state: flow.Wait, with: {duration_s: 1}, transitions: {done: good}}",
         ),
-        "Lead to `second` instead of `secnd`",
+        "Connect to `second` instead of `secnd`",
     ),
     (
         "missing-initial",
@@ -92,7 +92,7 @@ SLIPS = [
     (
         "unknown-parameter",
         states("first: {state: flow.Wait, with: {duration: 1}, transitions: {done: good}}"),
-        "Give it to `duration_s`",
+        "Rename it to `duration_s`",
     ),
     (
         "missing-parameter",

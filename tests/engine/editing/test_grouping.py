@@ -87,7 +87,7 @@ def test_a_chain_becomes_a_sequence_and_a_chain_again() -> None:
 
 def test_what_is_no_chain_is_no_sequence() -> None:
     text = CHAIN.replace("c: bad}}", "c: one}}")
-    assert "goes on in more than one way" in refusal(
+    assert "has more than one next node" in refusal(
         text, {"edit": "group", "paths": ["root/one", "root/two", "root/three"], "kind": "sequence"}
     )
     text = CHAIN.replace("c: bad}\n", "c: worse}\n")
@@ -114,7 +114,7 @@ def test_states_become_branches_and_their_good_ends_lead_on_together() -> None:
 
 
 def test_a_group_is_entered_in_one_place() -> None:
-    assert "`second` and `both` are entered" in refusal(
+    assert "`second` and `both` are all entered" in refusal(
         TEXT.replace("c: third}\n", "c: both}\n"),
         {"edit": "group", "paths": ["root/second", "root/both"], "kind": "machine"},
     )
@@ -137,7 +137,7 @@ def test_neighbours_in_a_tree_are_grouped_and_ungrouped() -> None:
     assert "view: {root/sequence/inner/Give_2: [1, 2]}" in made
     assert edited(made, {"edit": "ungroup", "path": "root/sequence/inner"}) == TREE
     far = [paths[0], "root/sequence/parallel"]
-    assert "do not follow" in refusal(TREE, {"edit": "group", "paths": far, "kind": "selector"})
+    assert "are not adjacent" in refusal(TREE, {"edit": "group", "paths": far, "kind": "selector"})
 
 
 def test_a_branch_gets_a_machine_around_it() -> None:
@@ -155,7 +155,7 @@ def test_what_would_be_lost_is_not_ungrouped() -> None:
         made, {"edit": "set_field", "path": "root/pair", "field": "timeout", "value": {"after": 1, "to": "bad"}}
     )
     assert "`timeout` of `root/pair` would be lost" in refusal(made, {"edit": "ungroup", "path": "root/pair"})
-    assert "cannot be taken away" in refusal(TEXT, {"edit": "ungroup", "path": "root/both"})
+    assert "would change the behavior" in refusal(TEXT, {"edit": "ungroup", "path": "root/both"})
 
 
 def test_duplicates_of_a_group_keep_their_comments_inside() -> None:

@@ -352,7 +352,7 @@ def test_a_new_child_of_a_branching_takes_the_role_that_is_free() -> None:
     made = edited(BRANCHING, {"edit": "add_node", "parent": IF, "kind": "state", "runs": "flow.Log"})
     assert difference(BRANCHING, made) == ["+          else: {state: flow.Log}"]
     added = {"edit": "add_node", "parent": IF, "kind": "state", "runs": "flow.Log"}
-    assert refusal(made, added) == f"`{IF}` has no room: none of its roles is free"
+    assert refusal(made, added) == f"`{IF}` is full: none of its roles is free"
     emptied = edited(made, {"edit": "remove_nodes", "paths": [f"{IF}/Give_2"]})
     assert difference(made, emptied) == ["-          then: {state: test.Give, with: {after_s: 2}}   # if so"]
     filled = edited(emptied, {"edit": "move_nodes", "paths": ["root/sequence/last"], "parent": IF})
@@ -385,7 +385,7 @@ def test_one_child_of_a_branching_is_grouped_and_ungrouped_in_its_role() -> None
     assert edited(made, {"edit": "ungroup", "path": f"{IF}/sequence"}) == BRANCHING
     both = {"edit": "group", "paths": [f"{IF}/Give", f"{IF}/Give_2"], "kind": "sequence"}
     assert refusal(BRANCHING, both) == "the children of a if_then_else have roles"
-    assert "means something else without it" in refusal(BRANCHING, {"edit": "ungroup", "path": IF})
+    assert "changes its meaning" in refusal(BRANCHING, {"edit": "ungroup", "path": IF})
 
 
 def test_a_guard_that_skips_is_kept_within_a_tree_and_not_taken_into_a_machine() -> None:

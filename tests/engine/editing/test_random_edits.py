@@ -118,7 +118,7 @@ def test_whatever_is_asked_is_done_whole_or_refused_in_words(
         done = apply_edits(text, edits, file="x.yaml", context=context())
         if done.refused is not None:
             assert done.refused.message
-            assert "laid out" not in done.refused.message
+            assert "layout" not in done.refused.message
             assert done.text == text
         text = done.text
     Outline(Draft(text, file="x.yaml").data)

@@ -38,7 +38,7 @@ def test_a_late_goal_is_done_in_time_and_told_late() -> None:
     """The device takes its two seconds, the state learns of it three later."""
     told = run_with_faults(GRASP, "- {at: root/grasp, late: 3 s}")
     assert (told.result.outcome, told.result.duration_s, told.ends) == ("good", 5.0, [(5.0, "succeeded")])
-    assert told.faults == [(0.0, "root/grasp", "fault 1", "its end is told 3 s late")]
+    assert told.faults == [(0.0, "root/grasp", "fault 1", "its end is reported 3 s late")]
 
 
 def test_a_hanging_goal_is_cancelled_by_the_timeout_and_confirms() -> None:
@@ -206,7 +206,7 @@ def test_a_fault_that_was_never_applied_is_reported_before_the_end() -> None:
         """,
     )
     assert [message for _, message in told.logged] == [
-        "fault 1 (hang, faults.yaml:4:3) was never applied: no state at root/gasp asked ** for anything",
+        "fault 1 (hang, faults.yaml:4:3) was never applied: no state at root/gasp sent a request to **",
         "second try (hang, faults.yaml:5:3) was never applied: no state made a request number 2 that it matches",
         "fault 4 (hang, faults.yaml:7:3) was never applied: a fault before it was applied instead",
         "fault 5 (crash, faults.yaml:8:3) was never applied: the run has no event 500",

@@ -155,7 +155,7 @@ async def test_a_run_that_is_driven_here_is_not_resumed(outer: Path) -> None:
             origin = new_origin(behavior, cell=cell)
             run = new_run(plan, cell=cell, journal=journal, parameters={"after": 0.0}, origin=origin)
             found = read_run(outer.parent, run.id)
-            with pytest.raises(ControlError, match=f"process {os.getpid()} drives this run"):
+            with pytest.raises(ControlError, match=f"process {os.getpid()} executes this run"):
                 plan_resume(found, plan, catalogue=CATALOGUE)
             await run.execute()
 

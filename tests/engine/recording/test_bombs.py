@@ -61,13 +61,19 @@ def written(path: Path, records: Iterable[bytes]) -> Path:
 FILLER = record(0x80, bytes(4 * MB - 9))
 EMPTY = record(0x80, b"") * (MB // 9)
 BOMBS: dict[str, tuple[Callable[[], Iterable[bytes]], str]] = {
-    "says too much": (lambda: [zstd(b"x", said=2**40)], "unfolds to 1099511627776 bytes"),
-    "says more than it has": (lambda: [zstd(b"x" * 1000, said=2000)], "does not unfold to the 2000 bytes"),
-    "says less than it has": (lambda: [zstd(bytes(64 * MB), said=1000)], "does not unfold to the 1000 bytes"),
-    "lz4": (lambda: [chunk(lz4.compress(bytes(200 * MB)), 1000, "lz4")], "does not unfold to the 1000 bytes"),
-    "not packed": (lambda: [chunk(b"x" * 100, 10, "")], "does not unfold to the 10 bytes"),
-    "unknown": (lambda: [chunk(b"x", 1, "rar")], "packed as 'rar'"),
-    "many chunks": (lambda: repeat(zstd(FILLER), 40), "unfolds to more than 300 times its size"),
+    "says too much": (lambda: [zstd(b"x", said=2**40)], "declares 1099511627776 decompressed bytes"),
+    "says more than it has": (lambda: [zstd(b"x" * 1000, said=2000)], "does not decompress to its declared 2000 bytes"),
+    "says less than it has": (
+        lambda: [zstd(bytes(64 * MB), said=1000)],
+        "does not decompress to its declared 1000 bytes",
+    ),
+    "lz4": (
+        lambda: [chunk(lz4.compress(bytes(200 * MB)), 1000, "lz4")],
+        "does not decompress to its declared 1000 bytes",
+    ),
+    "not packed": (lambda: [chunk(b"x" * 100, 10, "")], "does not decompress to its declared 10 bytes"),
+    "unknown": (lambda: [chunk(b"x", 1, "rar")], "unknown compression 'rar'"),
+    "many chunks": (lambda: repeat(zstd(FILLER), 40), "decompresses to more than 300 times its size"),
     "many records": (lambda: repeat(zstd(EMPTY), 3), "more records than a file of its size can hold"),
     "many names": (lambda: (attachment(f"{n}") for n in range(MAX_NAMES + 1)), f"more than {MAX_NAMES}"),
 }
@@ -131,7 +137,7 @@ def test_an_index_that_leads_to_one_place_again_and_again_ends(tmp_path: Path) -
         index = vars(writer)["_Writer__chunk_indices"]
         index *= 1000
         writer.finish()
-    with pytest.raises(RecordingError, match="unfolds to more than 300 times its size"):
+    with pytest.raises(RecordingError, match="decompresses to more than 300 times its size"):
         load_recording(path)
     with IndexedRecording.open(path) as moments:
         assert moments.topics == {}

@@ -75,7 +75,7 @@ def test_a_full_disk_ends_the_recording_with_one_warning(caplog: pytest.LogCaptu
         live.close()
     assert live.failure == os.strerror(errno.ENOSPC)
     assert [record.getMessage() for record in caplog.records] == [
-        "the recording ends here, the run goes on: /dev/full: No space left on device"
+        "the recording ends here, the run continues: /dev/full: No space left on device"
     ]
 
 
@@ -86,7 +86,7 @@ def test_a_file_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
 
 def test_two_do_not_record_into_one_file(tmp_path: Path) -> None:
     live = LiveFile.open(tmp_path / "r", inline=True)
-    with pytest.raises(RecordingError, match="another process records into this file now"):
+    with pytest.raises(RecordingError, match="another process is recording into this file"):
         LiveFile.open(tmp_path / "r", inline=True)
     live.close()
     LiveFile.open(tmp_path / "r", inline=True).close()

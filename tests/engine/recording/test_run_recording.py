@@ -218,7 +218,7 @@ def test_what_a_killed_process_left_is_read_and_kept_beside_the_next_recording(
     assert [type(each.event) for each in left.events] == [RunStarted, NodeEntered, NodeEntered]
     with caplog.at_level(logging.WARNING, logger="flexcell.recording"):
         run_virtual(record_run(TEXT, target))
-    assert f"a recording was cut off here; what there is of it is in {recovered_file(target)}" in caplog.text
+    assert f"an earlier recording is truncated; its complete records are in {recovered_file(target)}" in caplog.text
     assert load_recording(recovered_file(target)).events == left.events
     assert load_recording(target).complete
 
@@ -230,7 +230,7 @@ def test_a_full_disk_is_a_warning_and_the_run_goes_on(tmp_path: Path, caplog: py
     with caplog.at_level(logging.WARNING, logger="flexcell.recording"):
         result, _ = run_virtual(record_run(TEXT, target, rate_hz=50))
     assert result.outcome == "good"
-    assert "the recording ends here, the run goes on" in caplog.text
+    assert "the recording ends here, the run continues" in caplog.text
     assert not target.exists()
 
 

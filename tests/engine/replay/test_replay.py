@@ -125,7 +125,7 @@ def test_a_request_that_the_recording_does_not_know_is_the_difference(tmp_path: 
     report = replay(recording, {**CATALOGUE, "bench.Look": Curious})
     assert str(report.difference) == (
         "event 6 at 0.000 s, root/one: recorded `wrote seen = 1`; replayed `request bench/look` "
-        "(the recording does not know this request)"
+        "(the recording does not contain this request)"
     )
 
 
@@ -361,13 +361,13 @@ async def test_of_a_run_in_real_time_the_branch_that_differs_is_named(tmp_path: 
 def test_a_run_that_was_resumed_is_refused(tmp_path: Path) -> None:
     recording = recorded(TEXT, tmp_path / "r.mcap")
     resumed = RunResumed(seq=4, time_s=0.0, after_seq=3, epoch=2, rerun=())
-    with pytest.raises(RecordingError, match=r"did not go on from its start \(event 4\), which cannot be replayed"):
+    with pytest.raises(RecordingError, match=r"was not executed from its start \(event 4\), which cannot be replayed"):
         replay(replace(recording, events=(*recording.events[:3], RecordedEvent(resumed, 0.0))), CATALOGUE)
 
 
 def test_a_recording_without_events_or_without_its_start_is_refused(tmp_path: Path) -> None:
     recording = recorded(TEXT, tmp_path / "r.mcap")
-    with pytest.raises(RecordingError, match="there is no event in this recording"):
+    with pytest.raises(RecordingError, match="this recording contains no events"):
         replay(replace(recording, events=()), CATALOGUE)
     with pytest.raises(RecordingError, match="does not begin with the start of its run"):
         replay(replace(recording, events=recording.events[1:]), CATALOGUE)

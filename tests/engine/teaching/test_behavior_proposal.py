@@ -96,7 +96,7 @@ def test_a_grasp_and_a_release_have_their_states_around_them() -> None:
     """What was taught in the gripper is the default of a parameter."""
     proposal = made(step("home", kind="joints"), step("y", PICK), HELD, step("z", BIN), OPEN)
     assert problems(proposal) == []
-    assert (proposal.words, proposal.remarks) == (("Move to home", "Take gear at y", "Put gear down at z"), ())
+    assert (proposal.words, proposal.remarks) == (("Move to home", "Pick gear at y", "Place gear at z"), ())
     behavior = parse_behavior(proposal.text, file=Path("taught.yaml"))
     pick, place = behavior.root.children["pick_gear"], behavior.root.children["place_gear_at_z"]
     assert list(pick.children) == [
@@ -120,7 +120,7 @@ def test_taught_approaches_take_the_place_of_the_way_along_the_tool() -> None:
     proposal = made(step("x", ABOVE), step("y", PICK), CLOSE, step("x", ABOVE), step("v"))
     assert problems(proposal) == []
     assert "approach_m" not in proposal.text
-    assert proposal.words == ("Take gear at y", "Move to v")
+    assert proposal.words == ("Pick gear at y", "Move to v")
 
 
 def test_two_grasps_of_different_widths_have_a_parameter_each() -> None:
@@ -135,9 +135,9 @@ def test_what_is_not_known_is_said() -> None:
     proposal = made(step("z", BIN), CLOSE)
     assert problems(proposal) == []
     assert [remark.split(":")[0] for remark in proposal.remarks] == [
-        "Nobody said which part is grasped at z",
-        "Nobody said how wide the part is",
-        "At the end the tool still holds something.",
+        "The part grasped at z is unknown",
+        "The width of the part is unknown",
+        "The tool still holds a part at the end.",
     ]
 
 
@@ -156,7 +156,7 @@ def test_poses_in_another_frame_are_gone_to_in_a_time() -> None:
 
 
 def test_nothing_that_moves_is_no_behavior() -> None:
-    with pytest.raises(SkillFailed, match="nothing moves"):
+    with pytest.raises(SkillFailed, match="no step moves the arm"):
         made(OPEN)
 
 
@@ -184,7 +184,7 @@ def some_step(draw: st.DrawFn) -> ObservedStep:
 def test_whatever_is_taught_in_whatever_order_gives_a_behavior_without_findings(
     steps: list[ObservedStep], tool: ToolName, speed: float, approach_m: float
 ) -> None:
-    """Or a refusal, where nothing moves."""
+    """Or a refusal, where no step moves the arm."""
     options = ProposalOptions(speed=speed, approach_m=approach_m)
     if all(taught.step.kind in ("gripper", "action") for taught in steps):
         with pytest.raises(SkillFailed):

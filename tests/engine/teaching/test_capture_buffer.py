@@ -47,7 +47,7 @@ def test_a_full_buffer_takes_no_more() -> None:
     buffer = CaptureBuffer(None)
     for number in range(1, MAX_CAPTURES + 1):
         buffer.put(capture(number))
-    with pytest.raises(StoreError, match="wait to be saved"):
+    with pytest.raises(StoreError, match="are not saved"):
         buffer.next_id()
 
 

@@ -41,7 +41,7 @@ def test_a_document_is_read(tmp_path: Path) -> None:
 
 
 def test_a_name_is_used_once(tmp_path: Path) -> None:
-    with pytest.raises(DocumentError, match="two triggers are called 'Record joint state'") as refused:
+    with pytest.raises(DocumentError, match="two triggers have the name 'Record joint state'") as refused:
         load_triggers(written(tmp_path, ENTRY + ENTRY.lstrip()))
     assert refused.value.where is not None
     assert str(refused.value.where).endswith("triggers.yaml:8:14")

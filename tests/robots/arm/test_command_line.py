@@ -46,7 +46,7 @@ def test_a_message_is_published_as_often_as_told() -> None:
         (("left/jog", '{"speed": 1}'), "this is not a JogCommand: Object contains unknown field `speed`"),
         (("left/status", "{}"), "commands are taken on left/direct_joints, left/jog"),
         (("left/jok", "{}"), "no such topic"),
-        (("left/jog", "{}", "--for", "1"), "say how often, with --rate"),
+        (("left/jog", "{}", "--for", "1"), "--for requires --rate"),
     ],
 )
 def test_what_cannot_be_published_says_why(arguments: tuple[str, ...], words: str) -> None:

@@ -145,7 +145,7 @@ async def test_places_a_motion_and_the_gripper_are_taught_and_the_proposed_behav
     assert (gripper.held, gripper.width_m) == (False, pytest.approx(0.02, abs=2e-3))
     assert proposal.words == (
         "Move to home", "Move to the start of wave", "Follow wave", "Move to the start of wave_as_it_was",
-        "Follow wave_as_it_was", "Let go", "Move to raised",
+        "Follow wave_as_it_was", "Release", "Move to raised",
     )  # fmt: skip
     assert (result.outcome, result.success) == ("finished", True), result.cause
     assert np.linalg.norm(np.subtract(tool.xyz, raised.xyz)) < 2e-3

@@ -14,7 +14,7 @@ export interface ActivationInterval {
   readonly count: number
 }
 
-/** Put a new node into a container; its name is made up where none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` gives them, the content is that instead. `after` leads the open good outcomes of a sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children. */
+/** Insert a new node into a container; its name is generated if none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` returns them are the content instead. `after` connects the open success outcomes of a sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the children. */
 export interface AddNode {
   readonly edit: "add_node"
   readonly parent: string
@@ -65,7 +65,7 @@ export interface ArmsLiveFrame {
   readonly arms: Dict<ArmLive>
 }
 
-/** Lead the open outcomes of nodes where they obviously go; of all children for a machine. */
+/** Connect the open outcomes of nodes to their evident targets; for a machine, those of all children. */
 export interface AutoConnect {
   readonly edit: "auto_connect"
   readonly paths: readonly string[]
@@ -181,14 +181,14 @@ export interface CauseLine {
   readonly kind: string
 }
 
-/** Take the value of a parameter back; its default holds. */
+/** Remove the value of a parameter; its default applies. */
 export interface ClearParameter {
   readonly edit: "clear_parameter"
   readonly path: string
   readonly name: string
 }
 
-/** Lead an outcome of a node nowhere. */
+/** Remove the transition of an outcome of a node. */
 export interface ClearTransition {
   readonly edit: "clear_transition"
   readonly path: string
@@ -392,7 +392,7 @@ export interface DraftResultBody {
   readonly checked: boolean
 }
 
-/** Put copies of nodes beside them; transitions among them lead to the copies. */
+/** Insert copies of nodes next to them; transitions among them connect the copies. */
 export interface DuplicateNodes {
   readonly edit: "duplicate"
   readonly paths: readonly string[]
@@ -534,7 +534,7 @@ export interface GraphNodeBody {
   readonly conditions: readonly string[]
 }
 
-/** Put siblings into a new container in their place; what leads out of them becomes its outcomes. */
+/** Group siblings in a new container in their place; transitions that leave them become its outcomes. */
 export interface GroupNodes {
   readonly edit: "group"
   readonly paths: readonly string[]
@@ -711,7 +711,7 @@ export interface MoveBody {
   readonly follow: boolean
 }
 
-/** Put nodes into another container, or elsewhere among their siblings; transitions among them stay. */
+/** Move nodes to another container, or to another position among their siblings; transitions among them are kept. */
 export interface MoveNodes {
   readonly edit: "move_nodes"
   readonly paths: readonly string[]
@@ -814,7 +814,7 @@ export interface PastRunsBody {
   readonly counts: Dict<number>
 }
 
-/** Put nodes as `copy` gives them into a container. */
+/** Insert nodes, in the form that `copy` returns, into a container. */
 export interface PasteNodes {
   readonly edit: "paste"
   readonly parent: string
@@ -957,13 +957,13 @@ export interface RefusedFrame {
   readonly hint: string
 }
 
-/** Take nodes out, with the transitions and conditions that name them; other references show as findings. */
+/** Remove nodes, with the transitions and conditions that name them; other references become findings. */
 export interface RemoveNodes {
   readonly edit: "remove_nodes"
   readonly paths: readonly string[]
 }
 
-/** Give a node another name; whatever refers to it follows. */
+/** Rename a node; all references to it are updated. */
 export interface RenameNode {
   readonly edit: "rename_node"
   readonly path: string
@@ -1069,13 +1069,13 @@ export interface SessionBody {
   readonly stop: StopEndpointBody | null
 }
 
-/** Change what the document declares; null takes a key away. The other keys stay. Keys: name, description, cell, parameters, userdata, outcomes, success. */
+/** Change declarations of the document; null removes a key. Other keys are unchanged. Keys: name, description, cell, parameters, userdata, outcomes, success. */
 export interface SetDocument {
   readonly edit: "set_document"
   readonly changes: Dict<unknown>
 }
 
-/** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
+/** Set one field of a node; null removes it. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
 export interface SetField {
   readonly edit: "set_field"
   readonly path: string
@@ -1083,14 +1083,14 @@ export interface SetField {
   readonly value?: unknown
 }
 
-/** Let a machine begin with a child. */
+/** Set the initial child of a machine. */
 export interface SetInitial {
   readonly edit: "set_initial"
   readonly path: string
   readonly child: string
 }
 
-/** Give a state or behavior a value for a parameter. */
+/** Set a parameter of a state or behavior. */
 export interface SetParameter {
   readonly edit: "set_parameter"
   readonly path: string
@@ -1098,13 +1098,13 @@ export interface SetParameter {
   readonly value: unknown
 }
 
-/** Place nodes on the canvas, in pixels relative to their container; null forgets a position. */
+/** Set the canvas positions of nodes, in pixels relative to their container; null removes a position. */
 export interface SetPositions {
   readonly edit: "set_positions"
   readonly positions: Dict<readonly [number, number] | null>
 }
 
-/** Lead an outcome of a node to a sibling, or to an outcome of the machine around it. */
+/** Connect an outcome of a node to a sibling, or to an outcome of the surrounding machine. */
 export interface SetTransition {
   readonly edit: "set_transition"
   readonly path: string
@@ -1277,7 +1277,7 @@ export interface TransitionBody {
   readonly target: string
 }
 
-/** An arrow of a machine: a child of it (its path), and one of its outcomes. */
+/** A transition of a machine: a child (its path), and one of its outcomes. */
 export interface TransitionRef {
   readonly from: string
   readonly outcome: string
@@ -1311,7 +1311,7 @@ export interface TrimInterval {
   readonly end_s: number
 }
 
-/** Put the children of a container in its place. */
+/** Replace a container with its children. */
 export interface UngroupNode {
   readonly edit: "ungroup"
   readonly path: string
