@@ -1,4 +1,4 @@
-"""The motion that a gripper's drive carries out: holding, resuming, cancelling it, and telling how it ended."""
+"""The motion of a gripper's drive: holds, resumes and cancels it, and reports how it ended."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHe
 from robots.port import MotionEnd
 
 REST_S = 0.06
-"""How long a drive must stand still to be at rest."""
+"""Time for which a drive must stand still to be at rest."""
 
 
 @dataclass(kw_only=True)
 class _Task:
-    """The motion under way."""
+    """The active motion."""
 
     number: int
     patience_s: float
@@ -28,7 +28,7 @@ class _Task:
 
 
 class GripTask:
-    """At most one motion at a time; a drive asks it whether to go on, and lets it judge every step."""
+    """At most one motion at a time; the drive asks it whether to move, and reports every step to it."""
 
     def __init__(self) -> None:
         self._task: _Task | None = None
@@ -36,7 +36,7 @@ class GripTask:
 
     @property
     def number(self) -> int:
-        """The motion under way, 0 when there is none."""
+        """Number of the active motion, 0 for none."""
         return self._task.number if self._task else 0
 
     @property
@@ -50,34 +50,34 @@ class GripTask:
         return self._task is not None and self._task.cancel
 
     def start(self, number: int, *, patience_s: float) -> None:
-        """Begin a motion; it fails after `patience_s` of not being held."""
+        """Begin a motion; it fails after `patience_s`, held time excluded."""
         self._task = _Task(number=number, patience_s=patience_s)
         self._rest_s = 0.0
 
     def forget(self) -> None:
-        """Drop what is under way without telling."""
+        """Drop the active motion without an event."""
         self._task, self._rest_s = None, 0.0
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Stop on the way."""
+        """Stop and keep the motion."""
         task = self._task
         if task and task.number == number:
             task.hold, task.told_held, task.tell_resumed = True, False, False
             task.request = request
 
     def resume(self, number: int, *, request: int = 0) -> None:
-        """Go on."""
+        """Resume."""
         task = self._task
         if task and task.number == number:
             task.hold, task.tell_resumed, task.request = False, True, request
 
     def cancel(self, number: int) -> None:
-        """Stop and end as canceled."""
+        """Stop and end as CANCELED."""
         if self._task and self._task.number == number:
             self._task.cancel = True
 
     def stop(self, cause: str = "") -> None:
-        """Cancel whatever runs; with a `cause` it ends as failed with that."""
+        """Cancel the active motion; with a `cause` it fails with that."""
         if self._task and not self._task.cancel:
             self._task.cancel, self._task.stop_cause = True, cause
 
@@ -90,14 +90,14 @@ class GripTask:
         progress: Callable[[], float],
         late: Callable[[float], str],
     ) -> tuple[AnyMotionEvent, ...]:
-        """Return what happened in this step.
+        """Return the events of this step.
 
         Args:
             step_s: The control period.
-            still: Nothing moves in this step; for `REST_S` on end it is at rest.
-            reached: What was wanted is so.
-            progress: Share of the way passed.
-            late: Says in words why it failed after that many seconds.
+            still: Nothing moves in this step; after `REST_S` the drive is at rest.
+            reached: The goal is reached.
+            progress: Completed share of the motion.
+            late: Returns the failure reason after the given number of seconds.
         """
         self._rest_s = self._rest_s + step_s if still else 0.0
         task = self._task

@@ -122,7 +122,7 @@ def _built(model: RobotModel, tool_joints: Mapping[str, float]) -> tuple[Any, An
     at = rest_configuration(full, model)
     for name, value in tool_joints.items():
         if name in model.arm_joints or not full.existJointName(name):
-            raise CellError(f"{name} is no joint of the tool", where=model.name)
+            raise CellError(f"{name} is not a joint of the tool", where=model.name)
         at[full.joints[full.getJointId(name)].idx_q] = value
     return pin.buildReducedModel(full, geometry, locked_joints(full, model), at)
 

@@ -56,7 +56,7 @@ def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) ->
     else:
         paths = [relative_to / uri.removeprefix("file://")]
     if "\0" in uri:
-        raise CellError("the name of a mesh file has a NUL in it", where=uri, hint="correct the URDF")
+        raise CellError("the name of a mesh file contains a NUL character", where=uri, hint="correct the URDF")
     for path in paths:
         if path.is_file():
             return path
@@ -73,5 +73,5 @@ def disabled_collisions(srdf: Path) -> tuple[tuple[str, str], ...]:
     root = parse_xml(read_text(srdf, what="SRDF"), what="SRDF", where=srdf)
     pairs = tuple((pair.get("link1", ""), pair.get("link2", "")) for pair in root.iter("disable_collisions"))
     if not all(map(all, pairs)):
-        raise CellError("a `disable_collisions` lacks `link1` or `link2`", where=str(srdf), hint="correct the SRDF")
+        raise CellError("a `disable_collisions` has no `link1` or no `link2`", where=str(srdf), hint="correct the SRDF")
     return pairs

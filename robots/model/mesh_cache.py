@@ -31,7 +31,7 @@ def read_cached(folder: Path, key: str) -> bytes | None:
         return None
     digest, payload = content[:_DIGEST], content[_DIGEST:]
     if hashlib.sha256(payload).digest() != digest:
-        _log.warning("the cached file %s is damaged and is made again", folder / key)
+        _log.warning("the cached file %s is damaged and is rebuilt", folder / key)
         return None
     return payload
 

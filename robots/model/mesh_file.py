@@ -24,7 +24,7 @@ def verify_mesh_file(path: Path) -> None:
     """
     try:
         if path.suffix.lower() not in _SUFFIXES:
-            raise ValueError(f"it is none of {', '.join(_SUFFIXES)}")
+            raise ValueError(f"its file type is not one of {', '.join(_SUFFIXES)}")
         size = path.stat().st_size
         if size > MAX_BYTES:
             raise ValueError(f"it has {size} bytes, more than {MAX_BYTES}")
@@ -32,7 +32,7 @@ def verify_mesh_file(path: Path) -> None:
     except (OSError, ValueError) as error:
         reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
         raise CellError(
-            f"the mesh cannot be used: {reason}", where=str(path), hint="correct the model folder, or thin the mesh out"
+            f"the mesh cannot be used: {reason}", where=str(path), hint="correct the model folder, or simplify the mesh"
         ) from error
 
 
@@ -46,7 +46,7 @@ def require_triangles(count: int, path: Path) -> None:
         raise CellError(
             f"the mesh cannot be used: it has {count} triangles, more than {MAX_TRIANGLES}",
             where=str(path),
-            hint="thin the mesh out",
+            hint="simplify the mesh",
         )
 
 
@@ -64,11 +64,11 @@ def _verify_stl(data: bytes) -> None:
     if data[:5].lower() == b"solid" and b"facet" in data[:1000]:
         triangles = data.count(b"endfacet")
     elif len(data) < _STL_HEAD:
-        raise ValueError("it is no STL file")
+        raise ValueError("it is not an STL file")
     else:
         triangles = struct.unpack_from("<I", data, _STL_HEAD - 4)[0]
         if len(data) != _STL_HEAD + _STL_TRIANGLE * triangles:
-            raise ValueError(f"it says that it has {triangles} triangles, and has {len(data)} bytes")
+            raise ValueError(f"its header states {triangles} triangles, which does not fit its {len(data)} bytes")
     if triangles > MAX_TRIANGLES:
         raise ValueError(f"it has {triangles} triangles, more than {MAX_TRIANGLES}")
 
@@ -81,6 +81,6 @@ def _verify_obj(data: bytes) -> None:
         if words[:1] == [b"f"]:
             corners += len(words) - 1
         elif words[:1] == [b"mtllib"] and (b"/" in line or b"\\" in line or b".." in line):
-            raise ValueError(f"it names materials outside its folder: {line.decode(errors='replace')[:80]}")
+            raise ValueError(f"it refers to materials outside its folder: {line.decode(errors='replace')[:80]}")
         if corners > 3 * MAX_TRIANGLES:
             raise ValueError(f"it has more than {MAX_TRIANGLES} triangles")

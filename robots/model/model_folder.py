@@ -59,7 +59,7 @@ class ModelFolder(Generic[Document]):
         path = home / file.file
         if not self._may_use(path, home):
             raise CellError(
-                f"{file.file:.200} lies outside the model folder", where=str(self.folder), hint="move it in there"
+                f"{file.file:.200} is outside the model folder", where=str(self.folder), hint="move it into the folder"
             )
         return path
 
@@ -146,7 +146,7 @@ def _read(folder: Path, name: str) -> DocumentSource:
     if not (folder / name).is_file():
         other = TOOL_FILE if name == ROBOT_FILE else ROBOT_FILE
         hint = (
-            f"it has a {other}: it belongs elsewhere"
+            f"the folder is another kind of model: it has a {other}"
             if (folder / other).is_file()
             else "see docs/how-to/add-a-robot.md"
         )

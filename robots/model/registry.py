@@ -118,7 +118,7 @@ def _folder(name: str, directory: Path, file: str, what: str) -> Path:
         return Path(name)
     known = _names(directory, file)
     if name not in known:
-        raise CellError(f"no {what} is called {name}", where=name, hint=did_you_mean(name, known))
+        raise CellError(f"there is no {what} {name}", where=name, hint=did_you_mean(name, known))
     return directory / name
 
 

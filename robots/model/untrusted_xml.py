@@ -22,14 +22,14 @@ class _Bounded(ET.TreeBuilder):
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
         """Refuse what could define entities, before any is defined."""
-        raise ValueError("it has a document type (<!DOCTYPE …>), which may define entities without end")
+        raise ValueError("it has a document type (<!DOCTYPE …>), which may define unbounded entities")
 
     def start(self, tag: str, attrs: dict[str, str], /) -> ET.Element:
         """Begin an element."""
         self._depth += 1
         self._elements += 1
         if self._depth > MAX_DEPTH:
-            raise ValueError(f"its elements lie more than {MAX_DEPTH} deep")
+            raise ValueError(f"its elements are nested more than {MAX_DEPTH} levels deep")
         if self._elements > MAX_ELEMENTS:
             raise ValueError(f"it has more than {MAX_ELEMENTS} elements")
         return super().start(tag, attrs)

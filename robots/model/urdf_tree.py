@@ -48,7 +48,7 @@ def read_urdf(path: Path, *, package_dir: Path, within: Path | None = None) -> E
 def _mesh_uri(name: str, *, urdf: Path, package_dir: Path, within: Path) -> str:
     file = resolve_uri(name, package_dirs=(package_dir,), relative_to=urdf.parent).resolve()
     if not file.is_relative_to(within.resolve()):
-        raise CellError(f"the mesh {file} lies outside {within}", where=str(urdf), hint="move it in there")
+        raise CellError(f"the mesh {file} is outside {within}", where=str(urdf), hint="move it into the folder")
     verify_mesh_file(file)
     return PACKAGE_SCHEME + file.relative_to(package_dir.resolve()).as_posix()
 
@@ -178,7 +178,7 @@ def scale_mass(robot: Element, mass_kg: float) -> None:
     missing = mass_kg - mass_of(robot)
     if mass is None or inertia is None or float(mass.attrib["value"]) + missing <= 0.0:
         raise CellError(
-            f"{root.attrib['name']} cannot be given the mass that makes {mass_kg:g} kg in all",
+            f"the mass of {root.attrib['name']} cannot be scaled to a total of {mass_kg:g} kg",
             hint="correct `mass_kg` or the inertial of the root link",
         )
     share = 1.0 + missing / float(mass.attrib["value"])

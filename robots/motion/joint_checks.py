@@ -40,9 +40,9 @@ def check_range(limits: JointLimits, names: tuple[str, ...], start: Array, joint
     worst = int(np.argmax(outside))
     if outside[worst] > 0.0:
         raise RobotError(
-            f"{names[worst]} would have to go to {joints[worst]:.3f} rad at t={time_s:.2f} s,"
-            f" its range is {limits.lower_rad[worst]} to {limits.upper_rad[worst]} rad",
-            hint="start from another configuration, or go there in joint space",
+            f"{names[worst]} would leave its range at t={time_s:.2f} s: {joints[worst]:.3f} rad,"
+            f" range {limits.lower_rad[worst]} to {limits.upper_rad[worst]} rad",
+            hint="start from another configuration, or move in joint space",
         )
 
 
@@ -60,10 +60,10 @@ def check_device_range(joint_map: JointMap, names: tuple[str, ...], trajectory: 
     at, joint = np.unravel_index(int(np.argmax(outside)), outside.shape)
     if outside[at, joint] > 0.0:
         raise RobotError(
-            f"the controller's angle of {names[joint]} ({joint_map.words(int(joint), names)}) would have to go to"
-            f" {angles[at, joint]:.3f} rad at t={at * trajectory.dt_s:.2f} s, its range is"
-            f" {joint_map.lower_rad[joint]} to {joint_map.upper_rad[joint]} rad",
-            hint="its axes are coupled, see `<arm>/device_joints`; choose another configuration",
+            f"the controller's angle of {names[joint]} ({joint_map.words(int(joint), names)}) would leave its range"
+            f" at t={at * trajectory.dt_s:.2f} s: {angles[at, joint]:.3f} rad,"
+            f" range {joint_map.lower_rad[joint]} to {joint_map.upper_rad[joint]} rad",
+            hint="the axes are coupled, see `<arm>/device_joints`; choose another configuration",
         )
 
 
@@ -80,7 +80,7 @@ def check_speed(
     least duration is known exactly; `advice` words it.
     """
     if not (np.isfinite(trajectory.position_rad).all() and np.isfinite(trajectory.velocity_rad_s).all()):
-        raise RobotError("the numbers of the motion overflow", hint="look for a value that is far too great or small")
+        raise RobotError("the motion overflows", hint="check the motion for values that are far too large or too small")
     duration_s = trajectory.duration_s
     times = np.linspace(0.0, duration_s, len(trajectory.position_rad))
     speed_limit, push_limit = np.array(limits.velocity_rad_s), np.array(limits.acceleration_rad_s2)

@@ -81,15 +81,15 @@ def _check_dexterity(jacobian: Array, word: str, time_s: float) -> None:
     if dexterity < SINGULAR:
         raise RobotError(
             f"the {word} passes a singularity at t={time_s:.2f} s (dexterity {dexterity:.3f}, at least {SINGULAR})",
-            hint=f"go there in joint space, or take another {word}",
+            hint=f"move in joint space, or choose another {word}",
         )
 
 
 def _too_few_joints(dof: int, path: ToolPath, at: int) -> RobotError:
     return RobotError(
-        f"an arm of {dof} joints cannot keep its tool on this {path.word}, in place and orientation, past"
-        f" {path.shares[at - 1]:.0%} of the way",
-        hint="go there in joint space, or to its end by the position only (`match`)",
+        f"an arm of {dof} joints cannot keep position and orientation of its tool on this {path.word} beyond"
+        f" {path.shares[at - 1]:.0%} of it",
+        hint="move in joint space, or to the end by position only (`match`)",
     )
 
 
@@ -98,8 +98,8 @@ def _out_of_reach(inverse: InverseKinematicsSolver, path: ToolPath, joints: Arra
     try:
         inverse.nearest(path.poses[at], seed=joints)
     except RobotError as error:
-        return RobotError(f"the {path.word} leaves the workspace after {share:.0%} of the way: {error}")
+        return RobotError(f"the {path.word} leaves the workspace after {share:.0%}: {error}")
     return RobotError(
-        f"the {path.word} cannot be followed past {share:.0%} of the way without changing the arm's posture",
-        hint="go there in joint space",
+        f"the {path.word} cannot be followed beyond {share:.0%} without a change of the arm's posture",
+        hint="move in joint space",
     )

@@ -64,7 +64,7 @@ class ArmBody:
     def _move_to(self, posture: ArmConfiguration) -> None:
         if len(posture.joints) != len(self._joints) or not np.isfinite(posture.joints).all():
             raise CellError(
-                f"{list(posture.joints)} are no joints of this arm",
+                f"{list(posture.joints)} are not a joint configuration of this arm",
                 where=self._name,
                 hint=f"give {len(self._joints)} numbers",
             )

@@ -45,7 +45,11 @@ def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
     """
     near, far = camera.range_m
     if not near < far:
-        raise CellError(f"the range from {near:g} to {far:g} m is empty", where=f"camera {name}", hint="near, then far")
+        raise CellError(
+            f"the range from {near:g} to {far:g} m is empty",
+            where=f"camera {name}",
+            hint="give the near limit, then the far limit",
+        )
     return CameraSpec(
         name=name,
         intrinsics=pinhole(camera.size_px, camera.fov_rad),
@@ -93,7 +97,9 @@ def optical_frame_pose(at: Vector3, look_at: Vector3, *, name: str = "camera") -
     ahead = np.subtract(look_at, at)
     length = float(np.linalg.norm(ahead))
     if not length > _UPRIGHT:
-        raise CellError("a camera cannot look at where it stands", where=f"camera {name}", hint="change `look_at`")
+        raise CellError(
+            "`look_at` is the position of the camera itself", where=f"camera {name}", hint="change `look_at`"
+        )
     ahead = ahead / length
     right = np.cross(ahead, (0.0, 0.0, 1.0))
     if float(np.linalg.norm(right)) < _UPRIGHT:
@@ -126,9 +132,9 @@ def depths(image: DepthImage) -> Image:
     shape = (image.intrinsics.height_px, image.intrinsics.width_px)
     if len(image.depth_m) != 4 * shape[0] * shape[1]:
         raise CellError(
-            f"{len(image.depth_m)} bytes are no image of {shape[1]} x {shape[0]} pixels",
+            f"{len(image.depth_m)} bytes are not an image of {shape[1]} x {shape[0]} pixels",
             where=f"camera {image.camera}",
-            hint="send four bytes a pixel",
+            hint="send four bytes per pixel",
         )
     return np.frombuffer(image.depth_m, dtype=np.float32).reshape(shape)
 

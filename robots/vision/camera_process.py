@@ -79,7 +79,7 @@ class CameraProcess:
             theirs.close()
 
     def know(self, known: KnownGeometry) -> None:
-        """Leave out these obstacles and held parts from the next look on."""
+        """Exclude these obstacles and held parts from the next image on."""
         if self._wire is not None:
             self._wire.send(UpdateKnownGeometry(known=known))
 
@@ -149,7 +149,7 @@ class CameraConnection(asyncio.Protocol):
                 self._take(self._decode(frame))
         except (RobotError, msgspec.MsgspecError) as error:
             # What comes is not ours: nothing after it can be understood either.
-            self._lose(RobotError(f"the camera process sent what cannot be read: {error}", hint=_HINT))
+            self._lose(RobotError(f"the camera process sent an invalid message: {error}", hint=_HINT))
             self.close()
 
     def connection_lost(self, exc: Exception | None) -> None:

@@ -15,7 +15,7 @@ class StartPerception(msgspec.Struct, frozen=True, kw_only=True, tag="begin"):
 
 
 class UpdateKnownGeometry(msgspec.Struct, frozen=True, kw_only=True, tag="tell"):
-    """Leave out these obstacles and held parts from the next look on."""
+    """Exclude these obstacles and held parts from the next image on."""
 
     known: KnownGeometry
 

@@ -42,11 +42,11 @@ class CameraRig:
 
     @property
     def words(self) -> str:
-        """How images are made, for people."""
+        """Human-readable name of the rendering method."""
         return self._depth.words
 
     def know(self, known: KnownGeometry) -> None:
-        """Leave out these obstacles and held parts from the next look on."""
+        """Exclude these obstacles and held parts from the next image on."""
         if self._mapper is not None:
             self._mapper.know(known)
 
@@ -58,7 +58,9 @@ class CameraRig:
         """
         unknown = [name for name in (*look.cameras, *look.detecting) if name not in self._cameras]
         if unknown:
-            raise CellError(f"there is no camera {unknown[0]}", where="cameras", hint=f"there are {[*self._cameras]}")
+            raise CellError(
+                f"there is no camera {unknown[0]}", where="cameras", hint=f"the cameras are {[*self._cameras]}"
+            )
         started_s = time.perf_counter()
         self._cell.go_to(np.frombuffer(look.state))
         images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
@@ -82,7 +84,7 @@ class CameraRig:
             self._mapper.forget()
 
     def close(self) -> None:
-        """Let go of the graphics."""
+        """Release the graphics context."""
         self._depth.close()
 
     def _mapped(self, look: PerceptionRequest, images: tuple[DepthImage, ...]) -> OccupancyGrid | None:
@@ -94,7 +96,9 @@ class CameraRig:
 
     def _found(self, camera: CameraSpec, time_s: float) -> Detections:
         if camera.detector is None:
-            raise CellError(f"{camera.name} detects nothing", where="cameras", hint="give it `detect: {}` in the cell")
+            raise CellError(
+                f"{camera.name} has no detector", where="cameras", hint="add `detect: {}` to it in the cell document"
+            )
         return self._detector.detections(camera, camera.detector, time_s=time_s)
 
     def _image(self, camera: CameraSpec, time_s: float) -> DepthImage:

@@ -45,7 +45,7 @@ def _check_labels(document: CellDocument) -> None:
         for part in camera.detect.labels if camera.detect is not None else ():
             if part not in document.parts:
                 raise CellError(
-                    f"the detector of {name} has a label for {part}, which is no part of the cell",
+                    f"the detector of {name} has a label for {part}, which is not a part of the cell",
                     where=f"camera {name}",
                     hint=did_you_mean(part, document.parts),
                 )

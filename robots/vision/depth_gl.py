@@ -60,7 +60,7 @@ class GlDepthRenderer:
         return camera.intrinsics
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         scene, lens = self._scene, camera.intrinsics
         far = _BEYOND * camera.range_m[1]
         self._gl.make_current()
@@ -89,7 +89,7 @@ class GlDepthRenderer:
         return np.where(buffer > 0.0, depth, np.inf).astype(np.float32)
 
     def close(self) -> None:
-        """Let go of the graphics."""
+        """Release the graphics context."""
         self._gl.make_current()
         self._context.free()
         self._gl.free()

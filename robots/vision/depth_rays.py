@@ -25,7 +25,7 @@ _STEPS = (8, 4, 2)
 class RayDepthRenderer:
     """Casts a ray for each pixel of a smaller image; `voxel_m` and `middle_m` say how small it may be."""
 
-    words = "by rays, in smaller images"
+    words = "by ray casting, at reduced resolution"
 
     def __init__(
         self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, voxel_m: float, middle_m: tuple[float, ...]
@@ -38,14 +38,14 @@ class RayDepthRenderer:
         return self._rays[camera.name].intrinsics
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         rays = self._rays[camera.name]
         hit, distance = first_hits(self._cell, rays.start, rays.flat, reach_m=2.0 * camera.range_m[1])
         depth = np.where(hit >= 0, distance * rays.along, np.inf).astype(np.float32)
         return depth.reshape(rays.intrinsics.height_px, rays.intrinsics.width_px)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Nothing to release."""
 
 
 def first_hits(cell: PhysicsCopy, start: Array, along: Array, *, reach_m: float) -> tuple[NDArray[np.int32], Array]:

@@ -38,11 +38,11 @@ class DepthRenderer(Protocol):
         ...
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         ...
 
     def close(self) -> None:
-        """Let go of what it uses."""
+        """Release its resources."""
         ...
 
 
@@ -76,7 +76,7 @@ def new_depth_renderer(
                 return GlDepthRenderer(cell, cameras, kind=kind)
             except GraphicsUnavailable as error:
                 raise CellError(
-                    f"{VARIABLE} asks for {kind}, and it does not work: {error}",
+                    f"{VARIABLE} requests {kind}, which does not work: {error}",
                     where="cameras",
                     hint=f"install it, or set {VARIABLE}=rays",
                 ) from error

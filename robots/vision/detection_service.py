@@ -105,11 +105,11 @@ class _CameraDetections:
         bus.advertise_service(DetectObjects, self._detect, namespace=self.name)
         rate, always = f"{self.name}/detection_rate_hz", f"{self.name}/detect_always"
         bus.parameters.declare(
-            rate, DetectionRate, self._rate_hz, description="How often it looks for things, at most, while it is read"
+            rate, DetectionRate, self._rate_hz, description="Maximum detection rate while detections have subscribers"
         )
         bus.parameters.watch(rate, self._set_rate)
         bus.parameters.declare(
-            always, bool, self._is_always_on, description="Whether it looks for things while nobody reads it, too"
+            always, bool, self._is_always_on, description="Whether the detector also runs without subscribers"
         )
         bus.parameters.watch(always, self._set_always)
 

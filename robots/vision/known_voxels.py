@@ -75,7 +75,7 @@ class KnownVoxels:
             pose, old = RigidTransform.from_pose(thing.pose), known.get(thing.name)
             inner = [RigidTransform.from_pose(solid.pose) for solid in thing.solids]
         except ValueError as error:
-            raise CellError(str(error), where=thing.name, hint="say where it stands") from error
+            raise CellError(str(error), where=thing.name, hint="give its pose") from error
         if old is not None and old.solids == thing.solids and _same(old.pose, pose):
             return old
         margin_m = max(margin_m, self._box.reach_m)

@@ -39,10 +39,10 @@ class LiveOccupancyMap:
         if self.lost_reason:
             return self.lost_reason
         if self.latest is None:
-            return "the cameras are still starting" if self.starting else "the cameras have not seen anything yet"
+            return "the cameras are still starting" if self.starting else "no camera image yet"
         age_s = self._now_s() - self._looked_at_s
         if math.isinf(age_s):
-            return "the cameras have not seen anything since the cell was brought back to an earlier state"
+            return "no camera image since the cell was restored to an earlier state"
         return f"the newest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""
 
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:

@@ -206,7 +206,7 @@ class OccupancyMapper:
 
     def _body(self, name: str) -> ArmBody:
         if name not in self._arms:
-            raise CellError(f"the map knows no arm {name}", where="occupancy", hint=f"it knows {list(self._arms)}")
+            raise CellError(f"the map has no arm {name}", where="occupancy", hint=f"its arms are {list(self._arms)}")
         return self._arms[name]
 
     def _grid(self, time_s: float) -> OccupancyGrid:
@@ -230,9 +230,11 @@ def _view(image: DepthImage) -> _View:
     numbers = np.array([lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px], dtype=np.float64)
     where = f"camera {image.camera}"
     if not np.isfinite(numbers).all() or min(lens.fx_px, lens.fy_px) <= 0.0:
-        raise CellError(f"{numbers.tolist()} is no lens", where=where, hint="give focal lengths above 0 and a centre")
+        raise CellError(
+            f"{numbers.tolist()} are not intrinsics", where=where, hint="give focal lengths above 0 and a centre"
+        )
     try:
         pose = RigidTransform.from_pose(image.pose)
     except ValueError as error:
-        raise CellError(str(error), where=where, hint="say where the camera stands") from error
+        raise CellError(str(error), where=where, hint="give the pose of the camera") from error
     return _View(depth=depths(image), lens=numbers, turn=pose.rotation, place=pose.xyz)

@@ -40,7 +40,7 @@ class PhysicsCopy:
     def go_to(self, image: Array) -> None:
         """Be where `image`, as of `Host.image`, was made; raises CellError where it is none of this world."""
         if len(image) < self._physics.stop or not np.isfinite(image[self._physics]).all():
-            raise CellError(f"{len(image)} numbers are no state of this world", where="cameras")
+            raise CellError(f"{len(image)} numbers are not a state of this world", where="cameras")
         mujoco.mj_setState(self.model, self.data, np.ascontiguousarray(image[self._physics]), self._kind)
         mujoco.mj_kinematics(self.model, self.data)
 

@@ -57,7 +57,7 @@ def voxel_box(occupancy: OccupancyMap) -> VoxelBox:
     x, y, z = (max(1, math.ceil(size / voxel - _ROUNDING)) for size in occupancy.size_m)
     if x * y * z > _MOST_VOXELS:
         raise CellError(
-            f"{x} x {y} x {z} voxels are more than {_MOST_VOXELS}",
+            f"{x} x {y} x {z} voxels exceed the limit of {_MOST_VOXELS}",
             where="occupancy",
             hint="make the box smaller or the voxels larger",
         )

@@ -131,7 +131,7 @@ def _check(chain: KinematicChain, kinematics: ArmKinematics) -> None:
         off = float(np.abs(tool_at(chain, joints) - matrix_of(kinematics.tool_pose(joints))).max())
         if off > _AGREEMENT:
             raise CellError(
-                f"the arm is not a chain of single joints: its tool is {off:.2g} off",
+                f"the arm is not a serial chain of one-axis joints: tool pose error {off:.2g}",
                 where=kinematics.model.name,
-                hint="every arm joint must move the tool by itself, about or along one line",
+                hint="every arm joint must move the tool about or along one axis, independently of the other joints",
             )

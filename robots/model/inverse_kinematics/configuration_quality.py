@@ -43,14 +43,14 @@ class ConfigurationQuality:
         if not self.singular:
             return ""
         what = f"its {self.kind} singularity" if self.kind else "a singularity"
-        return f"next to {what} (dexterity {self.dexterity:.3f}): the tool can hardly {_motion(self.hardest)}"
+        return f"near {what} (dexterity {self.dexterity:.3f}): the tool can hardly {_motion(self.hardest)}"
 
 
 def evaluate_configuration(jacobian: Array, kind: str) -> ConfigurationQuality:
     """Return the posture of a configuration with this Jacobian (6, n)."""
     directions, values, _ = np.linalg.svd(jacobian)
     hardest = directions[:, len(values) - 1]
-    # The sign of a singular vector is arbitrary: make the largest entry positive, so that answers repeat.
+    # The sign of a singular vector is arbitrary: make the largest entry positive, so that results are reproducible.
     hardest = hardest * np.sign(hardest[int(np.argmax(np.abs(hardest)))])
     return ConfigurationQuality(
         dexterity=float(values[-1]),

@@ -130,7 +130,7 @@ def _check_turn(xyzw: Array) -> None:
     farthest = float(np.linalg.norm(log(product(xyzw[-1], conjugate(xyzw))), axis=1).max())
     if farthest > _MOST_TURN_RAD:
         raise RobotError(
-            f"the tool turns by {np.degrees(farthest):.0f}° in the recording, which one primitive cannot say",
+            f"the tool turns by {np.degrees(farthest):.0f}° in the recording, which one primitive cannot represent",
             hint="learn it in two parts, each less than a whole turn",
         )
 
@@ -165,7 +165,7 @@ def _best(learn: Callable[[int], L], error: Callable[[L], tuple[float, bool]], n
         if math.isfinite(size):
             tried.append((size, learned))
     if not tried:
-        raise RobotError("the numbers overflow while it is learned", hint="choose smaller gains a_z and a_x")
+        raise RobotError("learning the movement primitive overflows", hint="choose smaller gains a_z and a_x")
     least = min(size for size, _ in tried)
     return next(learned for size, learned in tried if size <= _WORTHWHILE * least)
 

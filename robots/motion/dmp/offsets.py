@@ -50,10 +50,11 @@ def offsets_from_samples(phase: Array, added: Array, *, given: CartOffsets, shar
     """
     if phase.ndim != 1 or added.shape != (len(phase), 6) or len(phase) == 0:
         raise RobotError(
-            f"phases {phase.shape} and offsets {added.shape} are no record", hint="give one row of six for each phase"
+            f"phases {phase.shape} and offsets {added.shape} are not a record",
+            hint="give one row of six for each phase",
         )
     if not (np.isfinite(phase).all() and np.isfinite(added).all()):
-        raise RobotError("the recorded offsets have numbers that are not finite")
+        raise RobotError("the recorded offsets have values that are not finite")
     kernels = GaussianKernels.of(given.c_o, given.sigma_o)
     activations = kernels.at(phase)
     normal = activations.T @ activations + _KEEP * np.eye(len(kernels.c))

@@ -114,9 +114,9 @@ def _check_start(dmp: CartDmp, here: RigidTransform, reach_m: float, reach_rad: 
     if away_m > reach_m or away_rad > reach_rad:
         place = "({:.3f}, {:.3f}, {:.3f})".format(*start.xyz)
         raise RobotError(
-            f"the movement primitive starts with the tool at {place}, it stands {away_m:.3f} m and {away_rad:.2f} rad"
-            f" away (at most {reach_m:g} m and {reach_rad:g} rad)",
-            hint="move the tool to its start y0 first",
+            f"the tool is {away_m:.3f} m and {away_rad:.2f} rad from the start {place} of the movement primitive"
+            f" (at most {reach_m:g} m and {reach_rad:g} rad)",
+            hint="move the tool to the start y0 first",
         )
 
 

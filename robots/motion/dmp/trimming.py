@@ -48,7 +48,7 @@ def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> Mot
     for channel in channels:
         moves |= _moves(times_s, channel)
     if not moves.any():
-        raise RobotError("nothing moves in the recording", hint="record while the arm is led")
+        raise RobotError("nothing moves in the recording", hint="record while the arm is guided")
     first, last = (float(times_s[at]) for at in np.flatnonzero(moves)[[0, -1]])
     begin = int(np.searchsorted(times_s, first - _KEPT_REST_S))
     end = int(np.searchsorted(times_s, last + _KEPT_REST_S, side="right"))

@@ -86,7 +86,7 @@ class Simulation:
 
     @property
     def busy(self) -> bool:
-        """True while a motion is under way."""
+        """True while a motion is active."""
         return any(a.busy for a in self._arms.values()) or any(t.drive.number for t in self._tools.values())
 
     @property

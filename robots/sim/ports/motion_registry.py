@@ -45,17 +45,17 @@ class SimMotion:
         return await asyncio.shield(self._end)
 
     async def hold(self) -> None:
-        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
+        """Decelerate on the path and return when at rest, or when the motion has ended or been resumed meanwhile."""
         self._asked += 1
         await self._ask(HoldMotion(motion=self.number, request=self._asked))
 
     async def resume(self) -> None:
-        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
+        """Resume along the path and return when moving, or when the motion has ended or been held meanwhile."""
         self._asked += 1
         await self._ask(ResumeMotion(motion=self.number, request=self._asked))
 
     def cancel(self) -> None:
-        """Ask to decelerate on the path; `report` then returns CANCELED once at rest."""
+        """Request deceleration on the path; `report` then returns CANCELED once at rest."""
         if not self._end.done():
             self._send(CancelMotion(motion=self.number))
 
@@ -117,7 +117,7 @@ class MotionRegistry:
         """Return a number that no motion has had.
 
         Raises:
-            RobotError: the world is gone, or no motion may start for now.
+            RobotError: the world is lost, or no motion may start for now.
         """
         if self.lost_reason:
             raise RobotError(self.lost_reason, hint=CONNECT_AGAIN)
@@ -156,7 +156,7 @@ class MotionRegistry:
         self.lost_reason = ""
 
     def lost(self, reason: str) -> None:
-        """Fail all motions: the world is gone."""
+        """Fail all motions: the world is lost."""
         self.lost_reason = reason
         motions, self._motions = self._motions, {}
         for motion in motions.values():

@@ -53,5 +53,5 @@ class SimOutputPort:
     def _check(self, output: int) -> None:
         if not 0 <= output < len(self._values):
             raise RobotError(
-                f"there is no output {output}", where=self._arm, hint=f"it has the outputs 0 to {len(self._values) - 1}"
+                f"there is no output {output}", where=self._arm, hint=f"its outputs are 0 to {len(self._values) - 1}"
             )

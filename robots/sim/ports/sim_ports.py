@@ -44,7 +44,7 @@ class SimArmPort:
     """Implements `robots.port.ArmPort` for one arm of a simulated world.
 
     What starts a motion raises RobotError while another one is under way, while a reflex is not
-    recovered from, and when the world is gone.
+    recovered from, and when the world is lost.
     """
 
     def __init__(self, host: WorldHost, board: MotionRegistry, arm: ArmSummary, limits: JointLimits) -> None:
@@ -137,7 +137,7 @@ class SimArmPort:
         """Put settings into force from the next control period on.
 
         Raises:
-            RobotError: a value is out of its range for this arm, or the world is gone.
+            RobotError: a value is out of its range for this arm, or the world is lost.
         """
         checked = validate_settings(settings, arm=self._arm.name, joints=self._arm.joints, limits=self._limits)
         self._host.send(ConfigureArm(arm=self._arm.name, settings=checked))
@@ -160,7 +160,7 @@ class SimArmPort:
             raise RobotError(
                 f"the arm has stopped by itself: {why}",
                 where=self._arm.name,
-                hint="see that its way is free, then recover it",
+                hint="make sure that its path is clear, then recover it",
             )
         return number
 
@@ -182,9 +182,11 @@ class SimArmPort:
         length = math.hypot(*contact.direction)
         if not (math.isfinite(contact.force_n) and contact.force_n > 0.0):
             raise RobotError(
-                f"a contact cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
+                f"the contact force cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
             )
         if length != 0.0 and not abs(length - 1.0) < 1e-3:
             raise RobotError(
-                f"{contact.direction} is no direction", where=self._arm.name, hint="give a unit vector, or zero for any"
+                f"{contact.direction} is not a direction",
+                where=self._arm.name,
+                hint="give a unit vector, or zero for any",
             )

@@ -40,7 +40,7 @@ class SimStream(SimMotion):
         """Say where to, or how fast, to go from now on, as told `age_s` ago; says nothing once it has ended.
 
         Raises:
-            RobotError: wrong number of values, one that is not finite, or the world is gone.
+            RobotError: wrong number of values, one that is not finite, or the world is lost.
         """
         if len(values) != self._width or not all(map(math.isfinite, values)):
             raise RobotError(

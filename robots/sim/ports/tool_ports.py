@@ -68,7 +68,7 @@ class SimGripperPort:
         """Move the fingers towards `width_m`, pressing with at most `force_n`.
 
         Raises:
-            RobotError: another motion is under way, a number is senseless, or the world is gone.
+            RobotError: another motion is under way, a number is senseless, or the world is lost.
         """
         line = self._line
         number = line.number()
@@ -98,7 +98,7 @@ class SimHandPort:
         """Close or open to `share`, 0 to 1, in `time_s` or as fast as the motor can.
 
         Raises:
-            RobotError: another motion is under way, a number is senseless, or the world is gone.
+            RobotError: another motion is under way, a number is senseless, or the world is lost.
         """
         line = self._line
         number = line.number()
@@ -126,7 +126,7 @@ class SimMagnetPort:
         """Switch the field.
 
         Raises:
-            RobotError: another switch is under way, or the world is gone.
+            RobotError: another switch is under way, or the world is lost.
         """
         line = self._line
         return line.start(SwitchMagnet(arm=line.arm, motion=line.number(), on=on))

@@ -64,7 +64,7 @@ class PersonServices:
         if not least_m <= away_m <= greatest_m:
             raise SkillFailed(
                 f"{person.name} cannot reach {_written(goal)}: it is {away_m:.3f} m from the shoulder, "
-                f"{least_m:.3f} to {greatest_m:.3f} m can be reached",
+                f"reachable are {least_m:.3f} to {greatest_m:.3f} m",
                 where=self._world,
                 hint=f"the shoulder is at {_written(person.shoulder)}",
             )
@@ -75,9 +75,9 @@ class PersonServices:
             ways.append(plan_hand_trajectory(there, np.array(person.hand_rests), speed_m_s=speed_m_s).places())
         if any(_through(places, person, limb) for places in ways):
             raise SkillFailed(
-                f"the hand of {person.name} would go through the shoulder on its way to {_written(goal)}",
+                f"the path of the hand of {person.name} to {_written(goal)} passes through the shoulder",
                 where=self._world,
-                hint="let it reach to a place beside the shoulder first",
+                hint="let it reach a point beside the shoulder first",
             )
         return way.duration_s
 

@@ -160,7 +160,7 @@ class SimWorld:
         The arms have the settings and digital outputs that they had.
 
         Raises:
-            RobotError: something moves, the world is gone, or the snapshot is none of this very world.
+            RobotError: something moves, the world is lost, or the snapshot is none of this very world.
         """
         if self._board.under_way():
             raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
@@ -188,7 +188,7 @@ class SimWorld:
 
     @property
     def lost_reason(self) -> str:
-        """Why the world is gone; empty while it is there."""
+        """Why the world is lost; empty while it is there."""
         return self._board.lost_reason if self._status is DeviceStatus.FAULT else ""
 
     def when_connection_changes(self, tell: Callable[[], None]) -> None:
@@ -223,7 +223,7 @@ class SimWorld:
             self._board.reflexes = {}
             for robot in self._robots:
                 robot.recall({})
-            return f"the world has begun anew, with everything where the cell document has it: {error.message}"
+            return f"the world was restarted in the initial state of the cell document: {error.message}"
         await self._take_over(image)
         return ""
 
@@ -242,7 +242,7 @@ class SimWorld:
         `body` is one of `host.summary.bodies`: `left/panda_hand`, the name of a part.
 
         Raises:
-            RobotError: there is no such body, a number is not finite, or the world is gone.
+            RobotError: there is no such body, a number is not finite, or the world is lost.
         """
         if body not in self._host.summary.bodies:
             raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
@@ -290,7 +290,7 @@ class SimWorld:
         """Cancel every motion and return when all have ended at rest.
 
         Raises:
-            RobotError: an arm did not come to rest, or the world is gone.
+            RobotError: an arm did not come to rest, or the world is lost.
         """
         motions = self._board.under_way()
         self._host.send(StopAll())

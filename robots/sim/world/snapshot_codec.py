@@ -111,7 +111,7 @@ def _decoded(data: bytes, kind: type[S]) -> S:
     try:
         return msgspec.msgpack.decode(data, type=kind)
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
-        raise RobotError("these bytes are no snapshot of a simulated world") from error
+        raise RobotError("these bytes are not a snapshot of a simulated world") from error
 
 
 def _simulator() -> str:
@@ -120,5 +120,5 @@ def _simulator() -> str:
 
 def _sound(image: WorldImage, size: int) -> WorldImage:
     if len(image.numbers) != size * _NUMBER.itemsize or not np.isfinite(image.array()).all():
-        raise RobotError("the snapshot holds a world that cannot be", hint="start again from the beginning")
+        raise RobotError("the snapshot contains an invalid world state", hint="start again from the beginning")
     return image
