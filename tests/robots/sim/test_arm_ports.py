@@ -249,7 +249,7 @@ async def test_senseless_requests_are_refused_in_words() -> None:
             stream.send((0.0,))
         with pytest.raises(RobotError, match="send 7 finite numbers"):
             stream.send((float("nan"),) * 7)
-        with pytest.raises(RobotError, match="another motion is under way"):
+        with pytest.raises(RobotError, match="another motion is active"):
             arm.guide()
         stream.cancel()
         assert (await stream.report()).end is MotionEnd.CANCELED
