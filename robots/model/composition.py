@@ -1,4 +1,4 @@
-"""An arm's folder, a tool's folder and a calibration made into one `RobotModel` with one URDF."""
+"""Composes an arm's folder, a tool's folder and a calibration into one `RobotModel` with one URDF."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def compose(
 
     Raises:
         CellError: descriptions are not installed, names clash, or the arm has no such option.
-        DocumentError: a document and its URDF do not fit; `where` is the position.
+        DocumentError: a document and its URDF do not match; `where` is the position.
     """
     document = arm.document
     robot = arm.urdf()
@@ -118,7 +118,7 @@ def _check_arm(arm: ModelFolder[RobotDocument], robot: Element) -> None:
 
 
 def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tuple[ToolModel, str]:
-    """Put the tool's links and joints into `robot`; return the tool and the link of its centre point."""
+    """Add the tool's links and joints to `robot`; return the tool and the link of its centre point."""
     document = tool.document
     tree = tool.urdf()
     joints, links = names_in(document.mechanism)
@@ -174,7 +174,7 @@ def _rigid_to(robot: Element, link: str) -> tuple[str, ...]:
 
 
 def _present_pairs(robot: Element, pairs: Pairs) -> Pairs:
-    """Return the pairs whose links are there, each once, in order."""
+    """Return the pairs whose links exist, each once, in order."""
     present, seen, kept = links_of(robot), set[frozenset[str]](), list[tuple[str, str]]()
     for a, b in pairs:
         if a in present and b in present and frozenset((a, b)) not in seen:

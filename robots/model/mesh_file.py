@@ -1,4 +1,4 @@
-"""Checks the mesh files of a model before any library reads them: where they lie, their size, their triangles."""
+"""Checks the mesh files of a model before any library reads them: type, size, number of triangles."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from engine.errors import CellError
 from robots.model.untrusted_xml import require_no_doctype
 
 MAX_BYTES = 64 * 2**20
-"""Bytes of one mesh file."""
+"""Maximum bytes of one mesh file."""
 MAX_TRIANGLES = 1_000_000
-"""Triangles of one mesh file."""
+"""Maximum triangles of one mesh file."""
 _STL_HEAD, _STL_TRIANGLE = 84, 50
 _SUFFIXES = (".stl", ".dae", ".obj")
 
@@ -20,7 +20,7 @@ def verify_mesh_file(path: Path) -> None:
     """Check one file.
 
     Raises:
-        CellError: it cannot be read, is no STL, Collada or OBJ file, or is larger than the limits.
+        CellError: it cannot be read, is not an STL, Collada or OBJ file, or exceeds the limits.
     """
     try:
         if path.suffix.lower() not in _SUFFIXES:
@@ -37,10 +37,10 @@ def verify_mesh_file(path: Path) -> None:
 
 
 def require_triangles(count: int, path: Path) -> None:
-    """Check how many triangles were found in a file.
+    """Check the number of triangles in a file.
 
     Raises:
-        CellError: they are too many.
+        CellError: there are too many.
     """
     if count > MAX_TRIANGLES:
         raise CellError(
@@ -74,7 +74,7 @@ def _verify_stl(data: bytes) -> None:
 
 
 def _verify_obj(data: bytes) -> None:
-    """A polygon may become many triangles: its corners are counted."""
+    """Check an OBJ file; a polygon may become many triangles, so its corners are counted."""
     corners = 0
     for line in data.splitlines():
         words = line.split()

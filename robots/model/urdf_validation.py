@@ -1,4 +1,4 @@
-"""What a URDF must be so that everything behind it (kinematics, collision, simulation, view) may rely on it."""
+"""Validates a URDF for all its users (kinematics, collision, simulation, view)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from xml.etree.ElementTree import Element
 from engine.errors import CellError
 
 MAX_LINKS = 512
-"""Links of one model, and joints."""
+"""Maximum links, and joints, of one model."""
 MAX_SHAPES = 4096
-"""Visual and collision shapes of one model."""
+"""Maximum visual and collision shapes of one model."""
 _MAX_NUMBER = 1e9
 _JOINT_TYPES = ("fixed", "revolute", "continuous", "prismatic")
 _NUMBERS: Mapping[str, Mapping[str, int]] = {
@@ -42,10 +42,10 @@ _REQUIRED: Mapping[str, tuple[str, ...]] = {
 
 
 def verify_urdf(robot: Element, *, where: Path) -> None:
-    """Check the links and joints of a `robot` element: named once, one tree, plain numbers.
+    """Check the links and joints of a `robot` element: unique names, one tree, plain numbers.
 
     Raises:
-        CellError: with the first thing that is wrong.
+        CellError: states the first error.
     """
     try:
         links = _names(robot, "link")
@@ -90,10 +90,10 @@ def _verify_tree(robot: Element, links: set[str]) -> None:
     if len(roots) != 1:
         raise ValueError(f"its links do not form one tree: {len(roots)} of them have no parent")
     for link in links:
-        _verify_way_up(link, parents)
+        _verify_ancestors(link, parents)
 
 
-def _verify_way_up(link: str, parents: Mapping[str, str]) -> None:
+def _verify_ancestors(link: str, parents: Mapping[str, str]) -> None:
     at, steps = link, 0
     while at in parents:
         at, steps = parents[at], steps + 1

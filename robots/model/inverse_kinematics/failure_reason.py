@@ -1,4 +1,4 @@
-"""Why a goal has no solution, in words: how far out of reach, what is missing, which joints are at limits."""
+"""Explains why a goal has no solution: distance out of reach, remaining error, joints at limits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _REACHED_M = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class DescentAttempt:
-    """Where a descent ended: joints (n,), and what is missing there."""
+    """The end of a descent: joints (n,), and the remaining error."""
 
     joints: Array
     distance_m: float
@@ -34,9 +34,9 @@ def unreachable_error(
     starts: Sequence[Array],
     to_position: Callable[[Array], DescentAttempt],
 ) -> RobotError:
-    """Return the error for a goal that no attempt has reached.
+    """Return the error for a goal that no attempt reached.
 
-    `best` came closest; `to_position` descends towards the bare position from a configuration, which is
+    `best` came closest; `to_position` descends towards the position only; it is
     tried from `best` and, while it fails, from `starts`.
     """
     place = "({:.3f}, {:.3f}, {:.3f})".format(*target.xyz)
