@@ -20,8 +20,8 @@ class _Task:
     patience_s: float
     hold: bool = False
     request: int = 0
-    told_held: bool = False
-    tell_resumed: bool = False
+    held_reported: bool = False
+    resume_pending: bool = False
     cancel: bool = False
     stop_cause: str = ""
     waited_s: float = 0.0
@@ -62,14 +62,14 @@ class GripTask:
         """Stop and keep the motion."""
         task = self._task
         if task and task.number == number:
-            task.hold, task.told_held, task.tell_resumed = True, False, False
+            task.hold, task.held_reported, task.resume_pending = True, False, False
             task.request = request
 
     def resume(self, number: int, *, request: int = 0) -> None:
         """Resume."""
         task = self._task
         if task and task.number == number:
-            task.hold, task.tell_resumed, task.request = False, True, request
+            task.hold, task.resume_pending, task.request = False, True, request
 
     def cancel(self, number: int) -> None:
         """Stop and end as CANCELED."""
@@ -104,8 +104,8 @@ class GripTask:
         if task is None:
             return ()
         at_rest = self._rest_s >= REST_S
-        if task.tell_resumed:
-            task.tell_resumed = False
+        if task.resume_pending:
+            task.resume_pending = False
             self._rest_s = 0.0
             return (MotionResumed(motion=task.number, request=task.request),)
         if task.cancel:
@@ -114,9 +114,9 @@ class GripTask:
             end = MotionEnd.FAILED if task.stop_cause else MotionEnd.CANCELED
             return self._finish(task, end, progress, task.stop_cause)
         if task.hold:
-            if not at_rest or task.told_held:
+            if not at_rest or task.held_reported:
                 return ()
-            task.told_held = True
+            task.held_reported = True
             return (MotionHeld(motion=task.number, request=task.request),)
         if at_rest and reached:
             return self._finish(task, MotionEnd.REACHED, progress)

@@ -32,8 +32,8 @@ class _ActiveMotion:
     hold: bool = False
     finishing: bool = False
     request: int = 0
-    told_held: bool = False
-    tell_resumed: bool = False
+    held_reported: bool = False
+    resume_pending: bool = False
     waited_s: float = 0.0
 
 
@@ -104,14 +104,14 @@ class MotionExecutor:
         """Decelerate on the path; a finishing stream comes to rest and ends anyway."""
         following = self._following
         if following and following.number == number and not following.finishing:
-            following.hold, following.told_held, following.tell_resumed = True, False, False
+            following.hold, following.held_reported, following.resume_pending = True, False, False
             following.request = request
 
     def resume(self, number: int, *, request: int = 0) -> None:
         """Resume along the path."""
         following = self._following
         if following and following.number == number:
-            following.hold, following.tell_resumed, following.request = False, True, request
+            following.hold, following.resume_pending, following.request = False, True, request
 
     def cancel(self, number: int) -> None:
         """Decelerate on the path, then end as CANCELED."""
@@ -172,17 +172,17 @@ class MotionExecutor:
         self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         generator = following.generator
-        if following.tell_resumed and generator.moving:
-            following.tell_resumed = False
+        if following.resume_pending and generator.moving:
+            following.resume_pending = False
             return (MotionResumed(motion=following.number, request=following.request),)
         if not generator.stopped:
             return ()
         if following.ending is not None:
             return self._end_when_at_rest(following, step_s, position, at_rest)
         if following.hold:
-            if not at_rest or following.told_held:
+            if not at_rest or following.held_reported:
                 return ()
-            following.told_held = True
+            following.held_reported = True
             return (MotionHeld(motion=following.number, request=following.request),)
         return self._settle(following, step_s, position, at_rest) if generator.complete else ()
 

@@ -62,14 +62,14 @@ class LockstepPerception(PerceptionDevice):
     def _after_step(self) -> bool:
         """Deliver finished results, render if due; return whether callbacks ran."""
         self._steps += 1
-        told = False
+        notified = False
         if self._coming is not None and self._steps >= self._coming[0] + self._later:
             (taken, seen), self._coming = self._coming, None
             self.take_result(seen, looked_at_s=taken * self.sight.scene.step_s)
-            told = True
+            notified = True
         if self._steps % self._tick == 0 and self.needed:
-            told = self._look_if_due() or told
-        return told
+            notified = self._look_if_due() or notified
+        return notified
 
     def _look_if_due(self) -> bool:
         """Render if due; return whether a failure was reported."""

@@ -79,16 +79,16 @@ class RealTimePerception(PerceptionDevice):
 
     async def _look_on(self) -> None:
         """Send requests whenever they are due; raises RobotError once the process is lost."""
-        loop, told = asyncio.get_running_loop(), None
+        loop, sent = asyncio.get_running_loop(), None
         while True:
             now_s = loop.time()
             await asyncio.sleep(self._fastest_s - now_s % self._fastest_s)
             self.map.tell()
             if not self.needed:
                 continue
-            if self.known is not None and self.known is not told:
-                told = self.known
-                self._process.know(told)
+            if self.known is not None and self.known is not sent:
+                sent = self.known
+                self._process.know(sent)
             looked_at_s = loop.time()
             order = self.next_look(self._due(looked_at_s), now_s=looked_at_s)
             if order is not None:

@@ -49,8 +49,8 @@ class SimStream(SimMotion):
                 hint=f"send {self._width} finite numbers" if self._width else "this stream takes none",
             )
         if not self.ended:
-            told = tuple(map(float, values))
-            self._tell(Setpoint(arm=self._arm, motion=self.number, values=told, age_s=age_s))
+            numbers = tuple(map(float, values))
+            self._tell(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
 
     def finish(self) -> None:
         """Request to come to rest and end as REACHED."""

@@ -355,15 +355,15 @@ class SimWorld:
 
     def _after_step(self) -> bool:
         self._hooked_steps += 1
-        publisher, told = self._publisher, False
+        publisher, notified = self._publisher, False
         if publisher is not None:
             if self._hooked_steps % self._joint_steps == 0:
-                told = publisher.publish_joints()
+                notified = publisher.publish_joints()
             if self._hooked_steps % self._frame_steps == 0:
-                told = publisher.publish_frames() or told
+                notified = publisher.publish_frames() or notified
         for hook, _ in self._hooks:
-            told = hook() or told
-        return told
+            notified = hook() or notified
+        return notified
 
     async def _publish_in_real_time(self) -> None:
         assert self._publisher is not None
