@@ -1,4 +1,4 @@
-"""Admittance: forces that are not as wanted deviate the tool, M ẍ + D ẋ + K x = F − F_wanted (RCL 4.3.7)."""
+"""Admittance: force errors deviate the tool, M ẍ + D ẋ + K x = F − F_wanted (RCL 4.3.7)."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from robots.port import Admittance, Array
 
-# While it only gives way, forces that are this much stronger than wanted are borne.
+# While the loop only yields, forces up to this much above the wanted ones are tolerated.
 _BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
 _AXES = 6
 
 
 class AdmittanceLoop:
-    """The offset that forces have led to, per axis of the task frame (m, then rad), one period after the other.
+    """The offset caused by forces, per axis of the task frame (m, then rad), updated once per period.
 
-    The whole offset, feed-forward and admittance together, keeps the reach and the speed of the
-    parameters. What is cut off is forgotten, so nothing winds up.
+    The total offset, feed-forward plus admittance, stays within the reach and the speed of the
+    parameters. Clipped offset is discarded, so there is no windup.
     """
 
     def __init__(self, admittance: Admittance) -> None:
@@ -29,17 +29,17 @@ class AdmittanceLoop:
 
     @property
     def axes(self) -> tuple[int, ...]:
-        """The axes that are deviated."""
+        """The active axes."""
         return self._axes
 
     def press(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
-        """Move on so that the measured wrench becomes the wanted one, (6,); `total` is the whole offset then."""
+        """Advance so that the measured wrench converges to the wanted one, (6,); `total` is the whole offset."""
         for axis in self._axes:
             self._move(axis, step_s, float(measured[axis] - wanted[axis]), float(feed_forward[axis]))
         self._add_up(feed_forward)
 
     def give_way(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
-        """Come to rest; move only away from forces that are clearly stronger than wanted, never towards."""
+        """Come to rest; move only away from forces clearly above the wanted ones, never towards them."""
         for axis in self._axes:
             excess = float(measured[axis] - wanted[axis])
             towards = excess * float(wanted[axis]) < 0.0

@@ -1,4 +1,4 @@
-"""One arm in a control loop: what it feels, where it is to be, which law holds it, when it stops by itself."""
+"""One arm in a control loop: external forces, set point, control law and collision reflex."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ from robots.model.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import ArmSettings, Array, ControllerName, MotionEnd, Tolerance
 
-# What is felt passes this low pass, as wrist sensors have one.
+# External forces pass this low-pass filter, as in wrist sensors.
 _FELT_HZ = 60.0
 _BLEND_S, _REFLEX_BLEND_S = 0.1, 0.02
-# An arm that has stopped by itself holds with this share of its nominal stiffness.
+# After a reflex stop the arm holds with this share of its nominal stiffness.
 _REFLEX_STIFFNESS = 0.2
 
 
 class ArmControlLoop:
-    """Owned by one control loop, which calls `measure`, `advance` and `torque` once a period, in this order.
+    """Owned by one control loop, which calls `measure`, `advance` and `torque` once per period, in this order.
 
-    Without thresholds in its settings an arm never stops by itself.
+    Without thresholds in its settings the arm has no collision reflex.
 
     Args:
-        name: Of the arm, for what is told.
-        kinematics: Of the arm, for this loop only.
-        inertia_kg_m2: Diagonal of the mass matrix at home, (n,); joints are damped for it.
+        name: Name of the arm, for messages.
+        kinematics: Kinematics of the arm, used by this loop only.
+        inertia_kg_m2: Diagonal of the mass matrix at home, (n,); determines the joint damping.
         gravity_m_s2: Gravity in the world, (3,).
-        touching: Says in words what the arm touches, empty for nothing.
+        touching: Describes what the arm touches; empty for nothing.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class ArmControlLoop:
         self.name = name
         self.settings = ArmSettings()
         self.tool_xyz_m: Array = np.array(self.settings.tool_xyz_m)
-        """Where the tool centre point is in the frame of the tool link, (3,), as the settings say."""
+        """Tool centre point in the frame of the tool link, (3,), from the settings."""
         self.state = ArmState(kinematics)
         self.motion = MotionExecutor(joints=model.arm_joints, touching=touching)
         self._kinematics = kinematics
@@ -83,16 +83,16 @@ class ArmControlLoop:
 
     @property
     def reflex(self) -> bool:
-        """True when the arm has stopped by itself and was not told to recover."""
+        """True from a reflex stop until `recover`."""
         return bool(self._reflex.reason)
 
     @property
     def has_unreported_end(self) -> bool:
-        """True while `advance` has something to tell that happened before it."""
+        """True while `advance` has an earlier event to report."""
         return bool(self._untold)
 
     def initialize(self, position: Array, *, reflex: bool = False) -> None:
-        """Hold `position` from now on, stopped by itself or not; whatever ran or was felt is forgotten."""
+        """Hold `position`, with or without an active reflex; drops the active motion and the filtered forces."""
         self.motion.initialize(position)
         self.state.external_nm[:] = 0.0
         self.state.wrench[:] = 0.0
@@ -103,7 +103,7 @@ class ArmControlLoop:
         self._blend.forget()
 
     def configure(self, settings: ArmSettings) -> None:
-        """Put checked settings into force, without a bump; also while something moves."""
+        """Apply validated settings without a torque jump, also during a motion."""
         before, self.settings = self.settings, settings
         self.tool_xyz_m = np.array(settings.tool_xyz_m)
         self.motion.pace = settings.speed_override
@@ -120,7 +120,7 @@ class ArmControlLoop:
         self._blend.start(duration_s=_BLEND_S)
 
     def start(self, number: int, generator: MotionGenerator, tolerance: Tolerance) -> None:
-        """Start a motion; it ends as failed at once when the arm has stopped by itself meanwhile."""
+        """Start a motion; it fails at once if the reflex has tripped meanwhile."""
         if self.reflex:
             reason = f"the arm has stopped by itself: {self._reflex.reason}"
             self._untold.append(MotionFinished(motion=number, end=MotionEnd.FAILED.value, progress=0.0, reason=reason))
@@ -128,7 +128,7 @@ class ArmControlLoop:
         self.motion.start(number, generator, tolerance)
 
     def float_with(self, *, damping_share: float) -> None:
-        """Leave this share of the joints' damping to motions that float."""
+        """Set the share of the joint damping that remains in gravity compensation."""
         self._floating.damping_share = damping_share
 
     def recover(self) -> None:
@@ -140,10 +140,10 @@ class ArmControlLoop:
             self.motion.initialize(self.state.position)
 
     def measure(self, position: Array, velocity: Array, *, pull_nm: Array, wrench: Array, step_s: float) -> None:
-        """Take what is measured.
+        """Take the measurements of a period.
 
-        `pull_nm` (n,) is the joint torque of all that is no part of the arm's model, `wrench` (6,) force and
-        torque of it on the tool about the tool centre point, world axes; the load is taken out of both.
+        `pull_nm` (n,) is the joint torque of everything outside the arm's model, `wrench` (6,) its force and
+        torque on the tool about the tool centre point, world axes; the load is subtracted from both.
         """
         state = self.state
         state.refill(position, velocity)
@@ -156,9 +156,9 @@ class ArmControlLoop:
         state.wrench += share * (wrench - state.wrench)
 
     def advance(self, step_s: float) -> list[AnyMotionEvent]:
-        """Move the set point on by one period and return what happened."""
+        """Advance the set point by one period and return the events."""
         events, self._untold = self._untold, []
-        # A hand that leads the arm is no collision.
+        # A hand that guides the arm is not a collision.
         if self.motion.leads and self._reflex.trips(self.state):
             self.motion.fail(self._reflex.reason)
             events.append(ReflexTripped(motion=self.motion.number, arm=self.name, reason=self._reflex.reason))
@@ -188,5 +188,5 @@ class ArmControlLoop:
 
 
 def _shape(settings: ArmSettings) -> ArmSettings:
-    """Return `settings` without what does not change the torques of an arm at rest."""
+    """Return `settings` reduced to what changes the torques of an arm at rest."""
     return replace(settings, collision_torque_nm=(), collision_force_n=None, speed_override=1.0)

@@ -1,4 +1,4 @@
-"""What a control loop knows of one arm at one instant: joints, tool, and what the environment does to it."""
+"""The state of one arm in a control loop at one instant: joints, tool and external forces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robots.port import Array
 
 
 class ToolKinematics(Protocol):
-    """What a control loop needs of kinematics; `robots.model.kinematics.ArmKinematics` has it."""
+    """The kinematics a control loop needs; `robots.model.kinematics.ArmKinematics` implements it."""
 
     @property
     def dof(self) -> int:
@@ -28,14 +28,14 @@ class ToolKinematics(Protocol):
 
 
 class ArmState:
-    """The measured arm; one instance is kept and refilled at every control period by the loop that owns it.
+    """The measured arm; its control loop refills one instance at every control period.
 
     Attributes:
         position: Measured joints, (n,), rad.
         velocity: Measured joint velocities, (n,), rad/s.
-        external_nm: Estimated joint torque of the environment, (n,).
+        external_nm: Estimated external joint torque, (n,).
         wrench: Force and torque of the environment on the tool at the tool centre point, (6,), world axes.
-        kinematics: For this loop only.
+        kinematics: Used by this loop only.
     """
 
     def __init__(self, kinematics: ToolKinematics) -> None:
@@ -48,7 +48,7 @@ class ArmState:
         self._tool: tuple[RigidTransform, Array] | None = None
 
     def refill(self, position: Array, velocity: Array) -> None:
-        """Take the joints of a new control period."""
+        """Set the joints of a new control period."""
         self.position[:] = position
         self.velocity[:] = velocity
         self._tool = None

@@ -1,4 +1,4 @@
-"""What an arm is told that it carries: the torques that bear it, and its part in what is felt."""
+"""The configured load of an arm: its compensation torques and its share of the measured forces."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 class CarriedLoad:
-    """A mass at a point of the tool link; its rotational inertia is neglected.
+    """A point mass on the tool link; its rotational inertia is neglected.
 
-    `measure` once per control period, then `bearing_nm`, `felt_nm` and `felt_at` are of that period.
+    Call `measure` once per control period; `bearing_nm`, `felt_nm` and `felt_at` refer to that period.
 
     Args:
-        kinematics: Of the arm, at any tool centre point.
+        kinematics: Kinematics of the arm, with any tool centre point.
         gravity_m_s2: Gravity in the world, (3,).
     """
 
@@ -34,21 +34,21 @@ class CarriedLoad:
 
     @property
     def none(self) -> bool:
-        """True while nothing is carried."""
+        """True without a load."""
         return self._mass_kg == 0.0
 
     def take(self, settings: ArmSettings) -> None:
-        """Carry the load of `settings` from now on."""
+        """Apply the load of `settings`."""
         self._mass_kg = settings.load_kg
         self._at = self._kinematics.with_tool(RigidTransform.of(settings.load_com_m, _UPRIGHT))
         self._velocity = None
 
     def forget_motion(self) -> None:
-        """Take no acceleration from what was measured before: the arm is somewhere else."""
+        """Reset the velocity history: the arm was moved elsewhere."""
         self._velocity = None
 
     def measure(self, state: ArmState, step_s: float) -> None:
-        """Take the joints of a new control period; the acceleration is the change of velocity since the last."""
+        """Take the joints of a new control period; the acceleration is the change of velocity since the last one."""
         pose, jacobian = self._at.tool_pose_and_jacobian(state.position)
         self._xyz, self._jacobian = pose.xyz, jacobian[:3]
         velocity = self._jacobian @ state.velocity
@@ -57,14 +57,14 @@ class CarriedLoad:
         self._velocity = velocity
 
     def bearing_nm(self, acceleration: Array) -> Array:
-        """Return the joint torques that hold the load up and accelerate it along the set point, (n,)."""
+        """Return the joint torques that support the load and accelerate it along the set point, (n,)."""
         force = self._mass_kg * (self._jacobian @ acceleration - self._gravity)
         return force @ self._jacobian
 
     def felt_nm(self) -> Array:
-        """Return the joint torques by which the load pulls at the arm, (n,)."""
+        """Return the joint torques that the load exerts on the arm, (n,)."""
         return self._force @ self._jacobian
 
     def felt_at(self, point: Array) -> Array:
-        """Return force and torque of the load about a point of the world, (6,)."""
+        """Return force and torque of the load about a point in the world, (6,)."""
         return np.concatenate((self._force, cross(self._xyz - point, self._force)))

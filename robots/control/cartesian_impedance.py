@@ -1,4 +1,4 @@
-"""Cartesian impedance: the tool hangs on springs and dampers at its set point (RCY 4.4, eq. 2)."""
+"""Cartesian impedance: springs and dampers between the tool and its set point (RCY 4.4, eq. 2)."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from robots.control.controller import SetPoint
 from robots.model.robot_model import JointLimits
 from robots.port import ArmSettings, Array
 
-# What a direction of the tool feels heavier than this many times the mean is taken as that heavy:
-# near a singularity no inertia grows without bound, and the null space takes the direction over.
+# The inertia of a tool direction is limited to this multiple of the mean: near a singularity it stays
+# bounded, and the null space takes the direction over.
 _LIGHTEST_SHARE = 0.03
-# The joints are damped as if the null space was at least this stiff, so that they never drift freely.
+# Joint damping assumes at least this null-space stiffness, so that the joints never drift freely.
 _LEAST_STIFFNESS_NM_RAD = 2.0
 
 
 class CartesianImpedance:
     """Implements `Controller`: τ = clip(Jᵀ (K e + D ė) + Nᵀ (K_n (q_d − q) + D_n (q̇_d − q̇)) + feedforward).
 
-    e is the pose of the set point less the measured one, translation and rotation vector, in the
+    e is the pose of the set point minus the measured one, translation and rotation vector, in the
     axes of the arm's base; K is `cartesian_stiffness` and D `cartesian_damping_ratio` times
-    critical, axis by axis, for the inertia Λ = (J M⁻¹ Jᵀ)⁻¹ that the tool has there now. N is the
-    dynamically consistent null space I − M⁻¹ Jᵀ Λ J: what pulls at the joints does not move the
-    tool. No inverse of J is taken, so torques stay bounded at singularities.
+    critical, axis by axis, for the present tool inertia Λ = (J M⁻¹ Jᵀ)⁻¹. N is the
+    dynamically consistent null space I − M⁻¹ Jᵀ Λ J: its joint torques do not move the
+    tool. J is not inverted, so torques stay bounded at singularities.
 
     Args:
-        limits: Of the joints.
-        mass_matrix: Gives M, (n, n), for joints of shape (n,).
+        limits: Joint limits.
+        mass_matrix: Returns M, (n, n), for joints of shape (n,).
         base_rotation: Axes of the base in the world, (3, 3).
     """
 
@@ -50,7 +50,7 @@ class CartesianImpedance:
         self._joint_stiffness = self._joint_damping_root = 0.0
 
     def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
-        """Take stiffness and damping ratio; the inertia is worked out anew in every step."""
+        """Take stiffness and damping ratio; every step recomputes the inertia."""
         ratio = settings.cartesian_damping_ratio
         self._stiffness = np.array(settings.cartesian_stiffness)
         self._damping_root = 2.0 * ratio * np.sqrt(self._stiffness)
@@ -90,6 +90,6 @@ class CartesianImpedance:
         return torque
 
     def terminate(self) -> Array:
-        """Return the torques to leave behind: none."""
+        """Return the final torques: zero."""
         self._torque[:] = 0.0
         return self._torque

@@ -1,4 +1,4 @@
-"""When an arm stops by itself: something pulls at it harder than it was told to bear (RCY 4.1)."""
+"""The collision reflex: the arm stops when an external force or torque exceeds its threshold (RCY 4.1)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robots.port import ArmSettings
 
 
 class CollisionReflex:
-    """Compares what is felt with the thresholds; `reason` is empty until one was exceeded, and may be cleared."""
+    """Compares external forces with the thresholds; `reason` is empty until one is exceeded; clearing it re-arms."""
 
     def __init__(self, *, joints: tuple[str, ...], touching: Callable[[], str]) -> None:
         self._joints = joints
@@ -23,14 +23,14 @@ class CollisionReflex:
         self.reason = ""
 
     def watch(self, settings: ArmSettings) -> None:
-        """Take the thresholds."""
+        """Set the thresholds."""
         torque, force = settings.collision_torque_nm, settings.collision_force_n
         self._torque_nm = np.array(torque) if torque else np.full(len(self._joints), np.inf)
         self._force_n = math.inf if force is None else force
         self._watching = bool(torque) or force is not None
 
     def trips(self, state: ArmState) -> bool:
-        """Tell whether a threshold is exceeded for the first time since `reason` was empty."""
+        """Return whether a threshold is exceeded for the first time since `reason` was empty."""
         if not self._watching or self.reason:
             return False
         excess = np.abs(state.external_nm) / self._torque_nm
@@ -39,11 +39,13 @@ class CollisionReflex:
         force = math.hypot(x, y, z)
         if excess[worst] > 1.0:
             felt, bound = abs(float(state.external_nm[worst])), float(self._torque_nm[worst])
-            self.reason = self._words(f"{self._joints[worst]} feels {felt:.1f} N m", f"{bound:g} N m")
+            excess_nm = f"{felt:.1f} N m > {bound:g} N m on {self._joints[worst]}"
+            self.reason = self._describe(f"external torque limit exceeded: {excess_nm}")
         elif force > self._force_n:
-            self.reason = self._words(f"the tool feels {force:.1f} N", f"{self._force_n:g} N")
+            excess_n = f"{force:.1f} N > {self._force_n:g} N at the tool"
+            self.reason = self._describe(f"external force limit exceeded: {excess_n}")
         return bool(self.reason)
 
-    def _words(self, felt: str, threshold: str) -> str:
+    def _describe(self, exceeded: str) -> str:
         contact = self._touching()
-        return f"{felt} from outside, its threshold is {threshold}" + (f"; {contact}" if contact else "")
+        return exceeded + (f"; {contact}" if contact else "")

@@ -1,4 +1,4 @@
-"""What a controller is: torques that hold an arm at its set point, one control period after the other (RCY 4.4)."""
+"""The controller interface: torques that hold an arm at its set point, computed every control period (RCY 4.4)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robots.port import ArmSettings, Array
 
 
 class SetPoint(Protocol):
-    """Where the arm should be now; shapes (n,)."""
+    """The present set point of the arm; shapes (n,)."""
 
     @property
     def position(self) -> Array:
@@ -45,5 +45,5 @@ class Controller(Protocol):
         ...
 
     def terminate(self) -> Array:
-        """Return the torques to leave behind: none."""
+        """Return the final torques: zero."""
         ...

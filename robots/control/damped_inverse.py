@@ -1,4 +1,4 @@
-"""Joint velocities for a tool velocity, damped only where the arm is near a singularity and only in that direction."""
+"""Joint velocities for a tool velocity, damped only near a singularity and only in the singular direction."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from robots.port import Array
 
-# Below this singular value (metres and radians weighed alike) a Panda turns some joint more than
+# Below this singular value (metres and radians weighted equally) a Panda turns some joint more than
 # sixteen times as fast as its tool moves.
 _NEAR = 0.06
 _DAMPING = 0.06
@@ -17,7 +17,7 @@ def joint_velocity(jacobian: Array, twist: Array) -> Array:
     """Return joint velocities, (n,), for a tool velocity, (m,); the Jacobian has shape (m, n).
 
     Exact far from singularities; near one, the part of the tool's velocity that would need fast joints
-    fades out (numerical filtering, Maciejewski and Klein 1988). Of several solutions, the slowest.
+    fades out (numerical filtering, Maciejewski and Klein 1988). Of several solutions it returns the slowest.
     """
     squares, directions = np.linalg.eigh(jacobian @ jacobian.T)
     squares = np.maximum(squares, 0.0)
@@ -26,7 +26,7 @@ def joint_velocity(jacobian: Array, twist: Array) -> Array:
 
 
 def twist_rows(twist: Array, joints: int) -> slice:
-    """Return which of the six numbers of a twist count: a small arm cannot keep its orientation while it moves."""
+    """Return the active rows of a twist: an arm of few joints cannot keep its orientation while it moves."""
     if joints >= _FULL:
         return slice(0, 6)
     return slice(0, 3) if twist[:3].any() else slice(3, 6)

@@ -1,4 +1,4 @@
-"""Means of offset and wrench over equal times of a force-tracking motion."""
+"""Records means of offset and wrench over equal periods of a force-tracking motion."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ForceRecorder:
         self._since_s = 0.0
 
     def add(self, step_s: float, *, share: float, offset: Array, wrench: Array) -> None:
-        """Take one control period; offset and wrench have shape (6,)."""
+        """Add one control period; offset and wrench have shape (6,)."""
         self._sum[0] += share
         self._sum[1:7] += offset
         self._sum[7:] += wrench
@@ -28,7 +28,7 @@ class ForceRecorder:
             self._close()
 
     def record(self) -> ForceRecord:
-        """Return what was collected."""
+        """Return the record."""
         if self._count:
             self._close()
         rows = np.array(self._rows).reshape(-1, 13)

@@ -1,4 +1,4 @@
-"""A tool path followed while pressing as wanted: the loop of CartAdmitDMP (RCL 4.3.7)."""
+"""Follows a tool path with force control: the loop of CartAdmitDMP (RCL 4.3.7)."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from robots.model.robot_model import JointLimits
 from robots.model.transform import RigidTransform, product, quaternion_of
 from robots.port import Array, ForceTask
 
-# The feed-forward offset of the first sample is faded in over this time.
+# The feed-forward offset of the first sample fades in over this time.
 _FADE_IN_S = 0.3
-# Phase stopping answers to forces, not to the noise of their sensor.
+# Phase stopping reacts to forces, not to sensor noise.
 _FORCE_SMOOTHING_S = 0.05
-# Where the joints cannot follow, the passage slows down, and gives up in the end.
+# Where the joints cannot follow, the motion slows down and finally fails.
 _SLOW_MISSING = 0.004
 _MOST_MISSING = 0.02
 _RAD_PER_M = 10.0
 _STANDS_RAD_S = 0.002
-# A tool that is pushed on and on gives way for this long once the path stands still, then rests for a moment.
+# Under a persistent push the tool yields for this long once the path stands still, then rests briefly.
 _GIVING_WAY_S, _PAUSE_S = 1.2, 0.1
 _AT_LIMIT_RAD = 0.01
 
 
 class ForceTracking:
-    """Implements `Generator`: the nominal path, plus what was learned, plus what the force leads to.
+    """Implements `MotionGenerator`: nominal path plus learned offset plus admittance offset.
 
-    While the path is passed the admittance of the task acts on the measured wrench less the wanted one.
-    Held, cancelled, failed and at the end the path stops and the tool presses on no further: the
-    offset comes to rest and only gives way to forces clearly stronger than wanted, so that a tool that
-    lost its surface does not go after it, and nothing is crushed. Where they push on and on it pauses
-    every other second, so that whatever pushes, a motion can end. On resuming, forces are tracked
-    again at once. `data` is an encoded `ForceRecord` of the times the path was passed.
+    Along the path, the admittance of the task acts on the measured wrench minus the wanted one.
+    When held, cancelled, failed or at its end, the path stops and the tool stops pressing: the
+    offset comes to rest and yields only to forces clearly above the wanted ones, so that a tool that
+    lost its surface does not chase it, and nothing is crushed. Under a persistent push it pauses
+    every other second, so that a motion can always end. On resume, force tracking restarts
+    at once. `data` is an encoded `ForceRecord` of the times of progress along the path.
 
     Args:
-        task: What to do, as `verified_task` takes it.
-        limits: Of the joints.
-        joints: Their names, for messages.
+        task: The task, validated by `validate_force_task`.
+        limits: Joint limits.
+        joints: Joint names, for messages.
     """
 
     def __init__(self, task: ForceTask, *, limits: JointLimits, joints: tuple[str, ...]) -> None:
@@ -52,7 +52,7 @@ class ForceTracking:
         self._tracker = ToolTracker(limits=limits, start=self._playback.position)
         self._recorder = ForceRecorder(task.record_s)
         self._task_axes = RigidTransform.of((0.0, 0.0, 0.0), task.task_xyzw).rotation
-        # Feed-forward offset and wanted wrench side by side, so that both are looked up at once.
+        # Feed-forward offset and wanted wrench side by side, for one lookup.
         self._rows = np.hstack((task.offset, task.wrench))
         self._row = self._rows[0]
         self._passed_s = 0.0
@@ -65,27 +65,27 @@ class ForceTracking:
 
     @property
     def stopped(self) -> bool:
-        """True when the path stands still, or is over, and the offset too."""
+        """True when path and offset stand still or have ended."""
         return self._playback.stopped and float(np.abs(self.velocity).max()) < _STANDS_RAD_S
 
     @property
     def moving(self) -> bool:
-        """True when the path is under way, or over."""
+        """True while the path advances, and after its end."""
         return self._playback.moving
 
     @property
     def complete(self) -> bool:
-        """True when the path is over and the tool at rest where the force has led it."""
+        """True when the path has ended and the tool is at rest at its force-controlled offset."""
         return self._playback.complete and self.stopped
 
     @property
     def contact(self) -> bool:
-        """False: contact is its way, not its end."""
+        """False: contact does not end this motion."""
         return False
 
     @property
     def progress(self) -> float:
-        """Share of the path's time that is passed."""
+        """Elapsed share of the path's time."""
         return self._playback.progress
 
     @property
@@ -100,7 +100,7 @@ class ForceTracking:
 
     @property
     def failure(self) -> str:
-        """That the joints cannot take the tool where the force leads it, and which one; empty while they can."""
+        """Which joint prevents the tool from following the force-controlled path; empty while it can."""
         return self._failure
 
     def data(self) -> bytes:
@@ -108,7 +108,7 @@ class ForceTracking:
         return self._recorder.record().to_bytes()
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
-        """Move on by `step_s`: path, force, joints."""
+        """Advance by `step_s`: path, force, joints."""
         measured, playback, admittance = self._in_task(state.wrench), self._playback, self._admittance
         slowdown = self._slowdown(step_s, measured, self._row[6:])
         playback.step(step_s, target_pace=target_pace / slowdown, state=state)
@@ -126,7 +126,7 @@ class ForceTracking:
             self._recorder.add(step_s, share=playback.progress, offset=admittance.total, wrench=measured)
 
     def _pauses(self, step_s: float) -> bool:
-        """Tell whether the tool is to rest, having given way for long since the path stands still."""
+        """Return whether the tool pauses, having yielded for long since the path stands still."""
         if not self._playback.stopped:
             self._giving_way_s = self._pausing_s = 0.0
             return False
@@ -177,6 +177,8 @@ class ForceTracking:
         angle = float(self.position[joint])
         low, high = self._limits.lower_rad[joint], self._limits.upper_rad[joint]
         at_limit = min(angle - low, high - angle) < _AT_LIMIT_RAD
-        what = f"at its limit {high if high - angle < angle - low else low:.3f} rad" if at_limit else "too slow"
-        missing = f"{self._tracker.missing_m * 1e3:.0f} mm and {self._tracker.missing_rad:.2f} rad are missing"
-        return f"the tool cannot go where the force leads it, {missing}: {self._joints[joint]} is {what}"
+        limit = f"position limit {high if high - angle < angle - low else low:.3f} rad" if at_limit else "speed limit"
+        error = f"{self._tracker.missing_m * 1e3:.0f} mm and {self._tracker.missing_rad:.2f} rad"
+        return (
+            f"the tool cannot follow the force-controlled path, error {error}: {self._joints[joint]} is at its {limit}"
+        )

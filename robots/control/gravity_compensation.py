@@ -1,4 +1,4 @@
-"""Gravity compensation: the arm floats and can be led by hand (RCL 4.1.2)."""
+"""Gravity compensation: the arm floats and can be guided by hand (RCL 4.1.2)."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from robots.control.joint_impedance import nominal_stiffness_nm_rad
 from robots.model.robot_model import JointLimits
 from robots.port import ArmSettings, Array
 
-# Beyond this share of its speed limit a joint is damped fully, so that it can always be stopped in time.
+# Beyond this share of its speed limit a joint is fully damped, so that it can always stop in time.
 _FREE_SPEED_SHARE = 0.5
 
 
 class GravityCompensation:
-    """Implements `Controller` for motions whose set point follows the arm, see `Guiding`.
+    """Implements `Controller` for motions whose set point follows the arm, see `GuidingGenerator`.
 
-    Where the set point is the measured arm, τ is the feedforward less `damping_share` of the
-    critical damping; all of it brakes what is faster than half the speed limit. Where the set point
-    stays behind, which it does at the joint limits, the nominal spring with its whole damping pushes back.
+    Where the set point equals the measured joints, τ is the feedforward minus `damping_share` of the
+    critical damping; above half the speed limit full damping acts. Where the set point
+    stays behind, as at the joint limits, the nominal spring with full damping pushes back.
     """
 
     def __init__(self, limits: JointLimits) -> None:
@@ -44,5 +44,5 @@ class GravityCompensation:
         return np.minimum(np.maximum(torque, -self._limit_nm), self._limit_nm)
 
     def terminate(self) -> Array:
-        """Return the torques to leave behind: none."""
+        """Return the final torques: zero."""
         return np.zeros_like(self._limit_nm)

@@ -1,4 +1,4 @@
-"""The motion that a gripper's drive carries out: holding, resuming, cancelling it, and telling how it ended."""
+"""The motion of a gripper's drive: holds, resumes and cancels it, and reports how it ended."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHe
 from robots.port import MotionEnd
 
 REST_S = 0.06
-"""How long a drive must stand still to be at rest."""
+"""Time for which a drive must stand still to be at rest."""
 
 
 @dataclass(kw_only=True)
 class _Task:
-    """The motion under way."""
+    """The active motion."""
 
     number: int
     patience_s: float
     hold: bool = False
     request: int = 0
-    told_held: bool = False
-    tell_resumed: bool = False
+    held_reported: bool = False
+    resume_pending: bool = False
     cancel: bool = False
     stop_cause: str = ""
     waited_s: float = 0.0
 
 
 class GripTask:
-    """At most one motion at a time; a drive asks it whether to go on, and lets it judge every step."""
+    """At most one motion at a time; the drive asks it whether to move, and reports every step to it."""
 
     def __init__(self) -> None:
         self._task: _Task | None = None
@@ -36,7 +36,7 @@ class GripTask:
 
     @property
     def number(self) -> int:
-        """The motion under way, 0 when there is none."""
+        """Number of the active motion, 0 for none."""
         return self._task.number if self._task else 0
 
     @property
@@ -50,34 +50,34 @@ class GripTask:
         return self._task is not None and self._task.cancel
 
     def start(self, number: int, *, patience_s: float) -> None:
-        """Begin a motion; it fails after `patience_s` of not being held."""
+        """Begin a motion; it fails after `patience_s`, held time excluded."""
         self._task = _Task(number=number, patience_s=patience_s)
         self._rest_s = 0.0
 
     def forget(self) -> None:
-        """Drop what is under way without telling."""
+        """Drop the active motion without an event."""
         self._task, self._rest_s = None, 0.0
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Stop on the way."""
+        """Stop and keep the motion."""
         task = self._task
         if task and task.number == number:
-            task.hold, task.told_held, task.tell_resumed = True, False, False
+            task.hold, task.held_reported, task.resume_pending = True, False, False
             task.request = request
 
     def resume(self, number: int, *, request: int = 0) -> None:
-        """Go on."""
+        """Resume."""
         task = self._task
         if task and task.number == number:
-            task.hold, task.tell_resumed, task.request = False, True, request
+            task.hold, task.resume_pending, task.request = False, True, request
 
     def cancel(self, number: int) -> None:
-        """Stop and end as canceled."""
+        """Stop and end as CANCELED."""
         if self._task and self._task.number == number:
             self._task.cancel = True
 
     def stop(self, cause: str = "") -> None:
-        """Cancel whatever runs; with a `cause` it ends as failed with that."""
+        """Cancel the active motion; with a `cause` it fails with that."""
         if self._task and not self._task.cancel:
             self._task.cancel, self._task.stop_cause = True, cause
 
@@ -90,22 +90,22 @@ class GripTask:
         progress: Callable[[], float],
         late: Callable[[float], str],
     ) -> tuple[AnyMotionEvent, ...]:
-        """Return what happened in this step.
+        """Return the events of this step.
 
         Args:
             step_s: The control period.
-            still: Nothing moves in this step; for `REST_S` on end it is at rest.
-            reached: What was wanted is so.
-            progress: Share of the way passed.
-            late: Says in words why it failed after that many seconds.
+            still: Nothing moves in this step; after `REST_S` the drive is at rest.
+            reached: The goal is reached.
+            progress: Completed share of the motion.
+            late: Returns the failure reason after the given number of seconds.
         """
         self._rest_s = self._rest_s + step_s if still else 0.0
         task = self._task
         if task is None:
             return ()
         at_rest = self._rest_s >= REST_S
-        if task.tell_resumed:
-            task.tell_resumed = False
+        if task.resume_pending:
+            task.resume_pending = False
             self._rest_s = 0.0
             return (MotionResumed(motion=task.number, request=task.request),)
         if task.cancel:
@@ -114,9 +114,9 @@ class GripTask:
             end = MotionEnd.FAILED if task.stop_cause else MotionEnd.CANCELED
             return self._finish(task, end, progress, task.stop_cause)
         if task.hold:
-            if not at_rest or task.told_held:
+            if not at_rest or task.held_reported:
                 return ()
-            task.told_held = True
+            task.held_reported = True
             return (MotionHeld(motion=task.number, request=task.request),)
         if at_rest and reached:
             return self._finish(task, MotionEnd.REACHED, progress)

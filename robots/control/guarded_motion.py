@@ -1,4 +1,4 @@
-"""Move until contact: any motion that brakes where the environment pushes back."""
+"""Move until contact: any motion that brakes when the environment pushes back."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from robots.control.motion_generator import MotionGenerator
 from robots.port import Array, ContactCondition
 
 GUARDED_STOP_S = 0.02
-"""Least time in which the passage of a guarded motion stops, for `Playback(shortest_stop_s=…)`."""
+"""Minimum stop time of a guarded motion, for `TrajectoryPlayback(shortest_stop_s=…)`."""
 
 _TARE_S = 0.01
 _DEBOUNCE_S = 0.003
 
 
 class GuardedMotion:
-    """Implements `MotionGenerator`: `inner` with an end at a contact.
+    """Implements `MotionGenerator`: `inner`, ended by a contact.
 
-    The force is that at the tool less its mean over the first 10 ms, so a motion that starts while the tool
-    is pressed or carries something feels what is added. It must last for 3 ms. At a contact `inner`
-    brakes as hard as it can; make it a `Playback(…, shortest_stop_s=GUARDED_STOP_S)`. Contacts count as
-    soon as the way has begun and while it settles at its end, not while it is held.
+    The contact force is the tool force minus its mean over the first 10 ms, so a motion that starts under
+    contact or load detects only what is added. It must last for 3 ms. At a contact `inner`
+    brakes as hard as it can; use `TrajectoryPlayback(…, shortest_stop_s=GUARDED_STOP_S)`. Contacts count from
+    the start of the motion until it has settled at its end, but not while it is held.
 
     Args:
         inner: The motion.
-        contact: What it ends at.
+        contact: The contact that ends it.
     """
 
     def __init__(self, inner: MotionGenerator, contact: ContactCondition) -> None:
@@ -50,27 +50,27 @@ class GuardedMotion:
 
     @property
     def moving(self) -> bool:
-        """True once it is under way again, or there is no way left."""
+        """True once it moves again, or nothing is left to do."""
         return self._touched or self._inner.moving
 
     @property
     def complete(self) -> bool:
-        """True at the end of the way, and when it has stopped at a contact."""
+        """True at the end of the motion, and after the stop at a contact."""
         return self._inner.complete or (self._touched and self._inner.stopped)
 
     @property
     def contact(self) -> bool:
-        """True from the contact on."""
+        """True after the contact."""
         return self._touched
 
     @property
     def progress(self) -> float:
-        """Share of the way that is passed."""
+        """Completed share of the motion."""
         return self._inner.progress
 
     @property
     def goal(self) -> Array | None:
-        """That of the way, until there was a contact."""
+        """Goal of the inner motion; None after a contact."""
         return None if self._touched else self._inner.goal
 
     @property
@@ -88,7 +88,7 @@ class GuardedMotion:
         return self._inner.data()
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
-        """Move on by `step_s`, or brake when touched."""
+        """Advance by `step_s`, or brake after a contact."""
         if not self._touched and target_pace > 0.0:
             self._touched = self._feel(step_s, state.wrench[:3])
         self._inner.step(step_s, target_pace=0.0 if self._touched else target_pace, state=state)

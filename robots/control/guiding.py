@@ -1,4 +1,4 @@
-"""Kinesthetic guiding: the set point follows the arm that is led by hand (RCL 4.1.2)."""
+"""Kinesthetic guiding: the set point follows the arm guided by hand (RCL 4.1.2)."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from robots.port import Array
 
 
 class GuidingGenerator(SetpointStream):
-    """The set point is the measured arm, kept `margin_rad` inside the position limits.
+    """The set point is the measured configuration, kept `margin_rad` inside the position limits.
 
-    While `leads` is False the arm is to float: its controller compensates gravity and leaves a spring
-    from the measured joints to the set point, which is nothing inside and pushes back near a
-    limit. While it is held, and to finish, it leads: it comes to rest from where and how fast the arm
-    is, and stays.
+    While `leads` is False the arm floats: its controller compensates gravity, and the spring between
+    measured joints and set point is zero inside the range and pushes back near a limit. While
+    held, and to finish, the set point leads: it comes to rest from the arm's present position and
+    velocity, and stays.
 
     Args:
-        limits: Of the joints.
+        limits: Joint limits.
         start: The measured joints, (n,), rad.
-        margin_rad: How far before a limit the arm is pushed back.
+        margin_rad: Distance from a limit at which the arm is pushed back.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, margin_rad: float = 0.03) -> None:
@@ -45,7 +45,7 @@ class GuidingGenerator(SetpointStream):
         return not self._floating and super().stopped
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
-        """Nothing is told to it."""
+        """Takes no values."""
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
         self._floating = True

@@ -1,4 +1,4 @@
-"""Joint impedance: springs and dampers towards a set point, on top of the arm's own dynamics (RCY 4.4, eq. 1)."""
+"""Joint impedance: springs and dampers towards a set point, added to the arm's dynamics (RCY 4.4, eq. 1)."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from robots.control.controller import SetPoint
 from robots.model.robot_model import JointLimits
 from robots.port import ArmSettings, Array
 
-# A joint answers this much error with its whole torque; 87 N m make 1450 N m/rad.
+# A joint applies its full torque at this error; 87 N m give 1450 N m/rad.
 _FULL_TORQUE_ERROR_RAD = 0.06
 
 
 def nominal_stiffness_nm_rad(limits: JointLimits) -> Array:
-    """Return the stiffness of joints for which none is set, in proportion to each one's torque limit, (n,)."""
+    """Return the default joint stiffness, proportional to each torque limit, (n,)."""
     return np.array(limits.effort_nm) / _FULL_TORQUE_ERROR_RAD
 
 
 class JointImpedance:
     """Implements `Controller`: τ = clip(K (q_d − q) + D (q̇_d − q̇) + feedforward).
 
-    D is `joint_damping_ratio` times critical for the inertia given at the start. What the arm
-    carries beyond its `load_kg` is in no feedforward: it shows as an error of load / stiffness.
+    D is `joint_damping_ratio` times critical for the inertia given at the start. Load
+    beyond `load_kg` is not in the feedforward: it causes an error of load / stiffness.
     """
 
     def __init__(self, limits: JointLimits) -> None:
@@ -55,6 +55,6 @@ class JointImpedance:
         return torque
 
     def terminate(self) -> Array:
-        """Return the torques to leave behind: none."""
+        """Return the final torques: zero."""
         self._torque[:] = 0.0
         return self._torque

@@ -1,4 +1,4 @@
-"""Joints run at the velocities that are sent, and slow down before their limits (RCL 4.3.8)."""
+"""Joint jogging: joints run at streamed velocities and slow down before their limits (RCL 4.3.8)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _GOING_SHARE = 0.5
 
 
 class JointJogGenerator(SetpointStream):
-    """A stream of joint velocities, (n,), rad/s; faster ones than the limits are taken as the limits.
+    """A stream of joint velocities, (n,), rad/s, clipped to the limits.
 
-    Every joint goes by itself and comes to rest at its position limit.
+    Every joint moves independently and comes to rest at its position limit.
 
     Args:
-        limits: Of the joints.
+        limits: Joint limits.
         start: The arm's set point, at rest, (n,), rad.
-        watchdog_s: Longest silence before it comes to rest.
+        watchdog_s: Maximum silence before the set point comes to rest.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:

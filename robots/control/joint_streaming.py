@@ -1,4 +1,4 @@
-"""Direct joint control: the set point follows joint angles that arrive at any rate (RCL 4.3.8)."""
+"""Direct joint control: the set point follows joint angles streamed at any rate (RCL 4.3.8)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from robots.control.setpoint_stream import SetpointStream
 from robots.model.robot_model import JointLimits
 from robots.port import Array
 
-# Values that come farther apart are single targets, not a stream to be joined by lines.
+# Values farther apart in time are single targets, not a stream to interpolate.
 _LONGEST_PERIOD_S = 0.1
 _PERIOD_SMOOTHING = 0.2
-# The way to a value takes this many periods, so that a late next one makes no stop.
+# The motion to a value takes this many periods, so that a late next value causes no stop.
 _PERIODS = 1.5
 _LEAST_LAG_STEPS = 2.0
 _STANDS_RAD_S = 1e-4
@@ -23,15 +23,15 @@ _BEYOND_RAD = 1e-6
 class JointStreamGenerator(SetpointStream):
     """A stream of joint angles, (n,), rad.
 
-    Values that keep coming are joined by straight lines, so the set point follows them smoothly
-    one and a half periods later; single values are gone to as fast as allowed. Angles beyond a
-    limit are taken as the limit, which `warning` remembers.
+    A continuous stream is interpolated linearly, so the set point follows smoothly
+    one and a half periods later; single values are approached as fast as allowed. Angles beyond a
+    limit are clipped, and `warning` records it.
 
     Args:
-        limits: Of the joints.
-        joints: Their names, for the warning.
+        limits: Joint limits.
+        joints: Joint names, for the warning.
         start: The arm's set point, at rest, (n,), rad.
-        watchdog_s: Longest silence before it comes to rest.
+        watchdog_s: Maximum silence before the set point comes to rest.
     """
 
     def __init__(self, *, limits: JointLimits, joints: tuple[str, ...], start: Array, watchdog_s: float) -> None:
@@ -49,7 +49,7 @@ class JointStreamGenerator(SetpointStream):
         self.warning = ""
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
-        """Take where to go from now on; the watchdog counts from when it was said, `age_s` ago."""
+        """Set the target angles; the watchdog counts from when they were sent, `age_s` ago."""
         gap_s = self._silence_s
         self._remember_clipping(values)
         super().receive(np.clip(values, self._shaper.lower_rad, self._shaper.upper_rad), age_s=age_s)
@@ -64,7 +64,7 @@ class JointStreamGenerator(SetpointStream):
         self._since_s = 0.0
 
     def data(self) -> bytes:
-        """The warning as UTF-8 text; empty when nothing was beyond a limit."""
+        """The warning as UTF-8 text; empty without clipping."""
         return self.warning.encode()
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
@@ -80,7 +80,7 @@ class JointStreamGenerator(SetpointStream):
             shaper.track(step_s, position=self._smoothed, velocity=self._rate, acceleration=self._rise, pace=pace)
 
     def _smooth(self, reference: Array, step_s: float) -> None:
-        """Let the smoothed reference follow by the exact step of a critically damped filter."""
+        """Advance the smoothed reference by the exact step of a critically damped filter."""
         lag_s = max(self._period_s / 2.0, _LEAST_LAG_STEPS * step_s)
         decay = np.exp(-step_s / lag_s)
         error = self._smoothed - reference
@@ -96,7 +96,7 @@ class JointStreamGenerator(SetpointStream):
         self._start_here()
 
     def _start_here(self) -> None:
-        """Let the line to the next values begin where the set point is."""
+        """Start the line to the next values at the set point."""
         self._reference = self.position.copy()
         self._smoothed = self.position.copy()
         self._rate = self.velocity.copy()
@@ -106,4 +106,5 @@ class JointStreamGenerator(SetpointStream):
         worst = int(np.argmax(beyond))
         if not self.warning and beyond[worst] > _BEYOND_RAD:
             limit = self._shaper.upper_rad if values[worst] > self.position[worst] else self._shaper.lower_rad
-            self.warning = f"{self._joints[worst]} was told {values[worst]:.3f} rad and kept at {limit[worst]:.3f} rad"
+            clipped = f"{values[worst]:.3f} rad, clipped to {limit[worst]:.3f} rad"
+            self.warning = f"set point of {self._joints[worst]} beyond its limit: {clipped}"

@@ -1,6 +1,6 @@
-"""The arithmetic of a control period that is worth compiling; import it before the loop starts.
+"""The compiled arithmetic of a control period; import it before the loop starts.
 
-Sums are in the order that is written down: equal numbers give equal bits. All arrays are float64.
+Sums keep their written order: equal numbers give equal bits. All arrays are float64.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ def interpolate_setpoint(
     velocity: Array,
     acceleration: Array,
 ) -> None:
-    """Write the set point, each (n,), at the share `u` of the way from sample `index` to the next, `h` seconds on.
+    """Write the set point, each (n,), at the share `u` from sample `index` to the next, `h` seconds later.
 
-    `points` and `slopes` (samples, n) make a cubic Hermite spline; `pace` is how fast its time passes.
+    `points` and `slopes` (samples, n) define a cubic Hermite spline; `pace` is the rate of its time.
     """
     u2, u3 = u * u, u * u * u
     at0, at1 = 1 - 3 * u2 + 2 * u3, 3 * u2 - 2 * u3
@@ -52,7 +52,7 @@ def interpolate_setpoint(
 
 @compiled(f"void({_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
 def pose_error(wanted_xyz: Array, wanted_xyzw: Array, xyz: Array, xyzw: Array, error: Array) -> None:
-    """Write how a pose lies off the wanted one: translation and rotation vector (6,), in the axes of both."""
+    """Write the error of a pose against the wanted one: translation and rotation vector (6,), in the axes of both."""
     for axis in range(3):
         error[axis] = wanted_xyz[axis] - xyz[axis]
     ax, ay, az, aw = wanted_xyzw[0], wanted_xyzw[1], wanted_xyzw[2], wanted_xyzw[3]
@@ -62,7 +62,7 @@ def pose_error(wanted_xyz: Array, wanted_xyzw: Array, xyz: Array, xyzw: Array, e
     error[5] = aw * bz + az * bw + ax * by - ay * bx
     cosine = aw * bw - ax * bx - ay * by - az * bz
     sine = math.sqrt(error[3] * error[3] + error[4] * error[4] + error[5] * error[5])
-    # The shorter way round; a small angle is twice its sine.
+    # The shorter arc; a small angle is twice its sine.
     factor = 2.0
     if sine > _SMALL:
         factor = 2.0 * math.atan2(sine, abs(cosine)) / sine
@@ -76,7 +76,7 @@ def pose_error(wanted_xyz: Array, wanted_xyzw: Array, xyz: Array, xyzw: Array, e
 def solve_in_place(matrix: Array, right: Array) -> bool:
     """Replace `right` (n, m) by matrix⁻¹ · right, and the symmetric `matrix` (n, n) by its Cholesky factor.
 
-    Only its lower triangle is read. False when it is not positive definite; both are spoilt then.
+    Only its lower triangle is read. False if it is not positive definite; both are then invalid.
     """
     n, columns = right.shape
     for i in range(n):
@@ -121,9 +121,9 @@ def impedance_torque(
 ) -> bool:
     """Write the joint torques (n,) of springs and dampers at the tool and, in its null space, at the joints.
 
-    The Jacobian (6, n) and `error` (6,) are along the axes of the world, `stiffness` and `damping_root`
-    (6,) along those of the base, whose `base_rotation` (3, 3) is. See `CartesianImpedance` for the law.
-    False when `mass` (n, n) is not positive definite; `torque` is as it was then.
+    The Jacobian (6, n) and `error` (6,) are in world axes, `stiffness` and `damping_root`
+    (6,) in those of the base with `base_rotation` (3, 3). See `CartesianImpedance` for the law.
+    False if `mass` (n, n) is not positive definite; `torque` is then unchanged.
     """
     n = len(torque)
     jacobian = np.empty((6, n))

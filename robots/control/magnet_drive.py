@@ -1,4 +1,4 @@
-"""The switch of a magnet: its field comes up or goes down within a short time and stays so."""
+"""The switch of a magnet: ramps its field up or down and keeps it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PATIENCE_S = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class MagnetCommand:
-    """Whether the magnet is to hold, and the share of its field that is up, 0 to 1."""
+    """Commanded switch state, and the present share of the field, 0 to 1."""
 
     on: bool
     level: float
@@ -21,8 +21,8 @@ class MagnetCommand:
 class MagnetDrive:
     """Moves the field's level to 1 or 0 in `switch_s`.
 
-    A switch is an output: once set it takes effect. Holding or cancelling its motion changes when
-    the end is told, and never lets go of a part half-way.
+    A switch is an output: once set it takes effect. Holding or cancelling its motion changes only when
+    the end is reported; it never releases a part half-way.
     """
 
     def __init__(self, *, switch_s: float) -> None:
@@ -33,22 +33,22 @@ class MagnetDrive:
 
     @property
     def command(self) -> MagnetCommand:
-        """What goes on."""
+        """The present command."""
         return MagnetCommand(on=self.on, level=self.level)
 
     def take_over(self, command: MagnetCommand) -> None:
-        """Do from now on what another switch did; whatever ran is forgotten."""
+        """Adopt the command of another drive; drops the active motion."""
         self._task.forget()
         self.on, self.level = command.on, command.level
 
     @property
     def number(self) -> int:
-        """The motion under way, 0 when there is none."""
+        """Number of the active motion, 0 for none."""
         return self._task.number
 
     @property
     def progress(self) -> float:
-        """How far the field has come to what is wanted; 1 when there is no motion."""
+        """Completed share of the switch; 1 without a motion."""
         if not self._task.number:
             return 1.0
         return self.level if self.on else 1.0 - self.level
@@ -59,23 +59,23 @@ class MagnetDrive:
         self._task.start(number, patience_s=self._switch_s + _PATIENCE_S)
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Tell nothing more until resumed."""
+        """Report nothing until resumed."""
         self._task.hold(number, request=request)
 
     def resume(self, number: int, *, request: int = 0) -> None:
-        """Tell the end again."""
+        """Report the end again."""
         self._task.resume(number, request=request)
 
     def cancel(self, number: int) -> None:
-        """End as canceled once the field stands still."""
+        """End as CANCELED once the field is settled."""
         self._task.cancel(number)
 
     def stop(self, cause: str = "") -> None:
-        """Cancel whatever runs, what is held stays held; with a `cause` it ends as failed."""
+        """Cancel the active motion; a held object stays held. With a `cause` the motion fails."""
         self._task.stop(cause)
 
     def step(self, step_s: float, *, still: bool) -> tuple[AnyMotionEvent, ...]:
-        """Move `level` on and return what happened; `still` when nothing moves that the magnet pulls."""
+        """Advance `level` and return the events; `still` if no attracted object moves."""
         target = 1.0 if self.on else 0.0
         stride = step_s / self._switch_s
         self.level += min(stride, max(-stride, target - self.level))
@@ -86,4 +86,4 @@ class MagnetDrive:
 
 
 def _late(waited_s: float) -> str:
-    return f"what the magnet pulls does not come to rest within {waited_s:.1f} s"
+    return f"the attracted object did not come to rest within {waited_s:.1f} s"

@@ -1,4 +1,4 @@
-"""What a control loop tells about the motions it carries out, as plain messages."""
+"""Events of the motions in a control loop, as plain messages."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import msgspec
 
 
 class MotionEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
-    """Something happened to the motion with this number."""
+    """An event of the motion with this number."""
 
     motion: int
 
 
 class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
-    """It ended (`end` is the value of a `MotionEnd`); `reason` if it failed, not `at_rest` if it could not be stopped.
+    """The motion ended (`end` is a `MotionEnd` value); `reason` if it failed, `at_rest` false if it could not stop.
 
-    `progress` is the share of its way that it made; `contact` and `data` are as in `MotionReport`.
+    `progress` is its completed share; `contact` and `data` are as in `MotionReport`.
     """
 
     end: str
@@ -26,19 +26,19 @@ class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
 
 
 class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):
-    """It stands still on its path; `request` is the number of the newest hold or resume that led to it."""
+    """The motion stands still on its path; `request` is the number of the latest hold or resume behind it."""
 
     request: int = 0
 
 
 class MotionResumed(MotionEvent, frozen=True, kw_only=True, tag="resumed"):
-    """It is moving along its path again; `request` is the number of the newest hold or resume that led to it."""
+    """The motion moves along its path again; `request` is the number of the latest hold or resume behind it."""
 
     request: int = 0
 
 
 class ReflexTripped(MotionEvent, frozen=True, kw_only=True, tag="reflex"):
-    """The arm has stopped by itself, and why; the motion, if one was under way, is going to fail. 0 for none."""
+    """The collision reflex stopped the arm, with the reason; the active motion, 0 for none, will fail."""
 
     arm: str
     reason: str

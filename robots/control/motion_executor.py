@@ -1,4 +1,4 @@
-"""One arm's motions over time: let a generator lead, hold, resume, cancel, finish, and judge how it ended."""
+"""Executes the motions of one arm: follows a generator, holds, resumes, cancels, finishes and reports the end."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from robots.port import Array, MotionEnd, Tolerance
 
 _REST_RAD_S = 0.01
 _REST_S = 0.02
-# An arm that failed gives way to where it is, within this time, so that it presses on nothing.
+# After a failure the set point moves to the measured joints within this time, so that the arm presses on nothing.
 _GIVE_WAY_S = 0.1
 _STILL_MOVING_AFTER_S = 3.0
 
 
 @dataclass(kw_only=True)
 class _ActiveMotion:
-    """The motion under way."""
+    """The active motion."""
 
     number: int
     generator: MotionGenerator
@@ -32,16 +32,16 @@ class _ActiveMotion:
     hold: bool = False
     finishing: bool = False
     request: int = 0
-    told_held: bool = False
-    tell_resumed: bool = False
+    held_reported: bool = False
+    resume_pending: bool = False
     waited_s: float = 0.0
 
 
 class MotionExecutor:
-    """The set point of one arm; without a motion it stays where it is.
+    """The set point of one arm; without a motion it is constant.
 
     `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
-    control period with the measured arm. `pace` is the share of its own speed that every motion runs at.
+    control period with the measured arm. `pace` is the speed override of every motion.
     """
 
     def __init__(self, *, joints: tuple[str, ...], touching: Callable[[], str]) -> None:
@@ -56,76 +56,76 @@ class MotionExecutor:
         self.acceleration = np.zeros(len(joints))
 
     def initialize(self, position: Array) -> None:
-        """Hold `position` from now on; whatever ran is forgotten."""
+        """Hold `position`; drops the active motion."""
         self._following, self._give_way, self._rest_s = None, None, 0.0
         self.position[:] = position
         self._stand_still()
 
     @property
     def number(self) -> int:
-        """The motion under way, 0 when there is none."""
+        """Number of the active motion, 0 for none."""
         return self._following.number if self._following else 0
 
     @property
     def progress(self) -> float:
-        """Share of the present trajectory's time passed; 1 when there is none."""
+        """Elapsed share of the trajectory's time; 1 without a motion."""
         return self._following.generator.progress if self._following else 1.0
 
     @property
     def leads(self) -> bool:
-        """False while the set point follows the arm and not the arm the set point."""
+        """False while the set point follows the arm, as in guiding."""
         following = self._following
         return following is None or self._give_way is not None or following.generator.leads
 
     def start(self, number: int, generator: MotionGenerator, tolerance: Tolerance) -> None:
-        """Start a motion; the generator starts at the set point and no other motion is under way."""
+        """Start a motion; the generator starts at the set point and no other motion is active."""
         self._following = _ActiveMotion(number=number, generator=generator, tolerance=tolerance)
 
     def fail(self, reason: str) -> None:
-        """End whatever runs as failed: it brakes on its path and gives way."""
+        """End the active motion as FAILED: it brakes on its path, then yields to the measured joints."""
         following = self._following
         if following and following.ending is not MotionEnd.FAILED:
             following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
 
     def tell(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
-        """Pass on what a stream was told `age_s` ago; ignored where there is no such stream."""
+        """Pass on values sent to a stream `age_s` ago; ignored without such a stream."""
         following = self._following
         if following and following.number == number and isinstance(following.generator, StreamGenerator):
             following.generator.receive(values, age_s=age_s)
 
     def finish(self, number: int) -> None:
-        """Bring a stream to rest and end it as reached, also one that is held: it need not be resumed for that."""
+        """Bring a stream to rest and end it as REACHED, also while it is held."""
         following = self._following
         if following and following.number == number and isinstance(following.generator, StreamGenerator):
             following.generator.finish()
             following.finishing, following.hold = True, False
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Decelerate on the path; what is finishing comes to rest anyway, and ends."""
+        """Decelerate on the path; a finishing stream comes to rest and ends anyway."""
         following = self._following
         if following and following.number == number and not following.finishing:
-            following.hold, following.told_held, following.tell_resumed = True, False, False
+            following.hold, following.held_reported, following.resume_pending = True, False, False
             following.request = request
 
     def resume(self, number: int, *, request: int = 0) -> None:
-        """Go on along the path."""
+        """Resume along the path."""
         following = self._following
         if following and following.number == number:
-            following.hold, following.tell_resumed, following.request = False, True, request
+            following.hold, following.resume_pending, following.request = False, True, request
 
     def cancel(self, number: int) -> None:
-        """Decelerate on the path, then end as canceled."""
+        """Decelerate on the path, then end as CANCELED."""
         if self._following and self._following.number == number and self._following.ending is None:
             self._following.ending = MotionEnd.CANCELED
 
     def stop(self, cause: str = "") -> None:
-        """Cancel whatever runs; with a `cause` it ends as failed with that. The set point is held."""
+        """Cancel the active motion; with a `cause` it fails with that. The set point is held."""
         following = self._following
         if following and following.ending is None:
             following.ending, following.stop_cause = MotionEnd.CANCELED, cause
 
     def step(self, step_s: float, state: ArmState) -> tuple[AnyMotionEvent, ...]:
-        """Move the set point on by one period and return what happened."""
+        """Advance the set point by one period and return the events."""
         position = state.position
         at_rest = self._measure_rest(step_s, state.velocity)
         following = self._following
@@ -172,17 +172,17 @@ class MotionExecutor:
         self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         generator = following.generator
-        if following.tell_resumed and generator.moving:
-            following.tell_resumed = False
+        if following.resume_pending and generator.moving:
+            following.resume_pending = False
             return (MotionResumed(motion=following.number, request=following.request),)
         if not generator.stopped:
             return ()
         if following.ending is not None:
             return self._end_when_at_rest(following, step_s, position, at_rest)
         if following.hold:
-            if not at_rest or following.told_held:
+            if not at_rest or following.held_reported:
                 return ()
-            following.told_held = True
+            following.held_reported = True
             return (MotionHeld(motion=following.number, request=following.request),)
         return self._settle(following, step_s, position, at_rest) if generator.complete else ()
 

@@ -1,4 +1,4 @@
-"""What a motion generator is: where the set point of an arm goes, one control period after the other (RCY 4.3)."""
+"""The motion generator interface: the set point of an arm, computed every control period (RCY 4.3)."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from robots.port import Array
 class MotionGenerator(Protocol):
     """The set point of one motion.
 
-    `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
-    Whatever it is told, the set point keeps the limits of the arm; at pace 0 it comes to rest on
+    `position`, `velocity` and `acceleration` are the present set point, shape (n,), reused by `step`.
+    For any input the set point keeps the limits of the arm; at pace 0 it comes to rest on
     its path within them and stays there.
     """
 
@@ -22,61 +22,61 @@ class MotionGenerator(Protocol):
 
     @property
     def stopped(self) -> bool:
-        """True when the set point stands still: brought to rest, or at the end."""
+        """True when the set point stands still: held, or at the end."""
         ...
 
     @property
     def moving(self) -> bool:
-        """True once the set point is under way again after a rest, or there is no way left."""
+        """True once the set point moves again after a rest, or nothing is left to do."""
         ...
 
     @property
     def complete(self) -> bool:
-        """True when there is nothing left to do; the motion then settles and ends as reached."""
+        """True when nothing is left to do; the motion then settles and ends as REACHED."""
         ...
 
     @property
     def contact(self) -> bool:
-        """True when it is complete because of the contact that it was to end at."""
+        """True when the expected contact completed the motion."""
         ...
 
     @property
     def progress(self) -> float:
-        """Share of the way that is passed, 0 to 1."""
+        """Completed share of the motion, 0 to 1."""
         ...
 
     @property
     def goal(self) -> Array | None:
-        """Where the measured joints must settle, (n,); None when anywhere is right."""
+        """Where the measured joints must settle, (n,); None for anywhere."""
         ...
 
     @property
     def leads(self) -> bool:
-        """False when the set point follows the arm and not the arm the set point."""
+        """False when the set point follows the arm, as in guiding."""
         ...
 
     @property
     def failure(self) -> str:
-        """Why it cannot go on, in words; empty while it can. The motion then comes to rest and ends as failed."""
+        """Why the motion cannot continue; empty while it can. The motion then comes to rest and ends as FAILED."""
         ...
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
-        """Move the set point on by `step_s` of real time, changing its pace towards `target_pace` (0 to 1)."""
+        """Advance the set point by `step_s` of real time, changing its pace towards `target_pace` (0 to 1)."""
         ...
 
     def data(self) -> bytes:
-        """What it has recorded, for `MotionReport.data`; empty for most."""
+        """Recorded data for `MotionReport.data`; empty for most."""
         ...
 
 
 @runtime_checkable
 class StreamGenerator(MotionGenerator, Protocol):
-    """A generator that does what it is told at every instant, see `robots.port.MotionStream`."""
+    """A generator that follows streamed values, see `robots.port.MotionStream`."""
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
-        """Take where to, or how fast, to go from now on; the watchdog counts from when it was said, `age_s` ago."""
+        """Set the target positions or velocities; the watchdog counts from when they were sent, `age_s` ago."""
         ...
 
     def finish(self) -> None:
-        """Come to rest, and be complete then."""
+        """Come to rest, then be complete."""
         ...

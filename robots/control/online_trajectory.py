@@ -1,4 +1,4 @@
-"""Joints that go where they are told within position, velocity, acceleration and jerk, and can always stop in time."""
+"""Online trajectory generation within position, velocity, acceleration and jerk limits, always able to stop in time."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ import ruckig
 from robots.model.robot_model import JointLimits
 from robots.port import Array
 
-# ruckig has no stubs: it stays behind this file, which hands out numpy arrays.
+# ruckig has no type stubs: only this file uses it, and returns numpy arrays.
 profiles: Any = ruckig
 
-# The rest of the joints' acceleration is left to tracking.
+# The rest of the joints' acceleration is reserved for tracking.
 _STOP_SHARE = 0.9
 _REST = 1e-9
-# Slower joints are not sent to their limit, which they would reach after hours only.
+# Slower joints are not sent to their limit, which they would reach only after hours.
 _SLOW_RAD_S = 0.01
 _SLOW_ROOM_RAD = 1e-4
-# Rounding of a stop that ends exactly at a limit.
+# Rounding tolerance of a stop that ends exactly at a limit.
 _ROUNDING_RAD = 1e-6
 _ANSWER_HZ = 250.0
 
@@ -29,17 +29,17 @@ _State = tuple[list[float], list[float], list[float]]
 
 
 class OnlineTrajectoryGenerator:
-    """A set point that is moved on by one of `go_to`, `track`, `run`, `run_together` or `brake` in every period.
+    """A set point advanced by one of `go_to`, `track`, `run`, `run_together` or `brake` in every period.
 
-    Before a step is taken, the hardest stop after it is worked out; if that would pass a joint
-    limit, the stop found one period ago is followed instead. So whatever is asked for, the set
+    Before each step the hardest stop after it is computed; if that stop would pass a joint
+    limit, the stop of the previous period is followed instead. So for any request the set
     point stays within the limits. `position`, `velocity` and `acceleration` (its mean over the last
     period), shape (n,), are reused.
 
     Args:
-        limits: Of the joints; a joint that starts beyond a position limit may stay there, never go farther.
-        start: Where the set point stands at first, (n,), rad.
-        share: Share of the accelerations that is used for going; stops use 0.9.
+        limits: Joint limits; a joint that starts beyond a position limit may stay there, but not go farther.
+        start: Initial set point, (n,), rad.
+        share: Share of the acceleration limits used for motion; stops use 0.9.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, share: float = _STOP_SHARE) -> None:
@@ -74,7 +74,7 @@ class OnlineTrajectoryGenerator:
         return not (self.velocity.any() or any(self._now[2]))
 
     def place(self, position: Array, velocity: Array) -> None:
-        """Go on from this state, which something else has led to; beyond a limit it is moved inside."""
+        """Continue from this externally produced state; positions beyond a limit are moved inside."""
         self.position[:] = np.minimum(np.maximum(position, self.lower_rad), self.upper_rad)
         self.velocity[:] = np.minimum(np.maximum(velocity, -self.velocity_rad_s), self.velocity_rad_s)
         self.acceleration[:] = 0.0
@@ -83,7 +83,7 @@ class OnlineTrajectoryGenerator:
         self._plan_stop(self._now, self._stop)
 
     def go_to(self, step_s: float, *, position: Array, pace: float) -> None:
-        """Go to `position` (within the limits), every joint as fast as it can at `pace` times its velocity limit."""
+        """Move to `position` (within the limits), every joint as fast as it can at `pace` times its velocity limit."""
         request = self._request
         request.control_interface = profiles.ControlInterface.Position
         request.per_dof_control_interface = None
@@ -94,7 +94,7 @@ class OnlineTrajectoryGenerator:
         self._step(step_s)
 
     def run(self, step_s: float, *, velocity: Array) -> None:
-        """Bring every joint by itself to its velocity, (n,); it comes to rest at its position limit."""
+        """Bring every joint independently to its velocity, (n,); it comes to rest at its position limit."""
         request = self._request
         of = profiles.ControlInterface
         room = np.where(velocity > 0.0, self.upper_rad - self.position, self.position - self.lower_rad)
@@ -108,9 +108,9 @@ class OnlineTrajectoryGenerator:
         self._step(step_s)
 
     def run_together(self, step_s: float, *, velocity: Array, turning: Array) -> None:
-        """Bring the joints to velocities within their limits, along the line between now and then.
+        """Bring the joints to velocities within their limits, along a straight line in velocity space.
 
-        `turning` (n,) is how the wanted velocities change, rad/s²; what is reached of them turns along.
+        `turning` (n,) is the rate of change of the wanted velocities, rad/s²; the reached share follows it.
         """
         now, before = np.array(self._now[1]), np.array(self._now[2])
         square = float(velocity @ velocity)
@@ -121,9 +121,9 @@ class OnlineTrajectoryGenerator:
         self._accelerate(step_s, np.minimum(np.maximum(rise, -self._hardest), self._hardest))
 
     def track(self, step_s: float, *, position: Array, velocity: Array, acceleration: Array, pace: float) -> None:
-        """Follow a point that moves smoothly: where it is, how fast, and how that changes, (n,).
+        """Follow a smoothly moving point: its position, velocity and acceleration, (n,).
 
-        Time-optimal profiles would turn the smallest corrections into pulses of full jerk.
+        Time-optimal profiles would turn small corrections into pulses of full jerk.
         """
         fastest = self.velocity_rad_s * pace
         missing = position - self.position
@@ -160,14 +160,13 @@ class OnlineTrajectoryGenerator:
         try:
             self._solver.calculate(request, self._way)
         except (profiles.RuckigError, ValueError):
-            # No profile is found from some states that differ from an easy one by rounding; the
-            # proven stop leads out of them within a period.
+            # Rounding makes ruckig fail from some states; the verified stop leaves them within a period.
             self.brake(step_s)
             return
         self._accept(self._way.at_time(step_s), step_s)
 
     def _accelerate(self, step_s: float, rise: Array) -> None:
-        """Let the acceleration become `rise` within the period, if no velocity limit is passed then or later."""
+        """Change the acceleration to `rise` within the period, if no velocity limit is passed now or later."""
         position, now, before = (np.array(values) for values in self._now)
         faster = now + (before + rise) * (step_s / 2.0)
         peak = np.abs(faster + rise * np.abs(rise) / (2.0 * self._jerk))
@@ -178,9 +177,9 @@ class OnlineTrajectoryGenerator:
         self._accept((farther.tolist(), faster.tolist(), rise.tolist()), step_s)
 
     def _accept(self, candidate: _State, step_s: float) -> None:
-        """Go to the candidate if the arm can stop from there before its limits."""
+        """Accept the candidate if the arm can stop from it before its limits."""
         if not math.isfinite(sum(map(sum, candidate))):
-            # Whatever was asked for overflows; the proven stop does not.
+            # The request overflows; the verified stop does not.
             self.brake(step_s)
             return
         self._plan_stop(candidate, self._next_stop)
@@ -194,7 +193,7 @@ class OnlineTrajectoryGenerator:
 
     def _plan_stop(self, state: _State, stop: Any) -> None:
         request = self._stop_request
-        # Asked how far a stop goes, ruckig counts position 0 in: stops are planned from there.
+        # ruckig includes position 0 in the extent of a stop: stops are planned from there.
         _, request.current_velocity, request.current_acceleration = state
         self._solver.calculate(request, stop)
 
@@ -217,5 +216,5 @@ class OnlineTrajectoryGenerator:
 
 
 def _share_within(values: Array, limit: Array) -> float:
-    """Return the share, at most 1, of all values that is within the limits."""
+    """Return the largest share, at most 1, at which all values are within the limits."""
     return min(1.0, float((limit / np.maximum(np.abs(values), _REST)).min()))

@@ -1,4 +1,4 @@
-"""What all streams share: they listen, fall silent, are held, and come to rest to finish."""
+"""Base of all stream generators: inputs, watchdog, hold, and coming to rest to finish."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from robots.port import Array
 
 
 class SetpointStream:
-    """A stream generator without its meaning: `_go` says what to do with what was told last.
+    """Base class of stream generators: `_go` defines what to do with the latest values.
 
-    It comes to rest within the limits when it is held, when nothing was told for longer than
-    `watchdog_s`, and to finish; after a silence it goes on with the next value.
-    `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
+    It comes to rest within the limits when held, when no values arrived for longer than
+    `watchdog_s`, and to finish; after a silence it resumes with the next value.
+    `position`, `velocity` and `acceleration` are the present set point, shape (n,), reused by `step`.
 
     Args:
-        shaper: The set point, where the arm's is now.
-        values: How many numbers it is told at a time.
-        watchdog_s: Longest silence.
+        shaper: Generates the set point, starting at the arm's present one.
+        values: Number of values per message.
+        watchdog_s: Maximum silence.
     """
 
     def __init__(self, *, shaper: OnlineTrajectoryGenerator, values: int, watchdog_s: float) -> None:
@@ -40,17 +40,17 @@ class SetpointStream:
 
     @property
     def moving(self) -> bool:
-        """True unless it is held: a stream is under way even while it is told to stand still."""
+        """True unless held: a stream counts as moving even at zero velocity."""
         return not self._held
 
     @property
     def complete(self) -> bool:
-        """True when it was finished and has come to rest."""
+        """True when finished and at rest."""
         return self._finishing and self.stopped
 
     @property
     def contact(self) -> bool:
-        """False: it ends when it is told to."""
+        """False: it ends on `finish`."""
         return False
 
     @property
@@ -74,16 +74,16 @@ class SetpointStream:
         return ""
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
-        """Take what to do from now on; the watchdog counts from when it was said, `age_s` ago."""
+        """Set the latest values; the watchdog counts from when they were sent, `age_s` ago."""
         self._told[:] = values
         self._silence_s = age_s
 
     def finish(self) -> None:
-        """Come to rest, and be complete then."""
+        """Come to rest, then be complete."""
         self._finishing = True
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
-        """Move the set point on by `step_s` of real time; speeds are limited to `target_pace` of their own."""
+        """Advance the set point by `step_s` of real time; speeds are limited to `target_pace` of their limits."""
         silent = self._silence_s > self._watchdog_s
         self._silence_s += step_s
         self._held = target_pace == 0.0

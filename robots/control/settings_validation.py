@@ -1,4 +1,4 @@
-"""Which settings an arm can take: lengths, signs and upper bounds that its own model gives."""
+"""Validates arm settings: lengths, signs and the upper bounds from the arm's model."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from robots.model.robot_model import JointLimits
 from robots.port import ArmSettings
 
 LEAST_SPEED_OVERRIDE = 0.001
-"""A motion at a smaller share of its speed would be taken for one that hangs."""
+"""At a smaller share of its speed a motion would look stalled."""
 
 _LEAST_DAMPING_RATIO, _MOST_DAMPING_RATIO = 0.1, 2.0
-# Times the nominal stiffness of a joint: still slow beside a control period of 1 or 2 ms.
+# Multiple of a joint's nominal stiffness: still slow compared to a control period of 1 or 2 ms.
 _MOST_JOINT_STIFFNESS = 3.0
-# The strongest joint answers 1 cm on a lever of 1 m with its whole torque, the weakest 25 mrad.
+# The strongest joint reaches its full torque at 1 cm on a lever of 1 m, the weakest at 25 mrad.
 _MOST_STIFFNESS_PER_NM = 100.0
 _MOST_TURN_STIFFNESS_PER_NM = 40.0
 _MOST_UNUSED = 1e9
@@ -27,7 +27,7 @@ def validate_settings(settings: ArmSettings, *, arm: str, joints: tuple[str, ...
     """Return `settings` if an arm with these joints can work with them.
 
     Raises:
-        RobotError: what is wrong, in the words of the setting, and what would be right; `where` is `arm`.
+        RobotError: names the setting, its value and the valid range; `where` is `arm`.
     """
     try:
         _check_controller(settings, joints, limits)
@@ -50,7 +50,7 @@ def _check_controller(settings: ArmSettings, joints: tuple[str, ...], limits: Jo
         _within(what, getattr(settings, what), least=_LEAST_DAMPING_RATIO, most=_MOST_DAMPING_RATIO)
     push, turn = max(limits.effort_nm) * _MOST_STIFFNESS_PER_NM, min(limits.effort_nm) * _MOST_TURN_STIFFNESS_PER_NM
     if settings.controller != "cartesian_impedance":
-        # The default is too stiff for a small arm, which need not be told so while it does not use it.
+        # The default is too stiff for a small arm; it matters only while that controller is in use.
         push = turn = _MOST_UNUSED
     for axis, value in zip(("x", "y", "z", "rx", "ry", "rz"), settings.cartesian_stiffness, strict=True):
         most = turn if axis.startswith("r") else push
@@ -63,7 +63,7 @@ def _check_tool_and_load(settings: ArmSettings, limits: JointLimits) -> None:
     for value in settings.tool_xyz_m:
         _within("tool_xyz_m", value, least=-_FARTHEST_TOOL_M, most=_FARTHEST_TOOL_M)
     if not abs(math.hypot(*settings.tool_xyzw) - 1.0) < 1e-3:
-        raise RobotError(f"tool_xyzw {settings.tool_xyzw} is no rotation", hint="give a quaternion x y z w of length 1")
+        raise RobotError(f"tool_xyzw {settings.tool_xyzw} is not a unit quaternion", hint="give x y z w of length 1")
     _within("load_kg", settings.load_kg, least=0.0, most=max(limits.effort_nm) / _GRAVITY_M_S2)
     for value in settings.load_com_m:
         _within("load_com_m", value, least=-_FARTHEST_LOAD_M, most=_FARTHEST_LOAD_M)
@@ -86,7 +86,7 @@ def _count(what: str, values: tuple[float, ...], joints: tuple[str, ...]) -> Non
 
 
 def _within(what: str, value: float, *, least: float, most: float, above: bool = False) -> None:
-    """Refuse a value outside [least, most], or ]least, most] with `above`; infinity and NaN are outside of all."""
+    """Reject a value outside [least, most], or ]least, most] with `above`; infinity and NaN are always outside."""
     if math.isfinite(value) and (value > least if above else value >= least) and value <= most:
         return
     lower = f"more than {least:g}" if above else f"at least {least:g}"

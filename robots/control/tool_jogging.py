@@ -1,4 +1,4 @@
-"""The tool moved at a velocity that is sent, with the joints following as well as they can."""
+"""Tool jogging: the tool moves at a streamed velocity, and the joints follow as well as they can."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from robots.port import Array
 
 _GOING_SHARE = 0.5
 _VELOCITY_SHARE = 0.98
-# A joint runs into its limit decelerating with this share of its acceleration.
+# A joint decelerates towards its limit with this share of its acceleration.
 _APPROACH_SHARE = 0.5
 _SLOW = 1e-9
-# Faster twists (m/s, rad/s) are taken as this fast in the same direction: no arm goes there, and no product overflows.
+# Faster twists (m/s, rad/s) are clipped to this speed in the same direction: beyond any arm, and no product overflows.
 _FASTEST = 100.0
 
 
 class ToolJogGenerator(SetpointStream):
     """A stream of velocities of the tool centre point in world axes: m/s, then rad/s, (6,).
 
-    Where a joint's speed or position limit is in the way, all joints slow down alike, so that the
-    tool goes on in the direction it was told, and stops in the end. An arm of fewer than six joints
-    moves its tool as told and lets it turn; it turns it as told when nothing is to move. The
-    kinematics are those of the `ArmState` of each step.
+    At a joint's speed or position limit all joints slow down equally, so that the
+    tool keeps the commanded direction and finally stops. An arm of fewer than six joints
+    follows the linear velocity and lets the tool turn; it follows the angular velocity when the linear one
+    is zero. The kinematics are those of the `ArmState` of each step.
 
     Args:
-        limits: Of the joints.
+        limits: Joint limits.
         start: The arm's set point, at rest, (n,), rad.
-        watchdog_s: Longest silence before it comes to rest.
+        watchdog_s: Maximum silence before the set point comes to rest.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:
         shaper = OnlineTrajectoryGenerator(limits=limits, start=start, share=_GOING_SHARE)
         super().__init__(shaper=shaper, values=6, watchdog_s=watchdog_s)
-        # The twist of the last period and the joint velocities that it needed.
+        # The twist of the last period and its joint velocities.
         self._twist = np.zeros(0)
         self._whole = np.zeros(len(start))
 
@@ -62,7 +62,7 @@ class ToolJogGenerator(SetpointStream):
         return twist if fastest <= _FASTEST else twist / fastest * _FASTEST
 
     def _share(self, velocity: Array) -> float:
-        """Return the share of these velocities that keeps every joint below its own."""
+        """Return the share of these velocities that keeps every joint below its speed limit."""
         shaper = self._shaper
         room = np.where(velocity > 0.0, shaper.upper_rad - self.position, self.position - shaper.lower_rad)
         stoppable = np.sqrt(2.0 * _APPROACH_SHARE * shaper.acceleration_rad_s2 * np.maximum(room, 0.0))

@@ -1,4 +1,4 @@
-"""Joints that keep the tool at a moving pose near a nominal path, within the limits of the joints."""
+"""Tracks a moving tool pose near a nominal path within the joint limits."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _DAMPING = 1e-7
 _ACCELERATION_SHARE = 0.95
 _VELOCITY_SHARE = 0.98
 _STOP_SHARE = 0.8
-# The free motion of a redundant arm returns to the nominal joints with this rate.
+# The self-motion of a redundant arm returns to the nominal joints at this rate.
 _RETURN_HZ = 1.0
 _FULL_POSE = 6
 
 
 class ToolTracker:
-    """`position`, `velocity`, `acceleration` (n,) are the joints now, reused; `missing_m` and `missing_rad` what lacks.
+    """`position`, `velocity`, `acceleration` (n,) are the joints, reused; `missing_m`, `missing_rad` the pose error.
 
-    One damped Newton step from the last solution is made in each period. Arms of fewer than six
-    joints keep the tool's position only.
+    Each period makes one damped Newton step from the last solution. Arms of fewer than six
+    joints track the tool's position only.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array) -> None:
@@ -41,12 +41,12 @@ class ToolTracker:
         self.missing_m = 0.0
         self.missing_rad = 0.0
         self.hindered = 0
-        """The joint that was farthest from going as fast as the pose needs."""
+        """The joint whose speed fell shortest of what the pose requires."""
 
     def step(
         self, step_s: float, *, target: RigidTransform, nominal: Array, kinematics: ToolKinematics, returning: float
     ) -> None:
-        """Move on to `target` (world); `nominal` are the joints of the path without deviation.
+        """Advance to `target` (world); `nominal` are the joints of the path without deviation.
 
         `returning` (0 to 1) scales how fast a redundant arm returns to the nominal joints.
         """
@@ -85,7 +85,7 @@ class ToolTracker:
         self.position += velocity * step_s
 
     def _stoppable(self, step_s: float, limit: Array) -> Array:
-        """Return the fastest velocities towards a limit, taken for this period, from which the joints stop there."""
+        """Return the maximum velocities of this period from which the joints can stop at a limit."""
         hardest = _STOP_SHARE * self._acceleration
         room = np.abs(limit - self.position)
         return hardest * (np.sqrt(step_s * step_s + 2.0 * room / hardest) - step_s)

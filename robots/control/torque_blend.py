@@ -1,4 +1,4 @@
-"""No bump when a control law takes over from another: the difference of their torques fades out."""
+"""Bumpless transfer between control laws: the difference of their torques fades out."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from robots.port import Array
 
 
 class TorqueBlend:
-    """Call `after` once per control period with the torques of the law in force; `start` when that changes.
+    """Call `after` once per control period with the torques of the active law; `start` when the law changes.
 
-    Only what a law adds to the feedforward that all laws have in common is blended: that one may
-    change from one period to the next as the set point does.
+    Only the part that a law adds to the common feedforward is blended: the feedforward itself may
+    jump from one period to the next as the set point does.
     """
 
     def __init__(self, *, limit_nm: Array) -> None:
@@ -24,15 +24,15 @@ class TorqueBlend:
         self._starting = self._given = False
 
     def start(self, *, duration_s: float) -> None:
-        """Go on from what was added last, if anything was, and be at what the new law adds after `duration_s`."""
+        """Blend from the last added torques, if any, to those of the new law within `duration_s`."""
         self._duration_s, self._starting = duration_s, self._given
 
     def forget(self) -> None:
-        """Give the torques of the law as they are from now on, as if none had been given before."""
+        """Reset: return the torques of the law unblended."""
         self._left_s, self._starting, self._given = 0.0, False, False
 
     def after(self, torque_nm: Array, *, feedforward_nm: Array, step_s: float) -> Array:
-        """Return the torques to command, for those of the law and what of them all laws have in common; all (n,)."""
+        """Return the torques to command, from those of the law and their common feedforward; all (n,)."""
         if self._starting:
             self._difference = self._last - (torque_nm - feedforward_nm)
             self._left_s, self._starting = self._duration_s, False

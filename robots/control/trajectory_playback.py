@@ -1,4 +1,4 @@
-"""Passage along a trajectory with time scaling: it may slow down, stop and go on, never leave the path."""
+"""Playback of a trajectory with time scaling: it may slow down, stop and resume, but never leaves the path."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from robots.control.arm_state import ArmState
 from robots.port import Array, JointTrajectory
 
 SHORTEST_STOP_S = 0.1
-"""The passage starts or stops in at least this time, so that slow motions do not stop with a jerk."""
+"""Minimum time of a start or stop, so that slow motions do not stop abruptly."""
 
-# Stopping uses this share of the joints' acceleration; the rest is left to tracking.
+# Stopping uses this share of the joints' acceleration; the rest is reserved for tracking.
 _ACCELERATION_SHARE = 0.9
 _SLOW = 1e-9
 
 
 class TrajectoryPlayback:
-    """Where on a trajectory the set point is; s is the trajectory's own time, ṡ = 1 is its own pace.
+    """The set point on a trajectory; s is the trajectory's own time, ṡ = 1 its nominal pace.
 
-    `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
+    `position`, `velocity` and `acceleration` are the present set point, shape (n,), reused by `step`.
 
     Args:
         trajectory: The path over time, from rest to rest.
-        acceleration_rad_s2: Limits of the joints, (n,).
-        shortest_stop_s: Least time from the trajectory's own pace to a stop; it makes slow stops gentle.
+        acceleration_rad_s2: Acceleration limits of the joints, (n,).
+        shortest_stop_s: Minimum time from the nominal pace to a stop; it makes slow stops gentle.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class TrajectoryPlayback:
         self._shortest_stop_s = shortest_stop_s
         from robots.control import kernels
 
-        # Copied: what came over a wire is read-only, which the compiled function does not take.
+        # Copied: received arrays are read-only, which the compiled function does not accept.
         self._points = np.array(trajectory.position_rad, dtype=np.float64, order="C")
         self._slopes = np.array(trajectory.velocity_rad_s, dtype=np.float64, order="C")
         self._pass_along = kernels.interpolate_setpoint
@@ -48,27 +48,27 @@ class TrajectoryPlayback:
 
     @property
     def at_end(self) -> bool:
-        """True when the whole path is passed."""
+        """True at the end of the path."""
         return self.passed_s >= self.duration_s
 
     @property
     def stopped(self) -> bool:
-        """True when the passage stands still, on the way or at the end."""
+        """True when the set point stands still, within the path or at its end."""
         return self.pace == 0.0 or self.at_end
 
     @property
     def moving(self) -> bool:
-        """True when the passage is under way, or over."""
+        """True while the set point moves, and at the end."""
         return self.pace > 0.0 or self.at_end
 
     @property
     def complete(self) -> bool:
-        """True when the whole path is passed."""
+        """True at the end of the path."""
         return self.at_end
 
     @property
     def contact(self) -> bool:
-        """False: it ends at its goal only."""
+        """False: it ends only at its goal."""
         return False
 
     @property
@@ -78,12 +78,12 @@ class TrajectoryPlayback:
 
     @property
     def failure(self) -> str:
-        """Empty: a path can always be passed along."""
+        """Empty: a path can always be followed."""
         return ""
 
     @property
     def progress(self) -> float:
-        """Share of the trajectory's time passed, 0 to 1."""
+        """Elapsed share of the trajectory's time, 0 to 1."""
         return self.passed_s / self.duration_s if self.duration_s > 0.0 else 1.0
 
     @property
@@ -96,9 +96,9 @@ class TrajectoryPlayback:
         return b""
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
-        """Pass on by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
+        """Advance by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
         if self.passed_s == 0.0:
-            # It starts at rest, where the pace may be anything.
+            # It starts at rest, where any pace is possible.
             self.pace = target_pace
         change = 0.0
         if self.pace != target_pace:
@@ -128,13 +128,13 @@ class TrajectoryPlayback:
         return min(0.0, max(-fastest, float(np.max((-room - along) / speed))))
 
     def located(self) -> tuple[int, float]:
-        """Return the sample before the set point, and the share of the way to the next one, 0 to 1."""
+        """Return the sample before the set point, and the interpolation share to the next one, 0 to 1."""
         last = len(self._points) - 2
         index = min(int(self.passed_s / self._dt_s), last)
         return index, self.passed_s / self._dt_s - index
 
     def _derivatives(self) -> tuple[Array, Array]:
-        """Return p′ and p″ by the trajectory's own time."""
+        """Return p′ and p″ with respect to the trajectory's own time."""
         if self.at_end:
             return np.zeros_like(self.position), np.zeros_like(self.position)
         index, u = self.located()
@@ -171,16 +171,16 @@ def validate_trajectory(trajectory: JointTrajectory, *, start_rad: Array, joints
     """Return `trajectory` if an arm at the set point `start_rad` can follow it.
 
     Raises:
-        RobotError: wrong shape, a number that is not finite, or it does not start at the set point at rest.
+        RobotError: wrong shape, a value that is not finite, or it does not start at the set point at rest.
     """
     position, velocity = np.asarray(trajectory.position_rad), np.asarray(trajectory.velocity_rad_s)
     if position.ndim != 2 or position.shape != velocity.shape or position.shape[1] != len(joints) or len(position) < 2:
         raise RobotError(
-            f"positions {position.shape} and velocities {velocity.shape} are no trajectory for {len(joints)} joints",
+            f"positions {position.shape} and velocities {velocity.shape} are not a trajectory for {len(joints)} joints",
             hint="give at least two samples, one column per joint",
         )
     if not (np.isfinite(position).all() and np.isfinite(velocity).all() and trajectory.dt_s > 0.0):
-        raise RobotError("the trajectory has numbers that are not finite, or dt_s is not positive")
+        raise RobotError("the trajectory has values that are not finite, or dt_s is not positive")
     gap = np.abs(position[0] - start_rad)
     worst = int(np.argmax(gap))
     if gap[worst] > 0.01:

@@ -1,4 +1,4 @@
-"""The tools at the flange of an arm on the bus: grippers, hands and magnets over their ports, simulated or real."""
+"""Skill servers of the tools at an arm's flange: grippers, hands and magnets over their ports, simulated or real."""
 
 from robots.gripper.grasp_check import GraspCommand, check_grasp
 from robots.gripper.gripper_server import GripperServer

@@ -1,4 +1,4 @@
-"""Whether a gripper holds what it was told to grasp, judged from pads, opening and force, and in words why not."""
+"""Checks from pads, opening and force whether a gripper holds the commanded object, or states why not."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 from robots.port import GripperSample
 
-# In motion the force on the pads swings about what was commanded.
+# In motion the pad force oscillates about the commanded one.
 FORCE_SHARE = 0.5
 _UNKNOWN = "?"
 
 
 @dataclass(frozen=True, kw_only=True)
 class GraspCommand:
-    """What was told to be grasped: the least and greatest opening, metres, and the force, newton."""
+    """A grasp command: minimum and maximum opening, metres, and the force, newton."""
 
     least_m: float
     most_m: float
@@ -21,7 +21,7 @@ class GraspCommand:
 
 
 def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
-    """Return why nothing is held, empty when something is."""
+    """Return why nothing is held; empty if something is."""
     left, right = sample.contacts
     width = _millimetres(sample.width_m)
     if not left and not right:
@@ -44,5 +44,5 @@ def _name(body: str) -> str:
 
 
 def _millimetres(length_m: float) -> str:
-    # Pads give a little under force: an opening just below zero is closed.
+    # Pads yield a little under force: an opening just below zero is closed.
     return f"{max(0.0, length_m) * 1e3:.1f} mm"

@@ -1,4 +1,4 @@
-"""One two-finger gripper on the bus: answers the gripper skills over a `GripperPort`, simulated or real."""
+"""Skill server of one two-finger gripper: implements the gripper skills over a `GripperPort`, simulated or real."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ _AT_WIDTH_M = 0.002
 
 
 class GripperServer:
-    """Serves a gripper under `name`, usually `<arm>/gripper`; it belongs to its arm's `ArmServer`."""
+    """Serves a gripper under `name`, usually `<arm>/gripper`; owned by its arm's `ArmServer`."""
 
     def __init__(self, *, name: str, port: GripperPort) -> None:
         self.name = name
         self._port = port
         self._motion = ToolMotion(device=name, words="the gripper")
         self.grip: GraspCommand | None = None
-        """What it was told to grasp and hold; None once it was told otherwise."""
+        """The active grasp command; None after any other command."""
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out."""
+        """True while a goal is executing."""
         return self._motion.moving
 
     def register(self, bus: SkillBus) -> None:
@@ -45,7 +45,7 @@ class GripperServer:
         bus.advertise_service(ReadGripper, self._read, namespace=self.name)
 
     async def stop(self) -> None:
-        """Stop the fingers where they are; what is held stays held."""
+        """Stop the fingers where they are; a held object stays held."""
         await self._motion.stop()
 
     async def _open(self, goal: GripperOpen, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
@@ -102,7 +102,7 @@ class GripperServer:
         return GraspResult(held=False, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
 
     def _state(self) -> GripperSetting:
-        """Return how the gripper is now, as something that can be asked of it again."""
+        """Return the present state as a setting that can be commanded again."""
         sample = self._port.sample()
         grip = self.grip if self.grip is not None and not check_grasp(sample, self.grip) else None
         width_m = min(max(0.0, sample.width_m), self._port.max_width_m)
@@ -119,7 +119,7 @@ class GripperServer:
     async def _carry_out(
         self, width_m: float, speed_m_s: float, force_n: float, handle: ActiveGoal[GripperFeedback]
     ) -> None:
-        """Move the fingers and return when they have come to rest, also when cancelled."""
+        """Move the fingers and return when they are at rest, also when cancelled."""
 
         def tell() -> None:
             handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))

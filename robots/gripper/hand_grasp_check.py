@@ -1,4 +1,4 @@
-"""Whether a hand holds something, judged from what thumb, fingers and palm touch, and in words why not."""
+"""Checks from the contacts of thumb, fingers and palm whether a hand holds something, or states why not."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from robots.port import HandSample
 
 _UNKNOWN = "?"
 _OPEN_SHARE = 0.01
-# Fingers that merely touch take hardly more than closing on nothing.
+# Fingers that merely touch take hardly more force than closing on nothing.
 _PRESSES_SHARE = 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
 class HandGrasp:
-    """What is held: a body's name, `?` for unknown, empty for nothing, and then `reason` says why."""
+    """The held body: its name, `?` for unknown, empty for nothing; then `reason` states why."""
 
     part: str = ""
     reason: str = ""
@@ -38,4 +38,4 @@ def check_hand_grasp(sample: HandSample, *, max_force_n: float) -> HandGrasp:
         meant = (body, _UNKNOWN)
         if (thumb in meant or palm in meant) and any(finger in meant for finger in fingers):
             return HandGrasp(part=body)
-    return HandGrasp(reason=f"the fingers touch {words} at {closed}, thumb and palm do not hold against")
+    return HandGrasp(reason=f"the fingers touch {words} at {closed}, but neither thumb nor palm opposes them")

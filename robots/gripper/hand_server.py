@@ -1,4 +1,4 @@
-"""One hand with one motor on the bus: answers the hand skills over a `HandPort`, simulated or real."""
+"""Skill server of one hand with one motor: implements the hand skills over a `HandPort`, simulated or real."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from robots.port import HandPort, HandSample
 
 
 class HandServer:
-    """Serves a hand under `name`, usually `<arm>/hand`; it belongs to its arm's `ArmServer`."""
+    """Serves a hand under `name`, usually `<arm>/hand`; owned by its arm's `ArmServer`."""
 
     def __init__(self, *, name: str, port: HandPort) -> None:
         self.name = name
         self.grip: GraspCommand | None = None
-        """Nothing: what fingers and palm touch tells whether something is held."""
+        """None: the contacts of fingers and palm determine whether something is held."""
         self._port = port
         self._motion = ToolMotion(device=name, words="the hand")
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out."""
+        """True while a goal is executing."""
         return self._motion.moving
 
     def register(self, bus: SkillBus) -> None:
@@ -33,7 +33,7 @@ class HandServer:
         bus.advertise_service(ReadHand, self._read, namespace=self.name)
 
     async def stop(self) -> None:
-        """Stop the motor where it is; what is held stays held."""
+        """Stop the motor where it is; a held object stays held."""
         await self._motion.stop()
 
     async def _close(self, goal: HandClose, handle: ActiveGoal[HandFeedback]) -> HandResult:
@@ -64,7 +64,7 @@ class HandServer:
 
 
 def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
-    """Return the state of a hand in a measurement, what it holds judged anew."""
+    """Return the state of a hand in a measurement, with its grasp re-evaluated."""
     part = check_hand_grasp(sample, max_force_n=max_force_n).part
     return HandState(
         time_s=sample.time_s,

@@ -1,4 +1,4 @@
-"""One switchable magnet on the bus: answers the magnet skills over a `MagnetPort`, simulated or real."""
+"""Skill server of one switchable magnet: implements the magnet skills over a `MagnetPort`, simulated or real."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from robots.gripper.grasp_check import GraspCommand
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import MagnetPort, MagnetSample
 
-# What is pulled with less than this share of the magnet's force hangs by an edge or is not ferrous.
+# An object pulled with less than this share of the magnet's force touches by an edge or is not ferrous.
 _HOLDS_SHARE = 0.05
 
 
 def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
-    """Return why nothing is held, empty when something is."""
+    """Return why nothing is held; empty if something is."""
     if not sample.on:
         return "the magnet is switched off"
     if not sample.contact:
@@ -26,18 +26,18 @@ def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
 
 
 class MagnetServer:
-    """Serves a magnet under `name`, usually `<arm>/magnet`; it belongs to its arm's `ArmServer`."""
+    """Serves a magnet under `name`, usually `<arm>/magnet`; owned by its arm's `ArmServer`."""
 
     def __init__(self, *, name: str, port: MagnetPort) -> None:
         self.name = name
         self.grip: GraspCommand | None = None
-        """Nothing: whether it is on and what it pulls at tells whether something is held."""
+        """None: switch state and pull determine whether something is held."""
         self._port = port
         self._motion = ToolMotion(device=name, words="the magnet")
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out."""
+        """True while a goal is executing."""
         return self._motion.moving
 
     def register(self, bus: SkillBus) -> None:
@@ -46,7 +46,7 @@ class MagnetServer:
         bus.advertise_service(ReadMagnet, self._read, namespace=self.name)
 
     async def stop(self) -> None:
-        """End what is under way; the field stays as it was told, and what is held stays held."""
+        """End the active motion; the field keeps its commanded state, and a held object stays held."""
         await self._motion.stop()
 
     async def _switch(self, goal: MagnetSwitch, handle: ActiveGoal[MagnetFeedback]) -> MagnetResult:
@@ -71,7 +71,7 @@ class MagnetServer:
 
 
 def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
-    """Return the state of a magnet in a measurement, what it holds judged anew."""
+    """Return the state of a magnet in a measurement, with its grasp re-evaluated."""
     held = not check_magnet_grasp(sample, max_force_n=max_force_n)
     return MagnetState(
         time_s=sample.time_s,

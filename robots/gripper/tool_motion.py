@@ -1,4 +1,4 @@
-"""Carries out the motions of one tool, one at a time, for the servers of grippers, hands and magnets."""
+"""Executes the motions of one tool, one at a time, for the servers of grippers, hands and magnets."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robots.supervise_goal import supervise_goal
 
 
 class ToolMotion:
-    """The motion under way; `device` is the bus name of the tool and `words` what people call what moves."""
+    """The active motion; `device` is the bus name of the tool, `words` its human-readable name."""
 
     def __init__(self, *, device: str, words: str) -> None:
         self._device = device
@@ -21,11 +21,11 @@ class ToolMotion:
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out."""
+        """True while a goal is executing."""
         return self._motion is not None
 
     async def stop(self) -> None:
-        """Cancel what is under way and return at its end."""
+        """Cancel the active motion and return at its end."""
         if self._motion is not None:
             self._motion.cancel()
             await self._motion.report()
@@ -34,7 +34,7 @@ class ToolMotion:
         """Start a motion and return when it has ended at rest, also when cancelled.
 
         Raises:
-            SkillFailed: it could not be started, failed, or was stopped by somebody else.
+            SkillFailed: it could not be started, failed, or was stopped by another client.
         """
         try:
             motion = start()

@@ -1,4 +1,4 @@
-"""What an arm asks of the server of the tool it carries, whatever kind of tool that is."""
+"""The interface between an arm's server and the server of its tool, for any kind of tool."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from robots.gripper.grasp_check import GraspCommand
 
 
 class ToolServer(Protocol):
-    """The skills of one tool on the bus; it belongs to its arm's `ArmServer`.
+    """The skills of one tool on the bus; owned by its arm's `ArmServer`.
 
     Attributes:
-        grip: What it was told to grasp and hold; None where nothing need be remembered.
+        grip: The active grasp command; None where there is nothing to remember.
     """
 
     grip: GraspCommand | None
@@ -24,7 +24,7 @@ class ToolServer(Protocol):
 
     @property
     def moving(self) -> bool:
-        """True while a goal is carried out."""
+        """True while a goal is executing."""
         ...
 
     def register(self, bus: SkillBus) -> None:
@@ -32,5 +32,5 @@ class ToolServer(Protocol):
         ...
 
     async def stop(self) -> None:
-        """Stop what moves; what is held stays held."""
+        """Stop all motion; a held object stays held."""
         ...

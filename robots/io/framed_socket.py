@@ -1,4 +1,4 @@
-"""A process's end of the socket to the process that has started it: whole messages in, whole messages out."""
+"""The socket between a child process and its parent, child side: sends and receives whole messages."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _READ_BYTES = 1 << 16
 
 
 class PeerGone(Exception):
-    """The other end was closed, or what it held when it died was lost: nothing can come or go any more.
+    """The other end was closed or reset: the connection is unusable.
 
-    A process that dies with messages that it has not read resets the connection, which is no ordinary end.
+    A process that dies with unread messages resets the connection instead of closing it.
     """
 
 
@@ -20,8 +20,8 @@ class FramedSocket:
     """Raises PeerGone from every call once the other end is gone.
 
     Args:
-        connection: Blocks or does not; where it does not, `receive` gives nothing while nothing has come, and `post`
-            keeps what the socket does not take.
+        connection: Blocking or non-blocking; if non-blocking, `receive` returns nothing without data, and `post`
+            buffers what the socket does not accept.
     """
 
     def __init__(self, connection: socket.socket) -> None:
@@ -30,10 +30,10 @@ class FramedSocket:
         self._unsent = bytearray()
 
     def receive(self) -> list[bytes]:
-        """Return the messages that have become whole, waiting for a piece of one where the socket blocks.
+        """Return the messages completed by the next read; a blocking socket waits for data.
 
         Raises:
-            RobotError: what comes is no stream of messages.
+            RobotError: the data is not a stream of messages.
         """
         try:
             data = self._connection.recv(_READ_BYTES)
@@ -46,19 +46,19 @@ class FramedSocket:
         return self._reader.feed(data)
 
     def send(self, payload: bytes) -> None:
-        """Send a message, waiting for the socket to take it."""
+        """Send a message, waiting until the socket accepts it."""
         try:
             self._connection.sendall(frame_message(payload))
         except ConnectionError as error:
             raise PeerGone from error
 
     def post(self, payload: bytes) -> None:
-        """Send a message as far as the socket takes it without a wait; `flush` sends the rest."""
+        """Send as much of a message as the socket accepts without waiting; `flush` sends the rest."""
         self._unsent += frame_message(payload)
         self.flush()
 
     def flush(self) -> None:
-        """Send what waits, as far as the socket takes it."""
+        """Send buffered data, as far as the socket accepts it."""
         if not self._unsent:
             return
         try:

@@ -11,12 +11,12 @@ LARGEST_FRAME = 64 * 1024 * 1024
 def frame_message(payload: bytes) -> bytes:
     """Return `payload` with its length in front."""
     if len(payload) > LARGEST_FRAME:
-        raise RobotError(f"a message of {len(payload)} bytes is too long for the world's process")
+        raise RobotError(f"a message of {len(payload)} bytes exceeds the limit of {LARGEST_FRAME} bytes")
     return len(payload).to_bytes(_HEADER, "little") + payload
 
 
 class FrameReader:
-    """Cuts a byte stream, fed in pieces of any size, back into messages."""
+    """Splits a byte stream, fed in pieces of any size, into messages."""
 
     def __init__(self) -> None:
         self._waiting = bytearray()
@@ -25,7 +25,7 @@ class FrameReader:
         """Take more bytes and return the messages that are now complete.
 
         Raises:
-            RobotError: a length is impossible; the stream is not ours.
+            RobotError: a length exceeds the limit; the stream is corrupt.
         """
         self._waiting += data
         messages: list[bytes] = []
@@ -33,7 +33,9 @@ class FrameReader:
         while len(self._waiting) - start >= _HEADER:
             length = int.from_bytes(self._waiting[start : start + _HEADER], "little")
             if length > LARGEST_FRAME:
-                raise RobotError(f"a message claims {length} bytes; the stream is damaged")
+                raise RobotError(
+                    f"a message header states {length} bytes, above the limit of {LARGEST_FRAME}: the stream is corrupt"
+                )
             end = start + _HEADER + length
             if len(self._waiting) < end:
                 break

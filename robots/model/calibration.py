@@ -1,9 +1,9 @@
 """Factory kinematics calibration files of Universal Robots, applied to the joint origins of a URDF.
 
-The file gives, for every joint, where its frame lies in the frame before it (z is the joint's axis).
-A URDF may put its link frames elsewhere; the file whose numbers describe that URDF as it is (the
-nominal one) tells where, because a frame may be shifted along its joint's axis and turned with the
-same turn at every joint angle.
+The file gives, for every joint, the pose of its frame in the previous frame (z is the joint's axis).
+A URDF may place its link frames elsewhere; the file that describes that URDF unchanged (the
+nominal one) determines where, because a frame may be shifted along its joint's axis and rotated by
+a constant about it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from robots.model.folder_document import CalibrationFormat
 from robots.model.urdf_tree import Element, joints_of, set_origin
 from robots.port import Array
 
-# How far the URDF may be off what the nominal file says of it: digits that were cut off.
+# Tolerance between the URDF and its nominal file: truncated digits.
 _SAME_M, _SAME_RAD = 1e-6, 1e-5
 
 
 class CalibrationSegment(StrictModel, frozen=True, kw_only=True):
-    """A frame in the one before it: metres, and radians about fixed x, y, z axes in turn."""
+    """A frame in the previous one: metres, and radians about fixed x, y, z axes in turn."""
 
     x: float
     y: float
@@ -49,7 +49,7 @@ class _CalibrationDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Calibration:
-    """A calibration file: the segments in the order of the file, and the hash the robot gave it."""
+    """A calibration file: the segments in the order of the file, and the hash assigned by the robot."""
 
     file: Path
     segments: dict[str, CalibrationSegment]
@@ -60,7 +60,7 @@ def load_calibration(file: Path) -> Calibration:
     """Read a calibration file.
 
     Raises:
-        DocumentError: it cannot be read or is not such a file; `where` is the position.
+        DocumentError: it cannot be read or is not a calibration file; `where` is the position.
     """
     document = decode_document(load_source(file), _CalibrationDocument)
     return Calibration(file=file, segments=document.kinematics, hash=document.hash)
@@ -82,7 +82,7 @@ def apply_calibration(
     for name, joint_name in described.joints.items():
         joint = joints[joint_name]
         before = inner
-        # The link's frame of the URDF seen from the frame of the file, at this end of the joint.
+        # The link frame of the URDF in the frame of the file, at this end of the joint.
         inner = _inverse(nominal.segments[name].matrix()) @ before @ _origin(joint)
         _require_same_axis(inner, joint, nominal)
         placed = _inverse(before) @ calibration.segments[name].matrix() @ inner
@@ -107,7 +107,7 @@ def roll_pitch_yaw(placed: Array) -> tuple[float, float, float]:
     r: Array = placed[:3, :3]
     level = math.hypot(r[0, 0], r[1, 0])
     yaw = math.atan2(r[1, 0], r[0, 0]) if level > 1e-9 else 0.0
-    # With the yaw settled first, the roll makes up for what is uncertain in it.
+    # With the yaw determined first, the roll compensates its uncertainty.
     sin, cos = math.sin(yaw), math.cos(yaw)
     roll = math.atan2(sin * r[0, 2] - cos * r[1, 2], cos * r[1, 1] - sin * r[0, 1])
     return roll, math.atan2(-r[2, 0], cos * r[0, 0] + sin * r[1, 0]), yaw
@@ -131,7 +131,7 @@ def _require_same_axis(inner: Array, joint: Element, nominal: Calibration) -> No
     off_m = math.hypot(inner[0, 3], inner[1, 3])
     if off_rad > _SAME_RAD or off_m > _SAME_M:
         raise CellError(
-            f"{nominal.file.name} is not the calibration of this URDF: {joint.attrib['name']} is off by "
+            f"{nominal.file.name} is not the calibration of this URDF: {joint.attrib['name']} differs by "
             f"{off_m * 1e3:.3f} mm and {off_rad:.5f} rad",
             where=str(nominal.file),
             hint="correct `calibration: {nominal: …}` of the robot model",

@@ -1,4 +1,4 @@
-"""Self-collision of an arm with its tool: convex shapes of all links, and the pairs of them that count."""
+"""Self-collision of an arm with its tool: convex shapes of all links, and the checked pairs."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Pair = tuple[str, str]
 
 
 class CollisionModel:
-    """Which links of one arm touch which others at a configuration; shapes are convex hulls of the URDF's.
+    """The colliding links of one arm at a configuration; shapes are convex hulls of the URDF's.
 
-    Links that do not move against each other, neighbours at a joint, and the pairs of
-    `RobotModel.allowed_collisions` are left out. One instance serves one thread at a time.
+    Links without relative motion, neighbours at a joint, and the pairs of
+    `RobotModel.allowed_collisions` are excluded. One instance serves one thread at a time.
     Obstacles may be added to `geometry` (pinocchio's GeometryModel); call `renew` afterwards.
 
     Args:
         model: The arm.
-        tool_joints: Where the tool's joints stand; those not named are at 0.
+        tool_joints: Positions of the tool's joints; 0 for those not named.
 
     Raises:
         CellError: a mesh is missing, or a named joint is not the tool's.
@@ -47,13 +47,13 @@ class CollisionModel:
         self.renew()
 
     def renew(self) -> None:
-        """Make the working data anew; needed after shapes or pairs were added."""
-        # A GeometryData is of one GeometryModel as it was when made; both live as long as this object.
+        """Rebuild the working data; required after shapes or pairs were added."""
+        # A GeometryData belongs to the GeometryModel as it was at its creation; both live as long as this object.
         self._data = self.solver.createData()
         self._geometry_data = self.geometry.createData()
 
     def in_collision(self, joints: Array) -> bool:
-        """Return whether any counting pair touches at `joints`, shape (n,)."""
+        """Return whether any checked pair touches at `joints`, shape (n,)."""
         return bool(pin.computeCollisions(self.solver, self._data, self.geometry, self._geometry_data, joints, True))
 
     def colliding_pairs(self, joints: Array) -> tuple[Pair, ...]:
@@ -66,7 +66,7 @@ class CollisionModel:
         return tuple(found)
 
     def clearance(self, joints: Array) -> tuple[float, Pair]:
-        """Return the smallest distance of a counting pair in metres (0 or less where they touch), and the pair."""
+        """Return the smallest distance of a checked pair in metres (0 or less if they touch), and the pair."""
         pin.computeDistances(self.solver, self._data, self.geometry, self._geometry_data, joints)
         distances = [result.min_distance for result in self._geometry_data.distanceResults]
         if not distances:
@@ -89,9 +89,9 @@ class CollisionModel:
 
 
 def sampled_pairs(model: RobotModel, *, samples: int = 20_000, seed: int = 0) -> tuple[tuple[Pair, ...], ...]:
-    """Return the pairs that touch in every and those that touch in no random configuration, in link order.
+    """Return the pairs that touch in every, and those that touch in no, random configuration, in link order.
 
-    What a `robot.yaml` lists under `collisions: {allowed: …}` when there is no SRDF.
+    For `collisions: {allowed: …}` of a `robot.yaml` without an SRDF.
     """
     collision = CollisionModel(model)
     lower, upper = np.array(model.limits.lower_rad), np.array(model.limits.upper_rad)
@@ -122,7 +122,7 @@ def _built(model: RobotModel, tool_joints: Mapping[str, float]) -> tuple[Any, An
     at = rest_configuration(full, model)
     for name, value in tool_joints.items():
         if name in model.arm_joints or not full.existJointName(name):
-            raise CellError(f"{name} is no joint of the tool", where=model.name)
+            raise CellError(f"{name} is not a joint of the tool", where=model.name)
         at[full.joints[full.getJointId(name)].idx_q] = value
     return pin.buildReducedModel(full, geometry, locked_joints(full, model), at)
 
@@ -140,7 +140,7 @@ def _counting_pairs(model: RobotModel, solver: Any, geometry: Any, links: list[s
 
 
 def _neighbours(solver: Any, model: RobotModel, joint_of: dict[str, int]) -> set[frozenset[str]]:
-    """Return the pairs of arm links with a joint between them; what a tool adds to the last link is none."""
+    """Return the pairs of arm links with a joint between them, excluding those between the last link and a tool."""
     tool = set(model.tool.links) if model.tool is not None else set[str]()
     return {
         frozenset((a, b))

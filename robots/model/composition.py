@@ -1,4 +1,4 @@
-"""An arm's folder, a tool's folder and a calibration made into one `RobotModel` with one URDF."""
+"""Composes an arm's folder, a tool's folder and a calibration into one `RobotModel` with one URDF."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def compose(
 
     Raises:
         CellError: descriptions are not installed, names clash, or the arm has no such option.
-        DocumentError: a document and its URDF do not fit; `where` is the position.
+        DocumentError: a document and its URDF do not match; `where` is the position.
     """
     document = arm.document
     robot = arm.urdf()
@@ -53,7 +53,9 @@ def compose(
     if calibration is not None:
         nominal = document.calibration
         if nominal is None:
-            raise CellError(f"the robot model {document.robot} knows no calibration files", hint="remove `calibration`")
+            raise CellError(
+                f"the robot model {document.robot} does not support calibration files", hint="remove `calibration`"
+            )
         factory = load_calibration(calibration)
         apply_calibration(
             robot, nominal, factory, nominal=load_calibration(arm.locate(FileReference(file=nominal.nominal)))
@@ -109,14 +111,14 @@ def _check_arm(arm: ModelFolder[RobotDocument], robot: Element) -> None:
         named = name in {j.name for j in document.joints}
         if not named and joint.attrib["type"] != "fixed":
             raise CellError(
-                f"the URDF's joint {name} moves and is not listed under `joints`",
+                f"the movable joint {name} of the URDF is missing under `joints`",
                 where=document.robot,
-                hint="list it, or leave its link out with `urdf: {without: […]}`",
+                hint="list it, or remove its link with `urdf: {without: […]}`",
             )
 
 
 def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tuple[ToolModel, str]:
-    """Put the tool's links and joints into `robot`; return the tool and the link of its centre point."""
+    """Add the tool's links and joints to `robot`; return the tool and the link of its centre point."""
     document = tool.document
     tree = tool.urdf()
     joints, links = names_in(document.mechanism)
@@ -135,7 +137,9 @@ def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tu
     add_prefix(tree, prefix)
     clash = sorted((set(links_of(robot)) & set(links_of(tree))) | (set(joints_of(robot)) & set(joints_of(tree))))
     if clash:
-        raise CellError(f"arm and tool both have {clash[0]}", where=document.tool, hint="give the tool a `prefix`")
+        raise CellError(
+            f"arm and tool both have a link or joint {clash[0]}", where=document.tool, hint="give the tool a `prefix`"
+        )
     root = root_of(tree)
     add_fixed_joint(robot, f"{root}_mount", parent=flange, child=root, xyz=document.mount.xyz, rpy=document.mount.rpy)
     moving = tuple(name for name, joint in joints_of(tree).items() if joint.attrib["type"] != "fixed")
@@ -170,7 +174,7 @@ def _rigid_to(robot: Element, link: str) -> tuple[str, ...]:
 
 
 def _present_pairs(robot: Element, pairs: Pairs) -> Pairs:
-    """Return the pairs whose links are there, each once, in order."""
+    """Return the pairs whose links exist, each once, in order."""
     present, seen, kept = links_of(robot), set[frozenset[str]](), list[tuple[str, str]]()
     for a, b in pairs:
         if a in present and b in present and frozenset((a, b)) not in seen:

@@ -1,4 +1,4 @@
-"""Where installed robot descriptions lie: packages, `package://` URIs, and the SRDF's collision pairs."""
+"""Locates installed robot descriptions: packages, `package://` URIs, and the SRDF's collision pairs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PACKAGE_SCHEME = "package://"
 
 
 def installed_share_dir(*, package: str, marker: str) -> Path:
-    """Return the folder of an installed distribution that `marker` (a relative path) lies in.
+    """Return the folder of an installed distribution that contains `marker` (a relative path).
 
     Raises:
         CellError: the distribution is not installed, or installed without that file.
@@ -34,19 +34,19 @@ def installed_share_dir(*, package: str, marker: str) -> Path:
 
 
 def _files(installed: Distribution, marker: str) -> Iterable[str]:
-    """Return the files of a distribution whose paths have `marker` in them."""
+    """Return the files of a distribution whose paths contain `marker`."""
     record = installed.read_text("RECORD")
     if record is None:
         return map(str, installed.files or ())
-    # `files` would make an object of each of its thousands of lines, several times for each arm.
+    # `files` would create an object for each of thousands of lines, several times per arm.
     lines = (line for line in record.splitlines() if marker in line)
     return (row[0] for row in csv.reader(lines))
 
 
 def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) -> Path:
-    """Return the file that a URDF's mesh `filename` means.
+    """Return the file of a URDF's mesh `filename`.
 
-    `package://<path>` lies below one of `package_dirs`; anything else is relative to the folder `relative_to`.
+    `package://<path>` is below one of `package_dirs`; anything else is relative to the folder `relative_to`.
 
     Raises:
         CellError: there is no such file.
@@ -56,7 +56,7 @@ def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) ->
     else:
         paths = [relative_to / uri.removeprefix("file://")]
     if "\0" in uri:
-        raise CellError("the name of a mesh file has a NUL in it", where=uri, hint="correct the URDF")
+        raise CellError("the name of a mesh file contains a NUL character", where=uri, hint="correct the URDF")
     for path in paths:
         if path.is_file():
             return path
@@ -73,5 +73,5 @@ def disabled_collisions(srdf: Path) -> tuple[tuple[str, str], ...]:
     root = parse_xml(read_text(srdf, what="SRDF"), what="SRDF", where=srdf)
     pairs = tuple((pair.get("link1", ""), pair.get("link2", "")) for pair in root.iter("disable_collisions"))
     if not all(map(all, pairs)):
-        raise CellError("a `disable_collisions` lacks `link1` or `link2`", where=str(srdf), hint="correct the SRDF")
+        raise CellError("a `disable_collisions` has no `link1` or no `link2`", where=str(srdf), hint="correct the SRDF")
     return pairs

@@ -17,7 +17,7 @@ GRAVITY_M_S2 = 9.81
 
 @dataclass(frozen=True, kw_only=True)
 class Payload:
-    """What the tool carries: mass, centre of mass in the frame of the tool centre point, inertia about it.
+    """A payload: mass, centre of mass in the frame of the tool centre point, inertia about it.
 
     `inertia_kg_m2` is the diagonal about the axes of that frame; a point mass by default.
     """
@@ -36,8 +36,8 @@ class ArmDynamics:
     Args:
         model: The arm.
         base: Pose of its base link in the world, whose z is up.
-        load: What it carries.
-        motors: Count `RobotModel.armature_kg_m2`.
+        load: The payload.
+        motors: Include `RobotModel.armature_kg_m2`.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class ArmDynamics:
         return upper + np.triu(upper, 1).T
 
     def bias(self, joints: Array, velocity: Array) -> Array:
-        """Return c(q, q̇) + g(q): what moving on at this velocity takes, in N m."""
+        """Return c(q, q̇) + g(q): the torque for constant velocity, in N m."""
         return pin.nonLinearEffects(self._solver, self._data, joints, velocity).copy()
 
     def gravity(self, joints: Array) -> Array:
@@ -71,7 +71,7 @@ class ArmDynamics:
         return pin.computeCoriolisMatrix(self._solver, self._data, joints, velocity) @ velocity
 
     def torque(self, joints: Array, velocity: Array, acceleration: Array) -> Array:
-        """Return the torques that make this acceleration, in N m."""
+        """Return the torques for this acceleration, in N m."""
         return pin.rnea(self._solver, self._data, joints, velocity, acceleration).copy()
 
 

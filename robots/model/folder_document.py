@@ -1,4 +1,4 @@
-"""What `robot.yaml` and `tool.yaml` of a model folder may say, as strict frozen models.
+"""The schema of `robot.yaml` and `tool.yaml` of a model folder, as strict frozen models.
 
 Lengths are metres, angles radians, masses kilograms, forces newtons. `file` paths are relative to
 the folder, or to an installed `package` when one is named.
@@ -28,8 +28,8 @@ class FileReference(StrictModel, frozen=True, kw_only=True):
 class UrdfSource(FileReference, frozen=True, kw_only=True):
     """The URDF. `collision_file` is another URDF with the same links whose collision shapes are used.
 
-    `root` is the link the model begins at (its own root by default); the links in `without` are cut
-    off with everything that hangs on them.
+    `root` is the first link of the model (the URDF's root by default); the links in `without` are removed
+    with all their descendants.
     """
 
     collision_file: Text | None = None
@@ -58,11 +58,11 @@ class ArmJoint(StrictModel, frozen=True, kw_only=True):
 
 
 class DeviceJoint(StrictModel, frozen=True, kw_only=True):
-    """How the controller's angle of a joint differs: plus factors of other joints, plus an offset.
+    """The controller's angle of a joint: the joint plus factors of other joints, plus an offset.
 
-    `lower_rad` and `upper_rad` are the range that the controller keeps for its own angle, where that is
-    another one than follows from the joints' ranges. With `optional: true` all of it counts only for robots
-    whose cell entry says `coupled_joints: true`.
+    `lower_rad` and `upper_rad` are the controller's range of its own angle, if it differs from the one
+    implied by the joints' ranges. With `optional: true` this applies only to robots
+    whose cell entry has `coupled_joints: true`.
     """
 
     joint: Text
@@ -74,10 +74,10 @@ class DeviceJoint(StrictModel, frozen=True, kw_only=True):
 
 
 class CalibrationFormat(StrictModel, frozen=True, kw_only=True):
-    """That factory calibration files can be applied, and how their segments are named here.
+    """Support of factory calibration files, and the names of their segments.
 
-    `joints` has the joint at the beginning of each segment, in order; `nominal` is the calibration
-    file whose numbers describe the URDF as it is; `base_rpy` turns the file's base to `base_link`.
+    `joints` lists the joint at the start of each segment, in order; `nominal` is the calibration
+    file that describes the URDF unchanged; `base_rpy` rotates the file's base to `base_link`.
     """
 
     format: Literal["universal_robots"]
@@ -87,7 +87,7 @@ class CalibrationFormat(StrictModel, frozen=True, kw_only=True):
 
 
 class CollisionPairs(StrictModel, frozen=True, kw_only=True):
-    """Pairs of links that may touch or never meet: from an SRDF, and listed."""
+    """Pairs of links that may touch or can never collide: from an SRDF, and listed."""
 
     srdf: FileReference | None = None
     allowed: tuple[tuple[str, str], ...] = ()
@@ -103,7 +103,7 @@ class RobotDocument(StrictModel, frozen=True, kw_only=True):
     urdf: UrdfSource
     flange: Text
     tool: Text | None = None
-    """The tool it is delivered with, by name."""
+    """Name of the tool delivered with the arm."""
     joints: Annotated[tuple[ArmJoint, ...], Meta(min_length=1)]
     device_joints: tuple[DeviceJoint, ...] = ()
     calibration: CalibrationFormat | None = None
@@ -126,7 +126,7 @@ class ToolCentrePoint(MountPose, frozen=True, kw_only=True):
 
 
 class PadSpec(StrictModel, frozen=True, kw_only=True):
-    """A finger's pad as a box: centre in the link's frame, full edge lengths."""
+    """A finger pad as a box: centre in the link's frame, full edge lengths."""
 
     link: Text
     xyz: Triple = (0.0, 0.0, 0.0)
@@ -213,9 +213,9 @@ class ClawSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="cl
 class ToolDocument(StrictModel, frozen=True, kw_only=True):
     """A `tool.yaml`: one tool.
 
-    `mount` is the pose of its root link in the flange (z out of the flange). Its links and joints get
-    `prefix` before their names on the arm, by default the tool's name and `_`; the names in this
-    file are those of its own URDF. What the links of the URDF lack to `mass_kg` is added to the root.
+    `mount` is the pose of its root link in the flange (z out of the flange). On the arm its links and joints
+    have the prefix `prefix`, by default the tool's name and `_`; the names in this
+    file are those of its own URDF. The root link gets the mass missing to `mass_kg`.
     """
 
     flexcell: Literal[1]

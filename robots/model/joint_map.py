@@ -1,4 +1,4 @@
-"""From the joints of a robot's URDF to the angles its own controller speaks of, and back."""
+"""Maps the joints of a robot's URDF to the angles of its controller, and back."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from robots.port import Array
 class JointMap:
     """device = `matrix` · model + `offset_rad`: rows of n factors, n offsets; linear, so rates map by the matrix.
 
-    An ABB controller's third axis is measured against the horizontal (joint 2 is added); a hobby
-    servo has its zero elsewhere. Most arms have the identity. `lower_rad` and `upper_rad` are the
-    ranges that the controller keeps for its own angles, besides those of the joints; infinite for none.
+    An ABB controller measures its third axis against the horizontal (joint 2 is added); a hobby
+    servo has a different zero. Most arms have the identity. `lower_rad` and `upper_rad` are the
+    controller's additional ranges of its own angles; infinite for none.
     """
 
     matrix: tuple[tuple[float, ...], ...]
@@ -35,7 +35,7 @@ class JointMap:
 
     @property
     def is_identity(self) -> bool:
-        """True when both sides are the same angles."""
+        """True when both angles are the same."""
         same = JointMap.identity(len(self.offset_rad))
         return (self.matrix, self.offset_rad) == (same.matrix, same.offset_rad)
 
@@ -52,11 +52,11 @@ class JointMap:
         return rates @ np.array(self.matrix).T
 
     def efforts_to_device(self, efforts: Array) -> Array:
-        """Return the torques at the controller's axes for joint torques of shape (..., n): the power is the same."""
+        """Return the torques at the controller's axes for joint torques of shape (..., n), at equal power."""
         return efforts @ np.linalg.inv(np.array(self.matrix))
 
     def words(self, joint: int, names: tuple[str, ...]) -> str:
-        """Return what the controller's angle of a joint is made of, `joint_3 + joint_2`."""
+        """Return the formula of the controller's angle of a joint, `joint_3 + joint_2`."""
         factors = [(names[other], factor) for other, factor in enumerate(self.matrix[joint]) if other != joint]
         sums = [_term(name, factor) for name, factor in factors if factor != 0.0]
         return " ".join((names[joint], *sums))

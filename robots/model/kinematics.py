@@ -1,4 +1,4 @@
-"""Kinematics of one arm at its place in the cell: tool pose, Jacobian, distance to singularity."""
+"""Kinematics of one arm at its base pose in the cell: tool pose, Jacobian, distance to singularity."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _AT_THE_LINK = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 class ArmKinematics:
-    """Where the tool centre point is and how it moves; poses are in the world frame.
+    """Pose and velocity of the tool centre point; poses are in the world frame.
 
-    One instance serves one thread at a time; `twin` makes another one for another thread.
+    One instance serves one thread at a time; `twin` creates one for another thread.
 
     Args:
         model: The arm; its tool's joints are locked at 0.
         base: Pose of the model's base link in the world.
-        tool: The tool centre point in the frame of the model's tool link; at its origin when not given.
+        tool: The tool centre point in the frame of the model's tool link; by default its origin.
     """
 
     def __init__(
@@ -54,11 +54,11 @@ class ArmKinematics:
         return ArmKinematics(self.model, base=self.base, tool=self._own_tool(), solver=self._solver)
 
     def with_tool(self, tool: RigidTransform) -> ArmKinematics:
-        """Return an instance of its own whose tool centre point is at `tool` in the frame of the tool link."""
+        """Return a separate instance with the tool centre point at `tool` in the frame of the tool link."""
         return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
 
     def mass_matrix(self, joints: Array) -> Array:
-        """Return the arm's mass matrix, (n, n), kg m², the inertia of its motors included."""
+        """Return the arm's mass matrix, (n, n), kg m², including motor inertia."""
         return pin.crba(self._solver, self._data, joints) + self._armature
 
     def tool_pose(self, joints: Array) -> RigidTransform:
@@ -68,7 +68,7 @@ class ArmKinematics:
 
     def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
         """Return the tool pose and the Jacobian, shape (6, n): tool velocity (m/s, then rad/s, in world axes)."""
-        # computeFrameJacobian would leave the frame placements of an earlier configuration.
+        # computeFrameJacobian would keep the frame placements of an earlier configuration.
         pin.computeJointJacobians(self._solver, self._data, joints)
         pose = self._tool_in_world()
         offset = self._offset
@@ -81,9 +81,9 @@ class ArmKinematics:
         return pose, self._turn @ jacobian
 
     def dexterity(self, joints: Array) -> float:
-        """Return how far the arm is from a singularity: the smallest singular value of the Jacobian.
+        """Return the distance to a singularity: the smallest singular value of the Jacobian.
 
-        Metres and radians are weighed alike; below about 0.03 a Panda turns some joint more than
+        Metres and radians are weighted equally; below about 0.03 a Panda turns some joint more than
         thirty times as fast as its tool moves.
         """
         _, jacobian = self.tool_pose_and_jacobian(joints)
@@ -98,7 +98,7 @@ class ArmKinematics:
             placement = pin.updateFramePlacement(self._solver, self._data, self._tool)
         else:
             placement = self._data.oMi[offset.joint] * offset.placement
-        # As base.then(…), whose rotation need not be worked out anew in every control period.
+        # Equals base.then(…), without recomputing its rotation in every control period.
         xyzw = np.array(pin.Quaternion(placement.rotation).coeffs())
         return RigidTransform(
             xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw)
@@ -106,7 +106,7 @@ class ArmKinematics:
 
 
 class _Offset:
-    """A tool centre point that is not at the origin of the tool link: the joint that carries it, and where."""
+    """A tool centre point away from the origin of the tool link: its parent joint and its pose."""
 
     def __init__(self, frame: Any, tool: RigidTransform) -> None:
         self.joint: int = frame.parentJoint

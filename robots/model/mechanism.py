@@ -1,4 +1,4 @@
-"""From the `mechanism` of a tool document to the tool model's, with the names that the tool has on the arm."""
+"""Converts the `mechanism` of a tool document to that of the tool model, with the tool's names on the arm."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def mechanism_of(
     name: str,
     prefix: str,
 ) -> Mechanism:
-    """Return what moves the tool `name`, its links and joints called with `prefix`."""
+    """Return the mechanism of the tool `name`, with `prefix` before its link and joint names."""
 
     def pad(described: PadSpec) -> PadBox:
         return PadBox(link=prefix + described.link, xyz=described.xyz, size_m=described.size_m)

@@ -1,4 +1,4 @@
-"""Results of slow mesh conversion kept on disk, checked when read, rebuilt when damaged, optional always."""
+"""An optional disk cache of slow mesh conversions: validated on read, rebuilt when damaged."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ def cache_dir() -> Path:
 
 
 def content_key(data: bytes, *, recipe: str) -> str:
-    """Return the name under which the result of `recipe` on `data` is kept."""
+    """Return the cache key of the result of `recipe` on `data`."""
     return hashlib.sha256(recipe.encode() + b"\0" + data).hexdigest()
 
 
 def read_cached(folder: Path, key: str) -> bytes | None:
-    """Return what was kept under `key`, None when there is nothing or it is damaged."""
+    """Return the entry under `key`, None if it is missing or damaged."""
     try:
         content = (folder / key).read_bytes()
     except OSError:
         return None
     digest, payload = content[:_DIGEST], content[_DIGEST:]
     if hashlib.sha256(payload).digest() != digest:
-        _log.warning("the cached file %s is damaged and is made again", folder / key)
+        _log.warning("the cached file %s is damaged and is rebuilt", folder / key)
         return None
     return payload
 
 
 def write_cached(folder: Path, key: str, payload: bytes) -> None:
-    """Keep `payload` under `key`, whole or not at all; a folder that cannot be written is left alone."""
+    """Store `payload` under `key` atomically; an unwritable folder is ignored."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=folder)
@@ -46,7 +46,7 @@ def write_cached(folder: Path, key: str, payload: bytes) -> None:
                 file.write(hashlib.sha256(payload).digest() + payload)
             os.replace(temporary, folder / key)
         except BaseException:
-            # Nothing half-written may stay behind, whatever interrupts.
+            # No partial file may remain after any interruption.
             Path(temporary).unlink(missing_ok=True)
             raise
     except OSError as error:

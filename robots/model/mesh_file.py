@@ -1,4 +1,4 @@
-"""Checks the mesh files of a model before any library reads them: where they lie, their size, their triangles."""
+"""Checks the mesh files of a model before any library reads them: type, size, number of triangles."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from engine.errors import CellError
 from robots.model.untrusted_xml import require_no_doctype
 
 MAX_BYTES = 64 * 2**20
-"""Bytes of one mesh file."""
+"""Maximum bytes of one mesh file."""
 MAX_TRIANGLES = 1_000_000
-"""Triangles of one mesh file."""
+"""Maximum triangles of one mesh file."""
 _STL_HEAD, _STL_TRIANGLE = 84, 50
 _SUFFIXES = (".stl", ".dae", ".obj")
 
@@ -20,11 +20,11 @@ def verify_mesh_file(path: Path) -> None:
     """Check one file.
 
     Raises:
-        CellError: it cannot be read, is no STL, Collada or OBJ file, or is larger than the limits.
+        CellError: it cannot be read, is not an STL, Collada or OBJ file, or exceeds the limits.
     """
     try:
         if path.suffix.lower() not in _SUFFIXES:
-            raise ValueError(f"it is none of {', '.join(_SUFFIXES)}")
+            raise ValueError(f"its file type is not one of {', '.join(_SUFFIXES)}")
         size = path.stat().st_size
         if size > MAX_BYTES:
             raise ValueError(f"it has {size} bytes, more than {MAX_BYTES}")
@@ -32,21 +32,21 @@ def verify_mesh_file(path: Path) -> None:
     except (OSError, ValueError) as error:
         reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
         raise CellError(
-            f"the mesh cannot be used: {reason}", where=str(path), hint="correct the model folder, or thin the mesh out"
+            f"the mesh cannot be used: {reason}", where=str(path), hint="correct the model folder, or simplify the mesh"
         ) from error
 
 
 def require_triangles(count: int, path: Path) -> None:
-    """Check how many triangles were found in a file.
+    """Check the number of triangles in a file.
 
     Raises:
-        CellError: they are too many.
+        CellError: there are too many.
     """
     if count > MAX_TRIANGLES:
         raise CellError(
             f"the mesh cannot be used: it has {count} triangles, more than {MAX_TRIANGLES}",
             where=str(path),
-            hint="thin the mesh out",
+            hint="simplify the mesh",
         )
 
 
@@ -64,23 +64,23 @@ def _verify_stl(data: bytes) -> None:
     if data[:5].lower() == b"solid" and b"facet" in data[:1000]:
         triangles = data.count(b"endfacet")
     elif len(data) < _STL_HEAD:
-        raise ValueError("it is no STL file")
+        raise ValueError("it is not an STL file")
     else:
         triangles = struct.unpack_from("<I", data, _STL_HEAD - 4)[0]
         if len(data) != _STL_HEAD + _STL_TRIANGLE * triangles:
-            raise ValueError(f"it says that it has {triangles} triangles, and has {len(data)} bytes")
+            raise ValueError(f"its header states {triangles} triangles, which does not fit its {len(data)} bytes")
     if triangles > MAX_TRIANGLES:
         raise ValueError(f"it has {triangles} triangles, more than {MAX_TRIANGLES}")
 
 
 def _verify_obj(data: bytes) -> None:
-    """A polygon may become many triangles: its corners are counted."""
+    """Check an OBJ file; a polygon may become many triangles, so its corners are counted."""
     corners = 0
     for line in data.splitlines():
         words = line.split()
         if words[:1] == [b"f"]:
             corners += len(words) - 1
         elif words[:1] == [b"mtllib"] and (b"/" in line or b"\\" in line or b".." in line):
-            raise ValueError(f"it names materials outside its folder: {line.decode(errors='replace')[:80]}")
+            raise ValueError(f"it refers to materials outside its folder: {line.decode(errors='replace')[:80]}")
         if corners > 3 * MAX_TRIANGLES:
             raise ValueError(f"it has more than {MAX_TRIANGLES} triangles")

@@ -1,4 +1,4 @@
-"""Model folders: `robot.yaml` or `tool.yaml` read and checked, their URDFs found and cut to size."""
+"""Model folders: reads and checks `robot.yaml` or `tool.yaml`, locates the URDF and removes unused links."""
 
 from __future__ import annotations
 
@@ -50,36 +50,36 @@ class ModelFolder(Generic[Document]):
     source: DocumentSource = field(repr=False)
 
     def locate(self, file: FileReference) -> Path:
-        """Return a file that the document names.
+        """Return the path of a file named in the document.
 
         Raises:
-            CellError: its package is not installed, or it lies outside the folder or the package.
+            CellError: its package is not installed, or it is outside the folder or the package.
         """
         home = self.folder if file.package is None else installed_share_dir(package=file.package, marker=file.file)
         path = home / file.file
         if not self._may_use(path, home):
             raise CellError(
-                f"{file.file:.200} lies outside the model folder", where=str(self.folder), hint="move it in there"
+                f"{file.file:.200} is outside the model folder", where=str(self.folder), hint="move it into the folder"
             )
         return path
 
     @staticmethod
     def _may_use(path: Path, home: Path) -> bool:
-        # The models that come with the program share a licence beside their folders.
+        # Built-in models share a licence next to their folders.
         return any(path.resolve().is_relative_to(place) for place in (home.resolve(), _OWN))
 
     def package_dir(self, file: FileReference) -> Path:
-        """Return the folder below which the meshes of a description lie."""
+        """Return the folder that contains the meshes of a description."""
         if file.package is None:
             return self.folder.parent
         return installed_share_dir(package=file.package, marker=file.file)
 
     def urdf(self) -> Element:
-        """Return a fresh tree of the document's URDF: cut, with the wanted collision shapes.
+        """Return a new tree of the document's URDF, without removed links, with the selected collision shapes.
 
         Raises:
             CellError: it cannot be read or a mesh is missing.
-            DocumentError: it has no such root or link to leave out.
+            DocumentError: the root or a link to remove does not exist.
         """
         wanted: UrdfSource = self.document.urdf
         directory = self.package_dir(wanted)
@@ -96,7 +96,7 @@ class ModelFolder(Generic[Document]):
         return robot
 
     def allowed_collisions(self) -> tuple[tuple[str, str], ...]:
-        """Return the pairs of the document and of its SRDF, the latter first."""
+        """Return the pairs of the SRDF, then those of the document."""
         collisions: CollisionPairs = self.document.collisions
         listed = disabled_collisions(self.locate(collisions.srdf)) if collisions.srdf is not None else ()
         return (*listed, *collisions.allowed)
@@ -109,18 +109,18 @@ class ModelFolder(Generic[Document]):
         return name
 
     def require_joints(self, robot: Element, named: list[tuple[DataPath, str]]) -> None:
-        """Raise DocumentError at the first name that is no joint of `robot`."""
+        """Raise DocumentError at the first name that is not a joint of `robot`."""
         for path, name in named:
             self._known(name, joints_of(robot), path, "joint")
 
     def require_links(self, robot: Element, named: list[tuple[DataPath, str]]) -> None:
-        """Raise DocumentError at the first name that is no link of `robot`."""
+        """Raise DocumentError at the first name that is not a link of `robot`."""
         for path, name in named:
             self._known(name, links_of(robot), path, "link")
 
 
 def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
-    """Read the `robot.yaml` of a folder; raises DocumentError with its position when it is not valid."""
+    """Read the `robot.yaml` of a folder; raises DocumentError with its position if it is invalid."""
     source = _read(folder, ROBOT_FILE)
     arm = ModelFolder(folder=folder, document=decode_document(source, RobotDocument), source=source)
     names = [joint.name for joint in arm.document.joints]
@@ -137,7 +137,7 @@ def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
 
 
 def load_tool(folder: Path) -> ModelFolder[ToolDocument]:
-    """Read the `tool.yaml` of a folder; raises DocumentError with its position when it is not valid."""
+    """Read the `tool.yaml` of a folder; raises DocumentError with its position if it is invalid."""
     source = _read(folder, TOOL_FILE)
     return ModelFolder(folder=folder, document=decode_document(source, ToolDocument), source=source)
 
@@ -146,7 +146,7 @@ def _read(folder: Path, name: str) -> DocumentSource:
     if not (folder / name).is_file():
         other = TOOL_FILE if name == ROBOT_FILE else ROBOT_FILE
         hint = (
-            f"it has a {other}: it belongs elsewhere"
+            f"the folder is another kind of model: it has a {other}"
             if (folder / other).is_file()
             else "see docs/how-to/add-a-robot.md"
         )
@@ -157,7 +157,7 @@ def _read(folder: Path, name: str) -> DocumentSource:
 def names_in(
     mechanism: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec,
 ) -> tuple[list[str], list[str]]:
-    """Return the joints and the links that a mechanism speaks of."""
+    """Return the joints and links named in a mechanism."""
     match mechanism:
         case ParallelGripperSpec():
             return list(mechanism.finger_joints), [

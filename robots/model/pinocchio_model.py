@@ -1,4 +1,4 @@
-"""Pinocchio's models of a robot: the whole one, and the arm alone with the tool's joints locked."""
+"""Pinocchio models of a robot: the complete one, and the arm with the tool's joints locked."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from engine.errors import CellError
 from robots.model.robot_model import RobotModel
 
-# pinocchio has no stubs, and its wheel puts it where type checkers do not look: who uses it hands
-# out numpy arrays.
+# pinocchio has no type stubs, and its wheel installs it where type checkers do not look: its users return
+# numpy arrays.
 pin: Any = import_module("pinocchio")
 
 
 def whole_model(model: RobotModel) -> Any:
-    """Return arm and tool with all their joints.
+    """Return the model of arm and tool with all joints.
 
     Raises:
         CellError: the URDF lacks a joint or the tool link, or has the joints in another order.

@@ -1,4 +1,4 @@
-"""Which robot and tool models there are, and the model of an arm with a tool: built-in folders and the user's own."""
+"""The registry of robot and tool models: built-in folders and the user's own."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TOOLS_DIR = Path(__file__).parents[1] / "tools"
 _MOST_FILES = 10_000
 
 OWN_TOOL = "own"
-"""Stands for the tool that an arm is delivered with, as its `robot.yaml` says; none if it says nothing."""
+"""Selects the tool delivered with the arm, from its `robot.yaml`; none if it names none."""
 
 
 def robot_names() -> tuple[str, ...]:
@@ -41,18 +41,18 @@ def model_by_name(name: str) -> RobotModel:
 def robot_model(
     name: str, *, gripper: str | None = OWN_TOOL, calibration: Path | None = None, coupled_joints: bool = False
 ) -> RobotModel:
-    """Return the model of an arm with a tool at its flange; made once and kept.
+    """Return the model of an arm with a tool at its flange; cached.
 
     Args:
         name: A built-in arm, or the path of a folder with a `robot.yaml`.
         gripper: A built-in tool, the path of a folder with a `tool.yaml`, None for the bare flange,
             or `OWN_TOOL`.
-        calibration: Factory calibration file of this very arm.
-        coupled_joints: The controller counts coupled axes, as an ABB controller does (see `JointMap`).
+        calibration: Factory calibration file of this individual arm.
+        coupled_joints: The controller uses coupled axes, as an ABB controller does (see `JointMap`).
 
     Raises:
-        CellError: no such model (names the near ones), its description is not installed, or it has no such option.
-        DocumentError: a document of a folder is wrong; `where` is the position.
+        CellError: unknown model (suggests similar names), its description is not installed, or it has no such option.
+        DocumentError: a document of a folder is invalid; `where` is the position.
     """
     arm = _folder(name, ARMS_DIR, ROBOT_FILE, "robot model")
     if gripper == OWN_TOOL:
@@ -63,15 +63,15 @@ def robot_model(
 
 
 def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotModel:
-    """Return the model of a robot as a cell document writes it, without a tool where it names none.
+    """Return the model of a robot in a cell document, without a tool if it names none.
 
     Args:
-        entry: What the document says of the robot.
-        resolve: Opens the document's paths (`Cell.resolve`).
+        entry: The robot's entry in the document.
+        resolve: Resolves the document's paths (`Cell.resolve`).
 
     Raises:
-        CellError: no such model, its description is not installed, or it has no such option.
-        DocumentError: a document of a folder, or the calibration file, is wrong.
+        CellError: unknown model, its description is not installed, or it has no such option.
+        DocumentError: a document of a folder, or the calibration file, is invalid.
     """
     return robot_model(
         model_location(entry.model, resolve),
@@ -82,11 +82,11 @@ def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotMod
 
 
 def model_location(written: str, resolve: Callable[[str], Path]) -> str:
-    """Return the name of a built-in model as it is, and the path of a folder as one that can be opened."""
+    """Return the name of a built-in model unchanged, and the path of a folder resolved."""
     return str(resolve(written)) if _is_folder(written) else written
 
 
-# `changed` makes an edited folder another model: who works on one need not start anew.
+# `changed` makes an edited folder a new model, so that editing needs no restart.
 @lru_cache(maxsize=64)
 def _composed(
     arm: Path, tool: Path | None, calibration: Path | None, coupled_joints: bool, changed: tuple[int, ...]
@@ -118,7 +118,7 @@ def _folder(name: str, directory: Path, file: str, what: str) -> Path:
         return Path(name)
     known = _names(directory, file)
     if name not in known:
-        raise CellError(f"no {what} is called {name}", where=name, hint=did_you_mean(name, known))
+        raise CellError(f"there is no {what} {name}", where=name, hint=did_you_mean(name, known))
     return directory / name
 
 

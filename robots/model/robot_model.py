@@ -1,4 +1,4 @@
-"""What a robot arm with its tool is, as data: one URDF text, joints, limits, tool, home, licence."""
+"""The model of a robot arm with its tool, as data: one URDF text, joints, limits, tool, home, licence."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ class JointLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotModel:
-    """One arm with the tool at its flange, as its folder, its tool's folder and its calibration make it.
+    """One arm with the tool at its flange, composed of its folder, its tool's folder and its calibration.
 
-    `urdf_text` is the one description that kinematics, dynamics, collision, simulation, view and bus
-    use: visual and collision shapes, the tool joined to `flange_link` by a fixed joint. Its mesh
+    `urdf_text` is the only description used by kinematics, dynamics, collision, simulation, view and
+    bus: visual and collision shapes, the tool joined to `flange_link` by a fixed joint. Its mesh
     `filename`s are `package://<path>` below one of `package_dirs` (see `description.resolve_uri`).
     The root of the URDF is `base_link`. `tool_link` is the link whose origin is the tool centre point
     (the flange without a tool). `allowed_collisions` are pairs of links that never collide or may
-    touch. `home_rad` is the resting configuration. `joint_map` leads to the angles that the robot's
-    own controller speaks of.
+    touch. `home_rad` is the resting configuration. `joint_map` maps to the angles of the robot's
+    controller.
     """
 
     name: str
@@ -51,7 +51,7 @@ class RobotModel:
     allowed_collisions: tuple[tuple[str, str], ...]
     joint_map: JointMap
     calibration: str
-    """Hash of the factory calibration that is applied, empty for the nominal arm."""
+    """Hash of the applied factory calibration, empty for the nominal arm."""
     licence: str
     licence_file: Path
     digital_outputs: int = 0
@@ -69,5 +69,5 @@ class RobotModel:
         return mechanism if isinstance(mechanism, GripperModel) else None
 
     def licence_text(self) -> str:
-        """Return the full text of the licence that the arm's description came with."""
+        """Return the full licence text of the arm's description."""
         return self.licence_file.read_text(encoding="utf-8")

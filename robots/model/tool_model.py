@@ -1,4 +1,4 @@
-"""What a tool at the flange is, as data: joints, links, tool centre point, and how it grips."""
+"""The model of a tool at the flange, as data: joints, links, tool centre point and mechanism."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class GripperModel:
 
 @dataclass(frozen=True, kw_only=True)
 class LinkageModel:
-    """A two-finger gripper whose fingers hang on a linkage turned by one motor (kind `linkage`).
+    """A two-finger gripper whose fingers are driven through a linkage by one motor (kind `linkage`).
 
-    `driver` turns from `open_rad` (opening `max_width_m`) to `closed_rad` (as narrow as it gets); the joints
+    `driver` turns from `open_rad` (opening `max_width_m`) to `closed_rad` (minimum opening); the joints
     in `followers` turn by their factor of it.
     """
 
@@ -59,10 +59,10 @@ class LinkageModel:
 
 @dataclass(frozen=True, kw_only=True)
 class MagnetModel:
-    """A switchable magnet (kind `magnet`): what touches its face is held with up to `max_force_n`.
+    """A switchable magnet (kind `magnet`): it holds objects at its face with up to `max_force_n`.
 
     `face` is the flat pole face, its box's z axis pointing out of it; ferrous parts within `reach_m` of it are
-    pulled in. The field takes `switch_s` to come up or go down.
+    attracted. The field takes `switch_s` to rise or fall.
     """
 
     face: PadBox
@@ -86,8 +86,8 @@ class SynergyJoint:
 class SynergyModel:
     """A soft hand: one motor pulls one tendon that runs over all flexion joints (kind `synergy`).
 
-    Closing by a share s winds up s * `travel_m` of tendon; a finger that is blocked stops and the
-    others go on. Passive joints (abduction) have springs only.
+    Closing by a share s winds up s * `travel_m` of tendon; a blocked finger stops while the
+    others continue. Passive joints (abduction) have springs only.
     """
 
     palm_link: str
@@ -127,9 +127,9 @@ Mechanism = GripperModel | LinkageModel | MagnetModel | SynergyModel | ClawModel
 
 @dataclass(frozen=True, kw_only=True)
 class ToolModel:
-    """One tool as it is on the arm: names carry the prefix they have in the composed URDF.
+    """One tool on its arm: names have the prefix of the composed URDF.
 
-    `links` and `joints` are all of its links and moving joints; `root_link` is bolted to the flange;
+    `links` and `joints` are all of its links and moving joints; `root_link` is fixed to the flange;
     `mass_kg` is the sum over its links. The tool centre point is the arm's `RobotModel.tool_link`.
     """
 

@@ -1,4 +1,4 @@
-"""A rigid transform in numbers: position and unit quaternion x y z w, composed, inverted and compared."""
+"""A rigid transform: position and unit quaternion x y z w, with composition, inverse and comparison."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RigidTransform:
         """Return the transform; the quaternion is normalised.
 
         Raises:
-            ValueError: a number is not finite or the quaternion has no direction.
+            ValueError: a value is not finite or the quaternion is zero.
         """
         position, quaternion = np.array(xyz, dtype=np.float64), np.array(xyzw, dtype=np.float64)
         length = math.hypot(*quaternion.tolist())
@@ -36,11 +36,11 @@ class RigidTransform:
 
     @classmethod
     def from_pose(cls, pose: Pose) -> RigidTransform:
-        """Return the numbers of a pose, whatever its frame; raises ValueError as `of` does."""
+        """Return the transform of a pose, ignoring its frame; raises ValueError as `of` does."""
         return cls.of(pose.xyz, pose.xyzw)
 
     def to_pose(self, frame: str) -> Pose:
-        """Return the message that says that this is a pose in `frame`."""
+        """Return the transform as a pose message in `frame`."""
         x, y, z = self.xyz.tolist()
         qx, qy, qz, qw = self.xyzw.tolist()
         return Pose(xyz=(x, y, z), xyzw=(qx, qy, qz, qw), frame=frame)
@@ -58,11 +58,11 @@ class RigidTransform:
         )
 
     def then(self, inner: RigidTransform) -> RigidTransform:
-        """Return `self * inner`: what `inner` describes in this frame, described in this frame's parent."""
+        """Return `self * inner`: `inner` expressed in the parent of this frame."""
         return RigidTransform(xyz=self.xyz + self.rotation @ inner.xyz, xyzw=product(self.xyzw, inner.xyzw))
 
     def inverse(self) -> RigidTransform:
-        """Return the transform that undoes this one."""
+        """Return the inverse transform."""
         return RigidTransform(xyz=-(self.rotation.T @ self.xyz), xyzw=conjugate(self.xyzw))
 
     def distance_m(self, other: RigidTransform) -> float:
@@ -70,12 +70,12 @@ class RigidTransform:
         return float(np.linalg.norm(other.xyz - self.xyz))
 
     def angle_rad(self, other: RigidTransform) -> float:
-        """Smallest angle that turns one orientation into the other, 0 to pi."""
+        """Smallest angle between the two orientations, 0 to pi."""
         return float(np.linalg.norm(rotation_vector(product(conjugate(self.xyzw), other.xyzw))))
 
 
 def product(left: Array, right: Array) -> Array:
-    """Return the quaternion that turns by `right` first, then by `left`."""
+    """Return the quaternion of the rotation by `right` first, then by `left`."""
     lx, ly, lz, lw = left.tolist()
     rx, ry, rz, rw = right.tolist()
     return np.array(
@@ -89,14 +89,14 @@ def product(left: Array, right: Array) -> Array:
 
 
 def cross(left: Array, right: Array) -> Array:
-    """Return the cross product of two vectors of shape (3,), which numpy takes long for."""
+    """Return the cross product of two vectors of shape (3,), faster than numpy's."""
     ax, ay, az = left.tolist()
     bx, by, bz = right.tolist()
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def conjugate(xyzw: Array) -> Array:
-    """Return the quaternion of the opposite turn."""
+    """Return the quaternion of the inverse rotation."""
     return xyzw * np.array([-1.0, -1.0, -1.0, 1.0])
 
 
@@ -110,7 +110,7 @@ def rotation_vector(xyzw: Array) -> Array:
 
 
 def quaternion_of(vector: Array) -> Array:
-    """Return the unit quaternion that turns by a rotation vector (axis times angle)."""
+    """Return the unit quaternion of a rotation vector (axis times angle)."""
     angle = float(np.linalg.norm(vector))
     if angle < _SMALL:
         raw = np.append(vector / 2.0, 1.0)

@@ -1,4 +1,4 @@
-"""Reads XML that anybody may have written: no document types, no entities, bounded in size, depth and number."""
+"""Reads untrusted XML: no document types, no entities, bounded size, depth and number of elements."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ _DOCTYPE = b"<!DOCTYPE"
 
 
 class _Bounded(ET.TreeBuilder):
-    """Builds a tree as long as it stays within the limits; what raises here ends the parsing."""
+    """Builds a tree within the limits; an exception here ends the parsing."""
 
     def __init__(self) -> None:
         super().__init__()
         self._depth = self._elements = 0
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
-        """Refuse what could define entities, before any is defined."""
-        raise ValueError("it has a document type (<!DOCTYPE …>), which may define entities without end")
+        """Reject a document type before it defines any entity."""
+        raise ValueError("it has a document type (<!DOCTYPE …>), which may define unbounded entities")
 
     def start(self, tag: str, attrs: dict[str, str], /) -> ET.Element:
         """Begin an element."""
         self._depth += 1
         self._elements += 1
         if self._depth > MAX_DEPTH:
-            raise ValueError(f"its elements lie more than {MAX_DEPTH} deep")
+            raise ValueError(f"its elements are nested more than {MAX_DEPTH} levels deep")
         if self._elements > MAX_ELEMENTS:
             raise ValueError(f"it has more than {MAX_ELEMENTS} elements")
         return super().start(tag, attrs)
@@ -60,7 +60,7 @@ def parse_xml(text: str, *, what: str, where: Path) -> ET.Element:
     """Return the root element of a document.
 
     Raises:
-        CellError: it is not XML, or more than the limits allow.
+        CellError: it is not XML, or exceeds the limits.
     """
     try:
         return ET.fromstring(text, ET.XMLParser(target=_Bounded()))
@@ -69,10 +69,10 @@ def parse_xml(text: str, *, what: str, where: Path) -> ET.Element:
 
 
 def require_no_doctype(data: bytes) -> None:
-    """Refuse XML for a reader that is not ours where it could define entities.
+    """Reject XML for third-party readers if it could define entities.
 
     Raises:
-        ValueError: it has a document type, or is in an encoding in which it could hide one.
+        ValueError: it has a document type, or an encoding that could hide one.
     """
     if b"\0" in data or data[:2] in (b"\xff\xfe", b"\xfe\xff") or _DOCTYPE in data:
         raise ValueError("it has a document type (<!DOCTYPE …>), or is not in UTF-8")

@@ -1,4 +1,4 @@
-"""URDF text as a tree: read, cut, renamed, joined; mesh paths made independent of where the file lies."""
+"""URDF as a tree: reads, prunes, renames and joins it; makes mesh paths independent of the file's location."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def read_urdf(path: Path, *, package_dir: Path, within: Path | None = None) -> E
 
     Args:
         path: The file.
-        package_dir: Where packages lie.
-        within: The folder that meshes may not leave, by links of the file system neither; `package_dir` by default.
+        package_dir: Folder of the packages.
+        within: Folder that must contain the meshes, symbolic links resolved; `package_dir` by default.
 
     Raises:
-        CellError: it cannot be read, is not XML or no URDF, or a mesh is missing, elsewhere, or too large.
+        CellError: it cannot be read, is not XML or not a URDF, or a mesh is missing, outside, or too large.
     """
     text = _with_prefixes_declared(read_text(path, what="URDF"), where=path)
     robot = parse_xml(text, what="URDF", where=path)
@@ -48,13 +48,13 @@ def read_urdf(path: Path, *, package_dir: Path, within: Path | None = None) -> E
 def _mesh_uri(name: str, *, urdf: Path, package_dir: Path, within: Path) -> str:
     file = resolve_uri(name, package_dirs=(package_dir,), relative_to=urdf.parent).resolve()
     if not file.is_relative_to(within.resolve()):
-        raise CellError(f"the mesh {file} lies outside {within}", where=str(urdf), hint="move it in there")
+        raise CellError(f"the mesh {file} is outside {within}", where=str(urdf), hint="move it into the folder")
     verify_mesh_file(file)
     return PACKAGE_SCHEME + file.relative_to(package_dir.resolve()).as_posix()
 
 
 def _write_colours_out(robot: Element) -> None:
-    """Give every visual the colour that its material has elsewhere in the file."""
+    """Write into every visual the colour that its material has elsewhere in the file."""
     colours = {
         m.get("name", ""): c for m in robot.iter("material") if m.get("name") and (c := m.find("color")) is not None
     }
@@ -64,7 +64,7 @@ def _write_colours_out(robot: Element) -> None:
 
 
 def _with_prefixes_declared(text: str, *, where: Path) -> str:
-    """Declare name-space prefixes that are used and not declared; xacro leaves such files behind."""
+    """Declare undeclared namespace prefixes; xacro produces such files."""
     used = set(_PREFIX_USED.findall(text))
     if len(used) > _MAX_PREFIXES:
         raise CellError(
@@ -93,13 +93,13 @@ def ends_of(joint: Element) -> tuple[str, str]:
 
 
 def root_of(robot: Element) -> str:
-    """Return the link that is no joint's child."""
+    """Return the link without a parent joint."""
     children = {ends_of(joint)[1] for joint in robot.findall("joint")}
     return next(name for name in links_of(robot) if name not in children)
 
 
 def descendants_of(robot: Element, link: str) -> set[str]:
-    """Return `link` and all links that hang on it."""
+    """Return `link` and all its descendants."""
     found, edges = {link}, [ends_of(joint) for joint in robot.findall("joint")]
     while True:
         more = {child for parent, child in edges if parent in found} - found
@@ -109,7 +109,7 @@ def descendants_of(robot: Element, link: str) -> set[str]:
 
 
 def keep_links(robot: Element, names: set[str]) -> None:
-    """Remove all other links, and the joints that touch one of them."""
+    """Remove all other links, and the joints attached to them."""
     for link in robot.findall("link"):
         if link.attrib["name"] not in names:
             robot.remove(link)
@@ -119,7 +119,7 @@ def keep_links(robot: Element, names: set[str]) -> None:
 
 
 def add_prefix(robot: Element, prefix: str) -> None:
-    """Put `prefix` before the names of all links, joints and named materials, and where they are referred to."""
+    """Add `prefix` to the names of all links, joints and named materials, and to references to them."""
     for element in (*robot.findall("link"), *robot.findall("joint"), *robot.iter("material")):
         if element.get("name"):
             element.attrib["name"] = prefix + element.attrib["name"]
@@ -131,7 +131,7 @@ def add_prefix(robot: Element, prefix: str) -> None:
 
 
 def take_collisions(robot: Element, other: Element) -> None:
-    """Replace the collision shapes of every link that `other` has as well by those of `other`."""
+    """Replace the collision shapes of every link that is also in `other` by those of `other`."""
     theirs = links_of(other)
     for name, link in links_of(robot).items():
         if name in theirs:
@@ -143,7 +143,7 @@ def take_collisions(robot: Element, other: Element) -> None:
 def add_fixed_joint(
     robot: Element, name: str, *, parent: str, child: str, xyz: tuple[float, ...], rpy: tuple[float, ...]
 ) -> None:
-    """Bolt link `child` to link `parent`."""
+    """Join link `child` to link `parent` by a fixed joint."""
     joint = ET.SubElement(robot, "joint", name=name, type="fixed")
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
@@ -171,14 +171,14 @@ def scale_mass(robot: Element, mass_kg: float) -> None:
     """Scale the root link's mass and inertia so that all links together weigh `mass_kg`.
 
     Raises:
-        CellError: the other links weigh as much already, or the root has no mass.
+        CellError: the other links alone reach this mass, or the root has no mass.
     """
     root = links_of(robot)[root_of(robot)]
     mass, inertia = root.find("inertial/mass"), root.find("inertial/inertia")
     missing = mass_kg - mass_of(robot)
     if mass is None or inertia is None or float(mass.attrib["value"]) + missing <= 0.0:
         raise CellError(
-            f"{root.attrib['name']} cannot be given the mass that makes {mass_kg:g} kg in all",
+            f"the mass of {root.attrib['name']} cannot be scaled to a total of {mass_kg:g} kg",
             hint="correct `mass_kg` or the inertial of the root link",
         )
     share = 1.0 + missing / float(mass.attrib["value"])

@@ -1,4 +1,4 @@
-"""What a URDF must be so that everything behind it (kinematics, collision, simulation, view) may rely on it."""
+"""Validates a URDF for all its users (kinematics, collision, simulation, view)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from xml.etree.ElementTree import Element
 from engine.errors import CellError
 
 MAX_LINKS = 512
-"""Links of one model, and joints."""
+"""Maximum links, and joints, of one model."""
 MAX_SHAPES = 4096
-"""Visual and collision shapes of one model."""
+"""Maximum visual and collision shapes of one model."""
 _MAX_NUMBER = 1e9
 _JOINT_TYPES = ("fixed", "revolute", "continuous", "prismatic")
 _NUMBERS: Mapping[str, Mapping[str, int]] = {
@@ -42,10 +42,10 @@ _REQUIRED: Mapping[str, tuple[str, ...]] = {
 
 
 def verify_urdf(robot: Element, *, where: Path) -> None:
-    """Check the links and joints of a `robot` element: named once, one tree, plain numbers.
+    """Check the links and joints of a `robot` element: unique names, one tree, plain numbers.
 
     Raises:
-        CellError: with the first thing that is wrong.
+        CellError: states the first error.
     """
     try:
         links = _names(robot, "link")
@@ -79,26 +79,26 @@ def _verify_tree(robot: Element, links: set[str]) -> None:
     for joint in robot.findall("joint"):
         name = joint.attrib["name"]
         if joint.get("type") not in _JOINT_TYPES:
-            raise ValueError(f"the joint {name:.80} is none of {', '.join(_JOINT_TYPES)}")
+            raise ValueError(f"the type of the joint {name:.80} is not one of {', '.join(_JOINT_TYPES)}")
         ends = [end.get("link", "") for tag in ("parent", "child") for end in joint.findall(tag)]
         if len(ends) != 2 or not links.issuperset(ends):
-            raise ValueError(f"the joint {name:.80} does not lead from one link to one other")
+            raise ValueError(f"the joint {name:.80} does not connect one parent link to another child link")
         if ends[1] in parents:
-            raise ValueError(f"the link {ends[1]:.80} hangs on two joints")
+            raise ValueError(f"the link {ends[1]:.80} has two parent joints")
         parents[ends[1]] = ends[0]
     roots = [link for link in links if link not in parents]
     if len(roots) != 1:
-        raise ValueError(f"its links are not one tree: {len(roots)} of them hang on no other")
+        raise ValueError(f"its links do not form one tree: {len(roots)} of them have no parent")
     for link in links:
-        _verify_way_up(link, parents)
+        _verify_ancestors(link, parents)
 
 
-def _verify_way_up(link: str, parents: Mapping[str, str]) -> None:
+def _verify_ancestors(link: str, parents: Mapping[str, str]) -> None:
     at, steps = link, 0
     while at in parents:
         at, steps = parents[at], steps + 1
         if steps > len(parents):
-            raise ValueError(f"the link {link:.80} hangs on itself")
+            raise ValueError(f"the link {link:.80} is its own ancestor")
 
 
 def _verify_attributes(element: Element) -> None:

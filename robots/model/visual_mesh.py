@@ -1,4 +1,4 @@
-"""The visual meshes of a robot's links: mesh files split by colour and thinned out, primitives made into meshes."""
+"""The visual meshes of a robot's links: mesh files split by colour and simplified, primitives converted to meshes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from robots.model.robot_model import RobotModel
 
 Rgba = tuple[float, float, float, float]
 
-# A tenth of the faces draws a Panda in 14 thousand triangles and looks the same.
+# With a tenth of the faces a Panda has 14 thousand triangles and looks the same.
 _KEEP = 0.1
 _LEAST_FACES = 150
 _RECIPE = f"visual mesh 1, keep {_KEEP}, least {_LEAST_FACES}"
@@ -73,7 +73,7 @@ def _described(
     if path not in known:
         known[path] = _meshes(path, folder)
     scale = tuple(float(v) for v in mesh.attrib.get("scale", "1 1 1").split())
-    # Collada files bring their colours; what the URDF says is for formats that have none.
+    # Collada files have their own colours; the colours of the URDF are for formats without them.
     fixed = colour if path.suffix.lower() != ".dae" else None
     return tuple(_adjusted(each, scale, fixed) for each in known[path])
 
@@ -124,13 +124,13 @@ def _meshes(path: Path, folder: Path) -> tuple[VisualMesh, ...]:
 
 
 def _converted(path: Path, data: bytes) -> tuple[VisualMesh, ...]:
-    # Slow to import and needed only when the cache has nothing; its types are incomplete.
+    # Slow to import and needed only on a cache miss; its types are incomplete.
     trimesh: Any = import_module("trimesh")
     try:
-        # Out of memory, so that no file can name others to be read with it.
+        # Read from memory, so that a file cannot refer to other files.
         scene: Any = trimesh.load_scene(BytesIO(data), file_type=path.suffix[1:].lower())
     except Exception as error:
-        # The readers behind trimesh have error classes of their own for each format.
+        # The readers behind trimesh have their own error classes for each format.
         raise CellError(f"the mesh cannot be read: {error}", where=str(path)) from error
     require_triangles(sum(len(getattr(each, "faces", ())) for each in scene.geometry.values()), path)
     parts: dict[Rgba, list[Any]] = {}

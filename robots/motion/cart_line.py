@@ -1,4 +1,4 @@
-"""A straight line of the tool, minimum jerk and SLERP: planned whole, or refused with the reason."""
+"""Plans a straight tool line with minimum jerk and SLERP completely, or rejects it with the reason."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FARTHEST_M = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class _Line:
-    """The wanted path: `distance_m` straight on and `angle_rad` about one axis."""
+    """The wanted path: `distance_m` along a line and `angle_rad` about one axis."""
 
     start: RigidTransform
     end: RigidTransform
@@ -44,25 +44,25 @@ class _Line:
         return self.start.angle_rad(self.end)
 
     def at(self, share: float) -> RigidTransform:
-        """Return the tool pose after `share` of the way."""
+        """Return the tool pose after `share` of the path."""
         return RigidTransform(
             xyz=self.start.xyz + share * (self.end.xyz - self.start.xyz),
             xyzw=slerp(self.start.xyzw, self.end.xyzw, share),
         )
 
     def slope(self) -> Array:
-        """Return the tool's velocity for one whole way per second, world axes, shape (6,)."""
+        """Return the tool's velocity for the whole path in one second, world axes, shape (6,)."""
         turn_here = rotation_vector(product(conjugate(self.start.xyzw), self.end.xyzw))
         return np.concatenate((self.end.xyz - self.start.xyz, self.start.rotation @ turn_here))
 
 
 def plan_line(kinematics: ArmKinematics, start: Array, end: RigidTransform, *, duration_s: float) -> JointTrajectory:
-    """Return the joints over time that carry the tool straight from `start` (radians, (n,)) to `end` (world).
+    """Return the joint trajectory that moves the tool straight from `start` (radians, (n,)) to `end` (world).
 
     Raises:
-        RobotError: the duration is no time, the end is out of reach, or on the way a joint would pass its limit,
-            its speed or its acceleration, or the arm would pass a singularity. Where more time helps, the message
-            says how much.
+        RobotError: the duration is invalid, the end is out of reach, a joint would exceed its position, speed or
+            acceleration limit, or the arm would pass a singularity. If more time helps, the message states how
+            much.
     """
     check_duration(duration_s, "line")
     line = _Line(start=kinematics.tool_pose(start), end=end)
@@ -93,8 +93,8 @@ def spline_trajectory(knots: Array, *, duration_s: float) -> JointTrajectory:
 def _clamped_slopes(knots: Array, dt_s: float) -> Array:
     """Return the slopes at its knots of the cubic spline that is flat at both ends.
 
-    They solve s[i-1] + 4 s[i] + s[i+1] = 3 (y[i+1] - y[i-1]) / dt, which is done here: scipy takes a tenth of a second
-    of CPU and more to import, in the middle of a run.
+    They solve s[i-1] + 4 s[i] + s[i+1] = 3 (y[i+1] - y[i-1]) / dt, without scipy, whose import takes more than
+    0.1 s of CPU time in the middle of a run.
     """
     slopes = np.zeros_like(knots)
     slopes[1:-1] = 3.0 / dt_s * (knots[2:] - knots[:-2])

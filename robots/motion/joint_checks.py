@@ -1,4 +1,4 @@
-"""Refuses what an arm's joints cannot do, before anything moves: range, speed and acceleration, by joint and time."""
+"""Rejects motions beyond an arm's joint limits before anything moves: range, speed, acceleration, by joint and time."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from robots.model.robot_model import JointLimits
 from robots.port import Array, JointTrajectory
 
 LONGEST_S = 86400.0
-"""No planned motion takes longer than this."""
+"""Maximum duration of a planned motion."""
 
 
 def check_duration(duration_s: float, word: str) -> None:
-    """Raise RobotError where a motion, which `word` names, takes no time or far too long."""
+    """Raise RobotError if the duration of a motion, named `word`, is not positive or far too long."""
     if not 0.0 < duration_s <= LONGEST_S:
         raise RobotError(
             f"a {word} cannot take {duration_s:g} s", hint=f"give it more than 0 s and at most {LONGEST_S:g} s"
@@ -25,14 +25,14 @@ def check_duration(duration_s: float, word: str) -> None:
 
 
 def advise_duration(least_s: float) -> str:
-    """Return the advice to allow `least_s`, rounded up to a tenth of a second."""
+    """Return the hint to allow `least_s`, rounded up to a tenth of a second."""
     return f"allow at least {math.ceil(least_s * 10.0 + 1e-6) / 10.0:.1f} s"
 
 
 def check_range(limits: JointLimits, names: tuple[str, ...], start: Array, joints: Array, time_s: float) -> None:
-    """Raise RobotError where a joint leaves its range; `start` and `joints` are radians, (n,), `joints` at `time_s`.
+    """Raise RobotError if a joint leaves its range; `start` and `joints` are radians, (n,), `joints` at `time_s`.
 
-    An arm that stands a little beyond a limit at `start` may move back, not further out.
+    An arm that is a little beyond a limit at `start` may move back, but not further out.
     """
     lower = np.minimum(np.array(limits.lower_rad), start) - 1e-9
     upper = np.maximum(np.array(limits.upper_rad), start) + 1e-9
@@ -40,16 +40,16 @@ def check_range(limits: JointLimits, names: tuple[str, ...], start: Array, joint
     worst = int(np.argmax(outside))
     if outside[worst] > 0.0:
         raise RobotError(
-            f"{names[worst]} would have to go to {joints[worst]:.3f} rad at t={time_s:.2f} s,"
-            f" its range is {limits.lower_rad[worst]} to {limits.upper_rad[worst]} rad",
-            hint="start from another configuration, or go there in joint space",
+            f"{names[worst]} would leave its range at t={time_s:.2f} s: {joints[worst]:.3f} rad,"
+            f" range {limits.lower_rad[worst]} to {limits.upper_rad[worst]} rad",
+            hint="start from another configuration, or move in joint space",
         )
 
 
 def check_device_range(joint_map: JointMap, names: tuple[str, ...], trajectory: JointTrajectory) -> None:
-    """Raise RobotError where the robot's own controller would not go along: an angle as it counts leaves its range.
+    """Raise RobotError if an angle in the convention of the robot's controller leaves its range.
 
-    Where the trajectory begins beyond a range it may go back into it, not further out.
+    A trajectory that starts beyond a range may return into it, but not move further out.
     """
     if not np.isfinite((joint_map.lower_rad, joint_map.upper_rad)).any():
         return
@@ -60,10 +60,10 @@ def check_device_range(joint_map: JointMap, names: tuple[str, ...], trajectory: 
     at, joint = np.unravel_index(int(np.argmax(outside)), outside.shape)
     if outside[at, joint] > 0.0:
         raise RobotError(
-            f"the controller's angle of {names[joint]} ({joint_map.words(int(joint), names)}) would have to go to"
-            f" {angles[at, joint]:.3f} rad at t={at * trajectory.dt_s:.2f} s, its range is"
-            f" {joint_map.lower_rad[joint]} to {joint_map.upper_rad[joint]} rad",
-            hint="its axes are coupled, see `<arm>/device_joints`; choose another configuration",
+            f"the controller's angle of {names[joint]} ({joint_map.words(int(joint), names)}) would leave its range"
+            f" at t={at * trajectory.dt_s:.2f} s: {angles[at, joint]:.3f} rad,"
+            f" range {joint_map.lower_rad[joint]} to {joint_map.upper_rad[joint]} rad",
+            hint="the axes are coupled, see `<arm>/device_joints`; choose another configuration",
         )
 
 
@@ -74,13 +74,13 @@ def check_speed(
     *,
     advice: Callable[[float], str] = advise_duration,
 ) -> None:
-    """Raise RobotError where a joint would be too fast or pushed too hard, between the samples as well.
+    """Raise RobotError if a joint would exceed its speed or acceleration limit, also between samples.
 
-    The samples are played as a cubic Hermite spline. As the path does not depend on its duration, the
-    least duration is known exactly; `advice` words it.
+    Playback interpolates the samples by a cubic Hermite spline. As the path does not depend on its duration, the
+    minimum duration is known exactly; `advice` formats it.
     """
     if not (np.isfinite(trajectory.position_rad).all() and np.isfinite(trajectory.velocity_rad_s).all()):
-        raise RobotError("the numbers of the motion overflow", hint="look for a value that is far too great or small")
+        raise RobotError("the motion overflows", hint="check the motion for values that are far too large or too small")
     duration_s = trajectory.duration_s
     times = np.linspace(0.0, duration_s, len(trajectory.position_rad))
     speed_limit, push_limit = np.array(limits.velocity_rad_s), np.array(limits.acceleration_rad_s2)
@@ -108,7 +108,7 @@ def _accelerations(trajectory: JointTrajectory) -> tuple[Array, Array]:
 
 
 def _greatest(before: Array, after: Array) -> Array:
-    """Return the greater one of what ends and what begins at each sample, (samples, n)."""
+    """Return the greater of the accelerations that end and start at each sample, (samples, n)."""
     ending, beginning = np.vstack((before[:1], after)), np.vstack((before, after[-1:]))
     return np.where(np.abs(ending) > np.abs(beginning), ending, beginning)
 

@@ -1,4 +1,4 @@
-"""Point to point in joint space: all joints in phase, trapezoidal or jerk-limited velocity."""
+"""Point-to-point motion in joint space: all joints in phase, trapezoidal or jerk-limited velocity."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from engine.errors import RobotError
 from robots.model.robot_model import JointLimits
 from robots.port import Array, JointTrajectory
 
-# ruckig has no stubs: it stays behind this file, which hands out numpy arrays.
+# ruckig has no type stubs: only this file uses it, and returns numpy arrays.
 profiles: Any = ruckig
 
 ACCELERATION_SHARE = 0.5
-"""Share of the joints' acceleration used at speed 1; the rest is left to holding, stopping and tracking."""
+"""Share of the joints' acceleration used at speed 1; the rest is reserved for holding, stopping and tracking."""
 
 _SAMPLE_S = 0.002
-# Slow motions get no more samples than this: the profile keeps its shape, however long it takes.
+# Maximum number of samples of a slow motion: the shape of the profile does not depend on its duration.
 _MOST_SAMPLES = 20_000
 # The interpolation between two samples may overshoot the velocity at a corner of the trapezoid.
 _VELOCITY_SHARE = 0.995
 _NO_WAY_RAD = 1e-9
-# Slower than this a motion would take days.
+# At lower speeds a motion would take days.
 _SLOWEST_SHARE = 1e-5
 _NO_SHARE = 1e-12
-# What a loaded joint at its limit is measured beyond it, with margin.
+# Measured overshoot of a loaded joint at its limit, with margin.
 _LIMIT_TOLERANCE_RAD = 1e-3
 
 
@@ -40,14 +40,14 @@ def plan_joints(
     joint_names: tuple[str, ...],
     jerk_limited: bool = False,
 ) -> JointTrajectory:
-    """Return the way from `start` to `goal` (radians, shape (n,)), at rest at both ends.
+    """Return the trajectory from `start` to `goal` (radians, shape (n,)), at rest at both ends.
 
-    `speed` in (0, 1] is the share of the joint velocity limits; accelerations shrink with it. With
+    `speed` in (0, 1] is the share of the joint velocity limits; accelerations scale with it. With
     `jerk_limited` the acceleration is ramped within the joint jerk limits.
 
     Raises:
-        RobotError: the goal has another number of joints, or one more than 1 mrad beyond its limit; the speed is no
-            share.
+        RobotError: the goal has a wrong number of joints, or a joint more than 1 mrad beyond its limit; the speed is
+            not a share.
     """
     goal = _within_limits(goal, limits, joint_names)
     if not _SLOWEST_SHARE <= speed <= 1.0:
@@ -69,10 +69,10 @@ def plan_joints(
 
 
 def _slowest(limits: tuple[float, ...], shares: Array) -> float:
-    """Return what the joint with the farthest to go may do so that no joint exceeds its limit.
+    """Return the limit of the joint with the longest path so that no joint exceeds its own.
 
-    All joints follow one profile, as ruckig's own phase synchronisation gives up where the slowest
-    joint's profile is too hard for another one.
+    All joints follow one profile, as ruckig's own phase synchronisation fails where the slowest
+    joint's profile exceeds the limits of another one.
     """
     moving = shares > _NO_SHARE
     return float(np.min(np.array(limits)[moving] / shares[moving]))
@@ -85,7 +85,7 @@ def _standing(start: Array, goal: Array) -> JointTrajectory:
 
 
 def _within_limits(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> Array:
-    """Return the goal; one that a joint at its limit was measured at, a little beyond it, at the limit."""
+    """Return the goal; a joint goal slightly beyond its limit, as measured at the limit, is clipped to it."""
     if len(goal) != len(joint_names):
         raise RobotError(f"the goal has {len(goal)} joints", hint=f"this arm has {len(joint_names)}")
     clipped = np.clip(goal, limits.lower_rad, limits.upper_rad)

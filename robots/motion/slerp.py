@@ -1,4 +1,4 @@
-"""Spherical interpolation between two orientations, the short way round."""
+"""Spherical interpolation between two orientations, along the shorter arc."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from robots.port import Array
 
 
 def slerp(start: Array, end: Array, share: float) -> Array:
-    """Return the orientation `share` (0 to 1) of the way from `start` to `end`, unit quaternions x y z w.
+    """Return the orientation at `share` (0 to 1) from `start` to `end`, unit quaternions x y z w.
 
-    It turns about one fixed axis by at most pi, whichever sign the quaternions have.
+    It rotates about one fixed axis by at most pi, for any sign of the quaternions.
     """
     turn = rotation_vector(product(conjugate(start), end))
     turned = product(start, quaternion_of(share * turn))

@@ -1,4 +1,4 @@
-"""Follows a path of tool poses with the joints, each configuration next to the one before; or says why it cannot."""
+"""Computes joints along a path of tool poses, each configuration close to the previous one, or the reason why not."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from robots.model.transform import RigidTransform
 from robots.motion.joint_checks import check_range
 from robots.port import Array
 
-# Knots are at most this far apart in time, place and turn; a spline through them keeps the path.
+# Maximum distance of knots in time, position and angle; a spline through them keeps the path.
 KNOT_S, KNOT_M, KNOT_RAD = 0.02, 0.006, 0.03
 FEWEST_KNOTS, MOST_KNOTS = 12, 4000
 SINGULARITY_CAUTION = 0.6
-"""How much the self-motion of a redundant arm shies away from joint limits, per metre or radian of path."""
+"""Gain with which the self-motion of a redundant arm avoids joint limits, per metre or radian of path."""
 
 _COMFORTABLE_SHARE = 0.75
 _WHOLE_POSE = 6
@@ -26,11 +26,11 @@ _WHOLE_POSE = 6
 
 @dataclass(frozen=True, kw_only=True)
 class ToolPath:
-    """Tool poses in the world, evenly over `duration_s`; the first is where the tool stands.
+    """Tool poses in the world, evenly over `duration_s`; the first is the present tool pose.
 
-    `steps` (poses - 1, 6) lead from each pose to the next: metres, then the rotation vector, in world
+    `steps` (poses - 1, 6) are the differences to the next pose: metres, then the rotation vector, in world
     axes; `drifts` (poses - 1,) are their lengths, metres and radians together, times `SINGULARITY_CAUTION`.
-    `shares` says how much of the way is done at each pose, 0 to 1; `word` names the path in messages,
+    `shares` is the completed share of the path at each pose, 0 to 1; `word` names the path in messages,
     such as `line`.
     """
 
@@ -55,7 +55,7 @@ def follow_tool_path(kinematics: ArmKinematics, start: Array, path: ToolPath) ->
         time_s = path.duration_s * i / (len(path.poses) - 1)
         _, jacobian = kinematics.tool_pose_and_jacobian(knots[i - 1])
         _check_dexterity(jacobian, path.word, time_s)
-        # The self-motion is a smooth function of the path, not of time.
+        # The self-motion is a smooth function of the path, independent of time.
         pull = _comfort(kinematics, knots[i - 1]) * path.drifts[i - 1]
         guess = knots[i - 1] + weighted_step(jacobian, path.steps[i - 1], damping=1e-9, pull=pull)
         found = inverse.track(path.poses[i], seed=guess)
@@ -69,7 +69,7 @@ def follow_tool_path(kinematics: ArmKinematics, start: Array, path: ToolPath) ->
 
 
 def _comfort(kinematics: ArmKinematics, joints: Array) -> Array:
-    """Return which way each joint should drift to stay off its limits: 0 in the comfortable middle of its range."""
+    """Return the direction in which each joint should drift from its limits: 0 in the middle of its range."""
     lower, upper = np.array(kinematics.limits.lower_rad), np.array(kinematics.limits.upper_rad)
     share = (2.0 * joints - lower - upper) / (upper - lower)
     excess = np.sign(share) * np.maximum(np.abs(share) - _COMFORTABLE_SHARE, 0.0) / (1.0 - _COMFORTABLE_SHARE)
@@ -81,15 +81,15 @@ def _check_dexterity(jacobian: Array, word: str, time_s: float) -> None:
     if dexterity < SINGULAR:
         raise RobotError(
             f"the {word} passes a singularity at t={time_s:.2f} s (dexterity {dexterity:.3f}, at least {SINGULAR})",
-            hint=f"go there in joint space, or take another {word}",
+            hint=f"move in joint space, or choose another {word}",
         )
 
 
 def _too_few_joints(dof: int, path: ToolPath, at: int) -> RobotError:
     return RobotError(
-        f"an arm of {dof} joints cannot keep its tool on this {path.word}, in place and orientation, past"
-        f" {path.shares[at - 1]:.0%} of the way",
-        hint="go there in joint space, or to its end by the position only (`match`)",
+        f"an arm of {dof} joints cannot keep position and orientation of its tool on this {path.word} beyond"
+        f" {path.shares[at - 1]:.0%} of it",
+        hint="move in joint space, or to the end by position only (`match`)",
     )
 
 
@@ -98,8 +98,8 @@ def _out_of_reach(inverse: InverseKinematicsSolver, path: ToolPath, joints: Arra
     try:
         inverse.nearest(path.poses[at], seed=joints)
     except RobotError as error:
-        return RobotError(f"the {path.word} leaves the workspace after {share:.0%} of the way: {error}")
+        return RobotError(f"the {path.word} leaves the workspace after {share:.0%}: {error}")
     return RobotError(
-        f"the {path.word} cannot be followed past {share:.0%} of the way without changing the arm's posture",
-        hint="go there in joint space",
+        f"the {path.word} cannot be followed beyond {share:.0%} without a change of the arm's posture",
+        hint="move in joint space",
     )

@@ -1,7 +1,7 @@
-"""What servers of skills need of devices, simulated or real: measure, move, hold, resume, cancel.
+"""The device interfaces of the skill servers, simulated or real: measure, move, hold, resume, cancel.
 
 Arrays are float64, joints in the model's order, radians. All members are called from the event
-loop thread; an implementation may run its control elsewhere and completes futures on that loop.
+loop thread; an implementation may run its control elsewhere but completes futures on that loop.
 """
 
 from robots.port.arm import ArmPort, ArmSample, StreamKind

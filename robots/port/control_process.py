@@ -1,17 +1,18 @@
-"""What the process that controls a device owes the engine, whether it simulates or drives a real one.
+"""The contract between the engine and a process that controls devices, simulated or real.
 
 - *The engine is silent* (its counter has not changed for `engine_silence_s`, 0.2 s unless the cell says otherwise:
   its loop is blocked, the process is suspended or starved): every motion and drive decelerates within its braking
-  limits. Each motion ends as FAILED with the cause and the measured silence, at rest. Nothing is resumed when the
-  engine is back; new motions are taken again from its next pulse on, and fail with the cause before it.
-- *The engine is gone* (the socket ends, as with `kill -9`): the same at once, and the process ends as soon as
-  everything rests.
-- *Stop*: the same as a cancel of every motion; it does not wait for the engine.
-- *Its own pulse*: it raises its counter once a control period and from nowhere else, so that a process that does not
-  control any more is silent. The engine then declares it lost within 0.3 s, kills it, and fails its motions.
-- What is held stays held: brakes, grippers and magnets keep what they do.
+  limits. Each motion ends as FAILED, at rest, with the cause and the measured silence. Nothing resumes when the
+  engine is back; new motions are accepted again from its next pulse on, and fail with the cause before it.
+- *The engine is gone* (the socket is closed, as with `kill -9`): the same at once, and the process ends as soon as
+  everything is at rest.
+- *Stop*: equals a cancel of every motion; it does not wait for the engine.
+- *Its own pulse*: it increments its counter once per control period and nowhere else, so that a process whose
+  control loop stalls is silent. The engine then declares it lost within 0.3 s, kills it, and fails its motions.
+- Held objects stay held: brakes, grippers and magnets keep their state.
 
-`EngineMonitor` does the first and the last but one of these; a driver's process calls `look` once a control period.
+`EngineMonitor` implements the engine silence and the process's own pulse; a driver's process calls `look` once per
+control period.
 """
 
 from __future__ import annotations
@@ -26,26 +27,26 @@ ENGINE_GONE = "the engine has ended"
 
 
 class ControlledDevices(Protocol):
-    """Everything that one control process moves."""
+    """All devices of one control process."""
 
     @property
     def at_rest(self) -> bool:
-        """Whether no motion is under way and nothing is measured to move."""
+        """Whether no motion is active and all measured speeds are at rest."""
         ...
 
     def brake(self, cause: str) -> None:
-        """Decelerate every motion within its limits and let it end as FAILED with `cause`; may be called again."""
+        """Decelerate every motion within its limits, ending it as FAILED with `cause`; may be called repeatedly."""
         ...
 
 
 class EngineMonitor:
-    """The control process's side of the heartbeat: its own pulse, the engine's silence, since when everything rests.
+    """The control process's side of the heartbeat: its own pulse, the engine's silence and the time at rest.
 
     Args:
         heartbeat: Shared with the engine.
-        devices: What is brought to rest.
-        limit_s: How long the engine may be silent.
-        log: Takes a line for the log; must not wait.
+        devices: The devices that are brought to rest.
+        limit_s: Maximum silence of the engine.
+        log: Writes a log line; must not block.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class EngineMonitor:
         self._was_at_rest = False
 
     def look(self, now_s: float) -> None:
-        """Raise the own counter, and brake while the engine is silent; once a control period, on CLOCK_MONOTONIC."""
+        """Increment the counter, and brake while the engine is silent; once per control period, on CLOCK_MONOTONIC."""
         self._heartbeat.beat_control()
         if self._is_gone or self._silence.look(self._heartbeat.engine_count, now_s):
             self._brake(now_s)
@@ -76,7 +77,7 @@ class EngineMonitor:
         self._tell_rest(now_s)
 
     def engine_is_gone(self) -> None:
-        """Brake from the next look on, for good: the connection to the engine has ended."""
+        """Brake permanently from the next look on: the connection to the engine has ended."""
         self._is_gone = True
 
     def _brake(self, now_s: float) -> None:

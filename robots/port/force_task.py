@@ -1,4 +1,4 @@
-"""What a force-tracking motion is asked to do, and what it records."""
+"""The task of a force-tracking motion, and its record."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robots.port.trajectory import JointTrajectory
 class Admittance(msgspec.Struct, frozen=True, kw_only=True):
     """M ẍ + D ẋ + K x = F_measured − F_wanted for the offset x, per axis of the task frame (x y z, then rotations).
 
-    An axis with `active` 0 is not deviated. Masses are kg and kg m², damping N s/m and N m s/rad,
+    An axis with `active` 0 does not deviate. Masses are kg and kg m², damping N s/m and N m s/rad,
     stiffness N/m and N m/rad (0: pure force control). Offsets never exceed `reach_m` and
     `turn_rad`, nor change faster than `speed_m_s` and `turn_rad_s`.
     """
@@ -33,16 +33,16 @@ class Admittance(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class ForceTask:
-    """A tool path with wanted forces, followed with the admittance added on top.
+    """A tool path with wanted forces, followed with an admittance.
 
     Attributes:
         trajectory: The nominal joints over time; starts at the set point at rest and ends at rest.
         offset: Feed-forward offset of the tool from the nominal path, (samples, 6), metres and rotation
-            vector, in the task frame; what an earlier pass has learned.
+            vector, in the task frame; learned in an earlier pass.
         wrench: Wanted force and torque of the environment on the tool, (samples, 6), in the task frame.
-        task_xyzw: The axes of the task frame in the world.
-        admittance: How measured forces deviate the path.
-        slow_per_n: Phase stopping: the passage slows to 1 / (1 + slow_per_n · |force error|); 0 for never.
+        task_xyzw: Orientation of the task frame in the world.
+        admittance: Response of the path to measured forces.
+        slow_per_n: Phase stopping: the pace slows to 1 / (1 + slow_per_n · |force error|); 0 for never.
         record_s: Period of the record.
     """
 
@@ -56,9 +56,9 @@ class ForceTask:
 
 
 class ForceRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """What a force-tracking motion did: `MotionReport.data`, encoded by `to_bytes`.
+    """The record of a force-tracking motion: `MotionReport.data`, encoded by `to_bytes`.
 
-    `share` (k,) is the share of the trajectory's time passed; `offset` (k, 6) the whole offset from
+    `share` (k,) is the elapsed share of the trajectory's time; `offset` (k, 6) the total offset from
     the nominal path and `wrench` (k, 6) the measured one, both in the task frame; float64 row-major bytes.
     """
 
@@ -73,7 +73,7 @@ class ForceRecord(msgspec.Struct, frozen=True, kw_only=True):
 
     @classmethod
     def from_bytes(cls, data: bytes) -> ForceRecord:
-        """Return the record that `to_bytes` made."""
+        """Decode a record from `to_bytes`."""
         return msgspec.msgpack.decode(data, type=cls)
 
     def to_bytes(self) -> bytes:
@@ -81,7 +81,7 @@ class ForceRecord(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.msgpack.encode(self)
 
     def shares(self) -> Array:
-        """Share of the trajectory's time at each sample, (k,)."""
+        """Elapsed share of the trajectory's time at each sample, (k,)."""
         return np.frombuffer(self.share)
 
     def offsets(self) -> Array:

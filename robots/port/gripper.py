@@ -1,4 +1,4 @@
-"""The low-level face of one two-finger gripper, simulated or real."""
+"""The low-level interface of one two-finger gripper, simulated or real."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from robots.port.motion import Motion
 
 @dataclass(frozen=True, kw_only=True)
 class GripperSample:
-    """Measured gripper: opening between the pads, commanded and measured pad force, pad contacts."""
+    """A gripper measurement: opening between the pads, commanded and measured pad force, pad contacts."""
 
     time_s: float
     width_m: float
     velocity_m_s: float
     force_n: float
     contacts: tuple[str, str] = field(default=("", ""))
-    """What each pad touches: a body name where the device can tell, `?` for unknown, empty for nothing."""
+    """Contact of each pad: a body name if the device knows it, `?` for unknown, empty for none."""
 
 
 class GripperPort(Protocol):
-    """The low-level face of one two-finger gripper."""
+    """The low-level interface of one two-finger gripper."""
 
     @property
     def max_width_m(self) -> float:
@@ -30,19 +30,19 @@ class GripperPort(Protocol):
 
     @property
     def max_force_n(self) -> float:
-        """Greatest force that it can press with."""
+        """Maximum grip force."""
         ...
 
     def sample(self) -> GripperSample:
-        """The newest measurement."""
+        """The latest measurement."""
         ...
 
     def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> Motion:
         """Move the fingers towards `width_m` (open or close), pressing with at most `force_n`.
 
-        A force weaker or a speed slower or faster than the gripper can do is brought into its range.
+        Force and speed are clipped to the gripper's range.
 
-        REACHED when the opening is reached or when the fingers have stopped against something
-        and the force is built up; the force is kept up afterwards until the next command.
+        REACHED when the opening is reached or when the fingers have stopped against an object
+        and the force is built up; the force persists until the next command.
         """
         ...

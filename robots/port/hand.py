@@ -1,4 +1,4 @@
-"""The low-level face of a hand that closes with one motor, simulated or real."""
+"""The low-level interface of a hand with one motor, simulated or real."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from robots.port.motion import Motion
 
 @dataclass(frozen=True, kw_only=True)
 class HandSample:
-    """Measured hand: how far its motor has closed it (0 open, 1 closed), and what the fingers touch.
+    """A hand measurement: closed share of its motor (0 open, 1 closed), and the contacts of the fingers.
 
-    `force_n` is the motor's pull beyond what closing that far on nothing takes.
+    `force_n` is the motor's pull beyond that for closing equally far on nothing.
     """
 
     time_s: float
     closed_share: float
     force_n: float
     contacts: tuple[str, ...] = ()
-    """What each finger, thumb first, and last the palm touch of things that can be held: a body's name where the
-    device can tell, `?` for unknown, empty for nothing."""
+    """Contacts with holdable bodies of each finger, thumb first, and last of the palm: a body's name if the
+    device knows it, `?` for unknown, empty for none."""
 
 
 class HandPort(Protocol):
-    """The low-level face of a hand that closes with one motor."""
+    """The low-level interface of a hand with one motor."""
 
     @property
     def max_force_n(self) -> float:
-        """The motor's greatest pull."""
+        """Maximum pull of the motor."""
         ...
 
     def sample(self) -> HandSample:
-        """The newest measurement."""
+        """The latest measurement."""
         ...
 
     def close_to(self, *, share: float, time_s: float) -> Motion:
         """Close (or open) to `share`, 0 to 1, in `time_s` or as fast as the motor can.
 
-        REACHED when the motor is there and the fingers rest, or when it has stalled against what they hold; its
-        pull is kept up until the next command.
+        REACHED when the motor has arrived and the fingers rest, or when it has stalled against a held object; its
+        pull persists until the next command.
         """
         ...

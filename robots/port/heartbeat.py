@@ -1,8 +1,8 @@
-"""Heartbeats between the engine and a control process: two counters in shared memory, and who is silent.
+"""Heartbeats between the engine and a control process: two counters in shared memory, and silence detection.
 
-The engine raises its counter from its event loop, so a blocked, suspended or dead engine is silent. The
-control process raises its own once a control period. Neither waits for the other: each compares a number.
-`control_process` holds the contract of a control process, simulated or real.
+The engine increments its counter from its event loop, so a blocked, suspended or dead engine is silent. The
+control process increments its own once per control period. Neither waits for the other: each compares a number.
+`control_process` documents the contract of a control process, simulated or real.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from robots.port.shared_file import new_shared_file
 
 ENGINE_SILENCE_S = 0.2
-"""Without a pulse of the engine for this long, a control process brings everything to rest."""
+"""Silence of the engine after which a control process brings everything to rest."""
 CONTROL_SILENCE_S = 0.25
-"""Without a pulse of the control process for this long, the engine declares it lost; with one look more, 0.3 s."""
+"""Silence of the control process after which the engine declares it lost; 0.3 s with one more look."""
 PULSE_S = 0.02
-"""Period of the engine's pulse and of its looks."""
+"""Period of the engine's pulse and of its looks at the peer."""
 
 _NAME = "flexcell-heartbeat"
 _ENGINE, _CONTROL, _REST_SINCE, _SLOTS = 0, 1, 2, 3
@@ -37,7 +37,7 @@ def new_heartbeat_file() -> int:
 class Heartbeat:
     """The counters of one connection between the engine and a control process; each has one writer.
 
-    A count of 0 means that this side has not begun yet.
+    A count of 0 means that this side has not started yet.
     """
 
     def __init__(self, descriptor: int) -> None:
@@ -46,10 +46,10 @@ class Heartbeat:
 
     @classmethod
     def of_process(cls, pid: int) -> Self:
-        """Open the heartbeat of a running control process, for a third process that only looks.
+        """Open the heartbeat of a running control process, for a third process that only reads.
 
         Raises:
-            OSError: there is no such process, it belongs to somebody else, or it has no heartbeat.
+            OSError: there is no such process, it belongs to another user, or it has no heartbeat.
         """
         folder = f"/proc/{pid}/fd"
         for entry in os.listdir(folder):
@@ -68,46 +68,46 @@ class Heartbeat:
 
     @property
     def engine_count(self) -> int:
-        """How often the engine's loop has turned by its timer."""
+        """Number of pulses of the engine's loop."""
         return int(self._numbers[_ENGINE])
 
     @property
     def control_count(self) -> int:
-        """How many control periods have passed."""
+        """Number of control periods."""
         return int(self._numbers[_CONTROL])
 
     @property
     def at_rest_since_ns(self) -> int:
-        """Since when, on CLOCK_MONOTONIC, everything is measured at rest without a motion; 0 while it is not."""
+        """Time on CLOCK_MONOTONIC since which everything is at rest without a motion; 0 otherwise."""
         return int(self._numbers[_REST_SINCE])
 
     def beat_engine(self) -> None:
-        """Raise the engine's counter; the engine only."""
+        """Increment the engine's counter; called by the engine only."""
         self._numbers[_ENGINE] += 1
 
     def beat_control(self) -> None:
-        """Raise the control process's counter; the control process only."""
+        """Increment the control process's counter; called by the control process only."""
         self._numbers[_CONTROL] += 1
 
     def report_at_rest(self, since_ns: int) -> None:
-        """Tell since when everything rests, 0 for never; the control process only."""
+        """Report since when everything is at rest, 0 for not at rest; called by the control process only."""
         self._numbers[_REST_SINCE] = since_ns
 
     def close(self) -> None:
-        """Let go of the memory."""
+        """Release the memory."""
         del self._numbers
         self._memory.close()
 
 
 class SilenceMonitor:
-    """Measures for how long a peer's counter has not changed, in time in which the observer itself was running.
+    """Measures how long a peer's counter has not changed, counting only time in which the observer itself ran.
 
-    A gap between two looks counts for `longest_gap_s` at most: an observer that was itself suspended or
-    blocked looks again before it judges. The first count above 0 arms it.
+    A gap between two looks counts for at most `longest_gap_s`: an observer that was itself suspended or
+    blocked looks again before it decides. The first count above 0 arms it.
 
     Args:
-        limit_s: The silence from which on the peer is `silent`.
-        longest_gap_s: What one gap between two looks may count for; below the limit.
+        limit_s: Silence from which on the peer is `silent`.
+        longest_gap_s: Maximum contribution of one gap between two looks; below the limit.
     """
 
     def __init__(self, *, limit_s: float, longest_gap_s: float) -> None:

@@ -11,11 +11,11 @@ _LONGEST_GAP_S = 0.06
 
 
 class LoopHeartbeat:
-    """Pulses by a timer of the running loop, so that a loop that does not turn is silent.
+    """Pulses from a timer of the running loop, so that a blocked loop is silent.
 
     Args:
-        heartbeat: Shared with the control process, which has begun to control.
-        limit_s: How long the control process may be silent, in time in which this loop turns.
+        heartbeat: Shared with the control process, whose loop is running.
+        limit_s: Maximum silence of the control process, in time in which this loop runs.
         on_silence: Called once with the measured silence; the pulses end with it.
     """
 
@@ -28,16 +28,16 @@ class LoopHeartbeat:
         self._timer: asyncio.TimerHandle | None = None
 
     def begin(self) -> None:
-        """Pulse and look from now on; the first pulse arms the control process's monitor."""
+        """Start pulses and looks; the first pulse arms the control process's monitor."""
         self._turn()
 
     def pulse(self) -> None:
-        """Pulse between two turns of the timer: what is sent now is sent by a loop that turns."""
+        """Pulse between two timer ticks: a loop that sends a command is alive."""
         if self._timer is not None:
             self._heartbeat.beat_engine()
 
     def end(self) -> None:
-        """Pulse no more."""
+        """Stop the pulses."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

@@ -1,4 +1,4 @@
-"""The low-level face of a switchable magnet, simulated or real."""
+"""The low-level interface of a switchable magnet, simulated or real."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from robots.port.motion import Motion
 
 @dataclass(frozen=True, kw_only=True)
 class MagnetSample:
-    """Measured magnet: whether it is switched on, what touches its face, and how hard it pulls at that."""
+    """A magnet measurement: whether it is switched on, what touches its face, and the pull on that."""
 
     time_s: float
     on: bool
     pull_n: float
     contact: str = ""
-    """A body's name where the device can tell, `?` for unknown, empty for nothing."""
+    """A body's name if the device knows it, `?` for unknown, empty for none."""
 
 
 class MagnetPort(Protocol):
-    """The low-level face of a switchable magnet."""
+    """The low-level interface of a switchable magnet."""
 
     @property
     def max_force_n(self) -> float:
-        """How hard it pulls at a plate that covers its face."""
+        """Pull on a plate that covers its face."""
         ...
 
     def sample(self) -> MagnetSample:
-        """The newest measurement."""
+        """The latest measurement."""
         ...
 
     def switch(self, *, on: bool) -> Motion:
-        """Switch; REACHED when the field is settled. It stays so until the next command, also when cancelled."""
+        """Switch; REACHED when the field is settled. The field persists until the next command, also after a cancel."""
         ...

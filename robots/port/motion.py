@@ -1,4 +1,4 @@
-"""A motion under way, and how it ended."""
+"""An active motion, and how it ended."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ class MotionEnd(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class MotionReport:
-    """The end of a motion; `reason` says in words why it failed (joint, amount, contact).
+    """The end of a motion; `reason` states why it failed (joint, amount, contact).
 
-    `contact` is true when a motion that was to end at a contact did. `data` is what the kind of
-    motion recorded, see `ForceRecord`; a stream of joint angles has there the words (UTF-8) of
-    what it had to clip, empty for nothing; empty for the others. `at_rest` is false where the device
-    could not be brought to rest.
+    `contact` is true when the expected contact ended the motion. `data` is the record of the kind of
+    motion, see `ForceRecord`; for a stream of joint angles the clipping warning (UTF-8), empty
+    without clipping; empty for the others. `at_rest` is false if the device could not be brought to rest.
     """
 
     end: MotionEnd
@@ -33,47 +32,47 @@ class MotionReport:
 
 
 class Motion(Protocol):
-    """A motion under way."""
+    """An active motion."""
 
     @property
     def progress(self) -> float:
-        """Share of the trajectory's time passed, 0 to 1."""
+        """Elapsed share of the trajectory's time, 0 to 1."""
         ...
 
     async def report(self) -> MotionReport:
-        """Wait for the end; may be awaited by several, and again after the end."""
+        """Wait for the end; several tasks may await it, also after the end."""
         ...
 
     async def hold(self) -> None:
-        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
+        """Decelerate on the path and return when at rest, or when the motion has ended or been resumed meanwhile."""
         ...
 
     async def resume(self) -> None:
-        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
+        """Resume along the path and return when moving, or when the motion has ended or been held meanwhile."""
         ...
 
     def cancel(self) -> None:
-        """Ask to decelerate on the path; `report` then returns CANCELED once at rest."""
+        """Request deceleration on the path; `report` then returns CANCELED once at rest."""
         ...
 
 
 class MotionStream(Motion, Protocol):
-    """A motion that follows what it is told at every instant; it ends by `finish` or `cancel` only.
+    """A motion that follows streamed values; it ends only by `finish` or `cancel`.
 
-    When nothing was said for longer than its watchdog allows, it comes to rest and stays there
-    until it is told something again.
+    Without values for longer than its watchdog time it comes to rest and stays there
+    until the next values.
     """
 
     def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
-        """Say where to (or how fast to) go from now on; the kind of stream gives the meaning.
+        """Send target positions or velocities; the kind of stream defines their meaning.
 
-        `age_s` is how long ago it was said where that is passed on anew: the silence counts from then.
+        `age_s` is the age of the values when they are forwarded: the watchdog counts from their origin.
 
         Raises:
-            RobotError: wrong number of values, one that is not finite, or the device is gone.
+            RobotError: wrong number of values, a value that is not finite, or the device is lost.
         """
         ...
 
     def finish(self) -> None:
-        """Ask to come to rest and end as REACHED; one that is held ends where it stands."""
+        """Request to come to rest and end as REACHED; a held stream ends where it stands."""
         ...

@@ -6,17 +6,17 @@ from typing import Protocol
 
 
 class OutputPort(Protocol):
-    """Outputs numbered from 0; they keep their values until they are set again."""
+    """Outputs numbered from 0; they keep their values until set again."""
 
     @property
     def values(self) -> tuple[bool, ...]:
-        """What they are now."""
+        """Present values."""
         ...
 
     def set(self, output: int, *, on: bool) -> None:
         """Turn an output on or off.
 
         Raises:
-            RobotError: there is no such output, or the device is gone.
+            RobotError: there is no such output, or the device is lost.
         """
         ...

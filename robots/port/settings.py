@@ -1,4 +1,4 @@
-"""How an arm behaves between its motions: controller, stiffness, tool, load, thresholds."""
+"""Settings of an arm: controller, stiffness, tool, load, thresholds."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ NO_FRAME: tuple[Vector3, Quaternion] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 class ArmSettings(msgspec.Struct, frozen=True, kw_only=True):
-    """What stays in force until it is changed; it can change at any time without a jump of the arm.
+    """Settings that stay active until changed; they can change at any time without a jump of the arm.
 
     Attributes:
-        controller: The law that holds the set point.
-        joint_stiffness_nm_rad: One value a joint; empty for the model's nominal ones.
+        controller: The control law that holds the set point.
+        joint_stiffness_nm_rad: One value per joint; empty for the model's nominal ones.
         joint_damping_ratio: One value for all joints, 1 is critical.
         cartesian_stiffness: N/m along and N m/rad about the axes of the tool's base frame (x y z, then rotations).
         cartesian_damping_ratio: 1 is critical.
-        nullspace_stiffness_nm_rad: Draws a redundant arm towards the joints of its set point, where that does not
-            move the tool.
+        nullspace_stiffness_nm_rad: Pulls a redundant arm towards the joints of its set point without moving
+            the tool.
         tool_xyz_m, tool_xyzw: The tool centre point in the frame of the model's tool link.
-        load_kg, load_com_m: What the tool carries and where its centre of mass is, in the model's tool link.
-        collision_torque_nm: External joint torque that trips the reflex, one value a joint; empty for never.
+        load_kg, load_com_m: Mass of the load and its centre of mass in the model's tool link.
+        collision_torque_nm: External joint torque that trips the reflex, one value per joint; empty for never.
         collision_force_n: External force at the tool that trips the reflex; None for never.
-        speed_override: All motions run at this share of their own speed, at least 0.001 and at most 1.
+        speed_override: Share of the nominal speed at which all motions run, 0.001 to 1.
     """
 
     controller: ControllerName = "joint_impedance"

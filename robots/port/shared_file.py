@@ -7,7 +7,7 @@ import tempfile
 
 
 def new_shared_file(name: str) -> int:
-    """Return the descriptor of an empty file in memory, told apart by `name` in lists of descriptors.
+    """Return the descriptor of an empty file in memory, labelled `name` in lists of descriptors.
 
     It vanishes with its last user.
     """

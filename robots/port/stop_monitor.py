@@ -1,4 +1,4 @@
-"""The control process's side of STOP: looks at its stop line once a control period, and brakes while it is latched."""
+"""The control process's side of STOP: polls its stop line once per control period, and brakes while it is latched."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from robots.port.control_process import ControlledDevices
 
 
 class StopMonitor:
-    """Brings everything to rest on STOP without asking the engine, and keeps it there until the engine releases.
+    """Brings everything to rest on STOP without the engine, and keeps it at rest until the engine releases it.
 
-    A motion that is started meanwhile fails with the reason of the stop before its first step.
+    A motion started meanwhile fails with the reason of the stop before its first step.
 
     Args:
         line: The stop line; None for a process that has none.
-        devices: What is brought to rest.
+        devices: The devices that are brought to rest.
     """
 
     def __init__(self, line: StopLine | None, devices: ControlledDevices) -> None:
@@ -22,11 +22,11 @@ class StopMonitor:
 
     @property
     def cut(self) -> bool:
-        """Whether the line is cut: the process ends once everything rests, and is connected again with a new one."""
+        """Whether the line is cut: the process ends once everything is at rest, and is reconnected with a new line."""
         return self._line is not None and self._line.cut
 
     def look(self) -> None:
-        """Take what has arrived; call it after the commands of a control period and before its step."""
+        """Poll the line; call it after the commands of a control period and before its step."""
         if self._line is None:
             return
         reason = self._line.poll() or self._line.reason

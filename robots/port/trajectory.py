@@ -1,4 +1,4 @@
-"""What an arm is told to follow, how closely, and what it may end at."""
+"""Trajectory, tolerance and contact condition of an arm motion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class JointTrajectory:
     """A path over time, sampled every `dt_s`: position and velocity of shape (samples, n).
 
     It starts at the arm's present set point at rest and ends at rest. A hold, cancel or speed
-    override slows the passage along it (time scaling), so the arm never leaves the path.
+    override slows the playback (time scaling), so the arm never leaves the path.
     """
 
     dt_s: float
@@ -28,7 +28,7 @@ class JointTrajectory:
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerance:
-    """How far the measured joints may be off: on the way, and at the end after `settle_s` at most."""
+    """Maximum error of the measured joints: on the path, and at the goal within `settle_s`."""
 
     path_rad: float = 0.15
     goal_rad: float = 0.01
@@ -37,12 +37,12 @@ class Tolerance:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactCondition:
-    """Where a motion ends early: the environment pushes the tool with `force_n`.
+    """Ends a motion early: the environment pushes the tool with `force_n`.
 
     Attributes:
-        force_n: Least force.
-        direction: Unit vector in the world; only the force along it counts (against the motion: opposite to
-            the way). Zero for any direction.
+        force_n: Minimum force.
+        direction: Unit vector in the world; only the force along it counts (a force that opposes the motion has
+            the opposite direction of the path). Zero for any direction.
     """
 
     force_n: float

@@ -7,6 +7,6 @@ from robots.port import Array
 
 
 def to_wrench(wrench: Array) -> Wrench:
-    """Return force (N) and torque (N m) of the environment on the tool, (6,), along the axes of the world."""
+    """Return force (N) and torque (N m) of the environment on the tool, (6,), in world axes."""
     fx, fy, fz, tx, ty, tz = wrench.tolist()
     return Wrench(force_n=(fx, fy, fz), torque_nm=(tx, ty, tz), frame="world")

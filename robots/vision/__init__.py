@@ -1,1 +1,1 @@
-"""What cameras see: simulated depth images, and the map of the space that something unknown takes up."""
+"""Perception: simulated depth images, the occupancy map of unknown objects, and object detection."""

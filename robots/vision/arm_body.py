@@ -1,4 +1,4 @@
-"""An arm with its tool as balls in the world, wherever its joints and the tool's are."""
+"""An arm with its tool as balls in the world, at any joint configuration."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _Link:
 
 
 class ArmBody:
-    """The balls that cover all links of one arm; raises CellError where its model cannot be read."""
+    """The balls that cover all links of one arm; raises CellError if its model cannot be read."""
 
     def __init__(self, placement: ArmPlacement) -> None:
         model = placement.robot()
@@ -55,7 +55,7 @@ class ArmBody:
         return np.vstack([_moved(self._at(link.frame), link.balls) for link in self._links.values()])
 
     def link_pose(self, posture: ArmConfiguration, link: str) -> RigidTransform:
-        """Return where a link is in the world; raises CellError when the arm has none of that name."""
+        """Return the pose of a link in the world; raises CellError for an unknown link."""
         if not self._solver.existFrame(link, pin.FrameType.BODY):
             raise CellError(f"the arm has no link {link}", where=self._name, hint="name a link of the URDF")
         self._move_to(posture)
@@ -64,7 +64,7 @@ class ArmBody:
     def _move_to(self, posture: ArmConfiguration) -> None:
         if len(posture.joints) != len(self._joints) or not np.isfinite(posture.joints).all():
             raise CellError(
-                f"{list(posture.joints)} are no joints of this arm",
+                f"{list(posture.joints)} are not a joint configuration of this arm",
                 where=self._name,
                 hint=f"give {len(self._joints)} numbers",
             )

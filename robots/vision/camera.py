@@ -1,4 +1,4 @@
-"""A depth camera in numbers: its intrinsics, where its optical frame stands, what it can measure."""
+"""The specification of a depth camera: intrinsics, pose of its optical frame, range and noise."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _UPRIGHT = 1e-6
 
 
 class CameraSpec(msgspec.Struct, frozen=True, kw_only=True):
-    """A depth camera of a cell; `pose` is that of its optical frame (x right, y down, z ahead) in the world.
+    """A depth camera of a cell; `pose` is that of its optical frame (x right, y down, z forward) in the world.
 
     Depths outside `range_m` are not measured. `noise_m` is the standard deviation at 1 m and grows with the
     square of the depth.
@@ -38,14 +38,18 @@ class CameraSpec(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
-    """Return a camera of a cell document in numbers.
+    """Return the specification of a camera in a cell document.
 
     Raises:
-        CellError: it looks at itself, or its range is empty.
+        CellError: it looks at its own position, or its range is empty.
     """
     near, far = camera.range_m
     if not near < far:
-        raise CellError(f"the range from {near:g} to {far:g} m is empty", where=f"camera {name}", hint="near, then far")
+        raise CellError(
+            f"the range from {near:g} to {far:g} m is empty",
+            where=f"camera {name}",
+            hint="give the near limit, then the far limit",
+        )
     return CameraSpec(
         name=name,
         intrinsics=pinhole(camera.size_px, camera.fov_rad),
@@ -72,7 +76,7 @@ def pinhole(size_px: tuple[int, int], fov_rad: float) -> CameraIntrinsics:
 
 
 def reduced(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
-    """Return the intrinsics of an image in which one pixel stands for `step` by `step` of the given one."""
+    """Return the intrinsics of an image reduced by `step` in both directions."""
     shift = (step - 1) / 2.0
     return CameraIntrinsics(
         width_px=intrinsics.width_px // step,
@@ -85,15 +89,17 @@ def reduced(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
 
 
 def optical_frame_pose(at: Vector3, look_at: Vector3, *, name: str = "camera") -> Pose:
-    """Return the pose of an optical frame: up in the image is up in the world, or +y where it looks along z.
+    """Return the pose of an optical frame: up in the image is up in the world, or +y if it looks along z.
 
     Raises:
-        CellError: the two points are one.
+        CellError: the two points coincide.
     """
     ahead = np.subtract(look_at, at)
     length = float(np.linalg.norm(ahead))
     if not length > _UPRIGHT:
-        raise CellError("a camera cannot look at where it stands", where=f"camera {name}", hint="change `look_at`")
+        raise CellError(
+            "`look_at` is the position of the camera itself", where=f"camera {name}", hint="change `look_at`"
+        )
     ahead = ahead / length
     right = np.cross(ahead, (0.0, 0.0, 1.0))
     if float(np.linalg.norm(right)) < _UPRIGHT:
@@ -103,7 +109,7 @@ def optical_frame_pose(at: Vector3, look_at: Vector3, *, name: str = "camera") -
 
 
 def directions(intrinsics: CameraIntrinsics) -> Array:
-    """Return for each pixel, row by row, the point at depth 1 m that it looks at, (pixels, 3), optical frame."""
+    """Return for each pixel, row by row, its point at depth 1 m, (pixels, 3), optical frame."""
     x = (np.arange(intrinsics.width_px) - intrinsics.cx_px) / intrinsics.fx_px
     y = (np.arange(intrinsics.height_px) - intrinsics.cy_px) / intrinsics.fy_px
     across, down = np.meshgrid(x, y)
@@ -111,24 +117,24 @@ def directions(intrinsics: CameraIntrinsics) -> Array:
 
 
 def pixels(intrinsics: CameraIntrinsics, points: Array) -> Array:
-    """Return where points (k, 3) of the optical frame, in front of the camera, are in the image, (k, 2): u, v."""
+    """Project points (k, 3) of the optical frame, in front of the camera, into the image, (k, 2): u, v."""
     ratio = points[:, :2] / points[:, 2:]
     focal = np.array([intrinsics.fx_px, intrinsics.fy_px])
     return ratio * focal + np.array([intrinsics.cx_px, intrinsics.cy_px])
 
 
 def depths(image: DepthImage) -> Image:
-    """Return the depths of an image, (height, width) float32, as `DepthImage` has them.
+    """Return the depths of an image, (height, width) float32, as in `DepthImage`.
 
     Raises:
-        CellError: there are not as many as there are pixels.
+        CellError: their number differs from the number of pixels.
     """
     shape = (image.intrinsics.height_px, image.intrinsics.width_px)
     if len(image.depth_m) != 4 * shape[0] * shape[1]:
         raise CellError(
-            f"{len(image.depth_m)} bytes are no image of {shape[1]} x {shape[0]} pixels",
+            f"{len(image.depth_m)} bytes are not an image of {shape[1]} x {shape[0]} pixels",
             where=f"camera {image.camera}",
-            hint="send four bytes a pixel",
+            hint="send four bytes per pixel",
         )
     return np.frombuffer(image.depth_m, dtype=np.float32).reshape(shape)
 

@@ -1,4 +1,4 @@
-"""The camera process as the event loop sees it: started, asked to look, and gone for good once it is lost."""
+"""The client of the camera process on the event loop: starts it, sends requests, and never reuses a lost process."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from robots.vision.perception_messages import PerceptionRequest, PerceptionResul
 
 _START = "from robots.vision.camera_process_main import main; main()"
 _WHAT = "the camera process"
-# Rendering on the processor would take all cores, and the control loop's with them.
+# Rendering on the CPU would use all cores, including that of the control loop.
 _SETTINGS = {"LP_NUM_THREADS": "1"}
 # The first start on a machine compiles the kernels and fits the arms' spheres.
 _START_S = 300.0
@@ -35,7 +35,7 @@ _HINT = "a new one is started"
 
 
 class CameraProcess:
-    """One camera process; when it is lost, another one must be made."""
+    """One camera process; after a loss, create another one."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -49,10 +49,10 @@ class CameraProcess:
         return self._process.pid if self._process is not None and self._process.poll() is None else 0
 
     async def start(self, sight: PerceptionSetup) -> None:
-        """Start the process and wait until it can look.
+        """Start the process and wait until it is ready.
 
         Raises:
-            CellError: the cell cannot be looked at.
+            CellError: the cell cannot be rendered.
             RobotError: the process does not start.
         """
         ours, theirs = socket.socketpair()
@@ -70,7 +70,7 @@ class CameraProcess:
             self.end()
             raise RobotError(f"the camera process was not ready within {_START_S:g} s", hint=_HINT) from error
         except BaseException:
-            # Whatever went wrong, cancellation included, no process may be left behind.
+            # On any error, cancellation included, no process may be left behind.
             if self._wire is None:
                 ours.close()
             self.end()
@@ -79,19 +79,19 @@ class CameraProcess:
             theirs.close()
 
     def know(self, known: KnownGeometry) -> None:
-        """Leave out these obstacles and held parts from the next look on."""
+        """Exclude these obstacles and held parts from the next image on."""
         if self._wire is not None:
             self._wire.send(UpdateKnownGeometry(known=known))
 
     def ask(self, look: PerceptionRequest) -> asyncio.Future[PerceptionResult]:
-        """Return what will hold what is seen: CellError where the order cannot be carried out, RobotError when lost."""
+        """Return the future result: CellError if the request fails, RobotError when the process is lost."""
         if self._wire is None:
             raise RobotError("the camera process was ended", hint=_HINT)
         self._numbers += 1
         return self._wire.ask(PerceptionOrder(number=self._numbers, look=look))
 
     def end(self) -> None:
-        """End the process; it holds nothing that could be lost."""
+        """End the process; it holds no state worth keeping."""
         wire, self._wire = self._wire, None
         if wire is not None:
             wire.close()
@@ -115,11 +115,11 @@ class CameraConnection(asyncio.Protocol):
         self._transport: asyncio.Transport | None = None
         self._asked: dict[int, asyncio.Future[PerceptionResult]] = {}
         self.opened: asyncio.Future[PerceptionReady] = loop.create_future()
-        """Done once the process can look."""
+        """Completes once the process is ready."""
         self._lost: RobotError | None = None
 
     def ask(self, order: PerceptionOrder) -> asyncio.Future[PerceptionResult]:
-        """Send an order; raises RobotError when the process is lost."""
+        """Send a request; raises RobotError when the process is lost."""
         future: asyncio.Future[PerceptionResult] = asyncio.get_running_loop().create_future()
         if self._lost is not None:
             raise self._lost
@@ -128,32 +128,32 @@ class CameraConnection(asyncio.Protocol):
         return future
 
     def send(self, message: ToWorker) -> None:
-        """Send a message; one to a lost process goes nowhere."""
+        """Send a message; messages to a lost process are dropped."""
         if self._lost is None and self._transport is not None:
             self._transport.write(frame_message(msgspec.msgpack.encode(message)))
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         if self._transport is not None:
             self._transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Begin; called by asyncio."""
+        """Start receiving; called by asyncio."""
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come; called by asyncio."""
+        """Handle received data; called by asyncio."""
         try:
             for frame in self._reader.feed(data):
                 self._take(self._decode(frame))
         except (RobotError, msgspec.MsgspecError) as error:
-            # What comes is not ours: nothing after it can be understood either.
-            self._lose(RobotError(f"the camera process sent what cannot be read: {error}", hint=_HINT))
+            # The stream is invalid: nothing after it can be decoded either.
+            self._lose(RobotError(f"the camera process sent an invalid message: {error}", hint=_HINT))
             self.close()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Tell who waits that the process is gone; called by asyncio."""
+        """Fail all waiters: the process is lost; called by asyncio."""
         self._lose(RobotError(self._how_it_ended(), hint=_HINT))
 
     def _take(self, message: FromWorker) -> None:
@@ -181,5 +181,5 @@ class CameraConnection(asyncio.Protocol):
         for future in (self.opened, *waiting):
             if not future.done():
                 future.set_exception(error)
-                # Who asked may have gone; then nobody else hears of it.
+                # The requester may be gone; then nobody else retrieves the exception.
                 future.exception()

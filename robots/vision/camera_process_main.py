@@ -1,4 +1,4 @@
-"""The camera process: takes states of the world from a socket, renders and maps them, answers with the map."""
+"""The camera process: receives world states from a socket, renders and maps them, and replies with the map."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class _Mailbox:
         self._waiting: list[bytes] = []
 
     def next(self) -> ToWorker:
-        """Return the next message, once there is one."""
+        """Wait for the next message and return it."""
         while not self._waiting:
             self._waiting = self._messages.receive()
         return self._decode(self._waiting.pop(0))
@@ -69,7 +69,7 @@ def _serve(mailbox: _Mailbox) -> None:
     except FlexcellError as error:
         mailbox.send(_refused(error))
         return
-    # Where cores are scarce, the event loop and the planners come first: a late image is dropped, nothing else.
+    # On few cores the event loop and the planners have priority: a late image is merely dropped.
     os.nice(_NICE)
     mailbox.send(PerceptionReady(words=eye.words))
     while True:
@@ -80,7 +80,7 @@ def _serve(mailbox: _Mailbox) -> None:
                 try:
                     mailbox.send(PerceptionAnswer(number=number, seen=eye.look(look)))
                 except (FlexcellError, ValueError) as error:
-                    # ValueError: a pose or an array that is none; the next order may be a good one.
+                    # ValueError: an invalid pose or array; the next request may be valid.
                     mailbox.send(_refused(error, number=number))
             case StartPerception():
                 return

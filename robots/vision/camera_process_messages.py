@@ -1,4 +1,4 @@
-"""What goes between the event loop and the camera process."""
+"""The messages between the event loop and the camera process."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from robots.vision.perception_messages import PerceptionRequest, PerceptionResul
 
 
 class StartPerception(msgspec.Struct, frozen=True, kw_only=True, tag="begin"):
-    """Build the copy of the cell; the first message."""
+    """Build the copy of the cell; always the first message."""
 
     sight: PerceptionSetup
 
 
 class UpdateKnownGeometry(msgspec.Struct, frozen=True, kw_only=True, tag="tell"):
-    """Leave out these obstacles and held parts from the next look on."""
+    """Exclude these obstacles and held parts from the next image on."""
 
     known: KnownGeometry
 
 
 class PerceptionOrder(msgspec.Struct, frozen=True, kw_only=True, tag="order"):
-    """Look, and answer under this number."""
+    """A perception request; the answer has the same number."""
 
     number: int
     look: PerceptionRequest
 
 
 class PerceptionReady(msgspec.Struct, frozen=True, kw_only=True, tag="opened"):
-    """The copy stands and everything is compiled; `words` say how images are made."""
+    """The copy is built and everything is compiled; `words` names the rendering method."""
 
     words: str
 
 
 class PerceptionAnswer(msgspec.Struct, frozen=True, kw_only=True, tag="answer"):
-    """What was seen."""
+    """The result of a request."""
 
     number: int
     seen: PerceptionResult
 
 
 class PerceptionRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refused"):
-    """The cell cannot be looked at, or this order could not be carried out; `number` is 0 for the cell."""
+    """The cell cannot be rendered (`number` 0), or the request with this number failed."""
 
     message: str
     where: str = ""

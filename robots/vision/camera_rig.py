@@ -1,4 +1,4 @@
-"""Looks at a simulated cell through its cameras and keeps the map: one call for each moment, wherever it runs."""
+"""Renders the cameras of a simulated cell and updates the map: one call per instant, in any process."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from robots.vision.physics_copy import PhysicsCopy
 
 
 class CameraRig:
-    """Looks with cameras of a simulated cell; belongs to the thread that made it.
+    """The cameras of a simulated cell; owned by the thread that created it.
 
     Args:
-        sight: What to look at.
-        repeatable: Whether the images must be the same on every machine.
+        sight: The cell and its cameras.
+        repeatable: Whether the images must be identical on every machine.
 
     Raises:
-        CellError: the cell cannot be built, or images cannot be made as the environment asks.
+        CellError: the cell cannot be built, or the rendering method set in the environment is unavailable.
     """
 
     def __init__(self, sight: PerceptionSetup, *, repeatable: bool) -> None:
@@ -42,23 +42,25 @@ class CameraRig:
 
     @property
     def words(self) -> str:
-        """How images are made, for people."""
+        """Human-readable name of the rendering method."""
         return self._depth.words
 
     def know(self, known: KnownGeometry) -> None:
-        """Leave out these obstacles and held parts from the next look on."""
+        """Exclude these obstacles and held parts from the next image on."""
         if self._mapper is not None:
             self._mapper.know(known)
 
     def look(self, look: PerceptionRequest) -> PerceptionResult:
-        """Take the images, bring the map up to date and find what is looked for.
+        """Render the images, update the map and detect objects.
 
         Raises:
-            CellError: something known of the cell does not fit it; the map is as it was.
+            CellError: the known geometry does not fit the cell; the map is unchanged.
         """
         unknown = [name for name in (*look.cameras, *look.detecting) if name not in self._cameras]
         if unknown:
-            raise CellError(f"there is no camera {unknown[0]}", where="cameras", hint=f"there are {[*self._cameras]}")
+            raise CellError(
+                f"there is no camera {unknown[0]}", where="cameras", hint=f"the cameras are {[*self._cameras]}"
+            )
         started_s = time.perf_counter()
         self._cell.go_to(np.frombuffer(look.state))
         images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
@@ -74,7 +76,7 @@ class CameraRig:
         )
 
     def warm(self) -> None:
-        """Have everything compiled and loaded that a first look would wait for; the map stays empty."""
+        """Compile and load everything that the first request needs; the map stays empty."""
         home = {arm.name: ArmConfiguration(joints=arm.robot().home_rad) for arm in self._sight.scene.arms}
         images = [self._image(camera, 0.0) for camera in self._sight.cameras]
         if self._mapper is not None:
@@ -82,7 +84,7 @@ class CameraRig:
             self._mapper.forget()
 
     def close(self) -> None:
-        """Let go of the graphics."""
+        """Release the graphics context."""
         self._depth.close()
 
     def _mapped(self, look: PerceptionRequest, images: tuple[DepthImage, ...]) -> OccupancyGrid | None:
@@ -94,7 +96,9 @@ class CameraRig:
 
     def _found(self, camera: CameraSpec, time_s: float) -> Detections:
         if camera.detector is None:
-            raise CellError(f"{camera.name} detects nothing", where="cameras", hint="give it `detect: {}` in the cell")
+            raise CellError(
+                f"{camera.name} has no detector", where="cameras", hint="add `detect: {}` to it in the cell document"
+            )
         return self._detector.detections(camera, camera.detector, time_s=time_s)
 
     def _image(self, camera: CameraSpec, time_s: float) -> DepthImage:

@@ -1,4 +1,4 @@
-"""The cameras of a cell document on the world that simulates it."""
+"""Creates the cameras of a cell document on its simulated world."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from robots.vision.voxel_box import voxel_box
 def cell_cameras(
     document: CellDocument, *, scene: SimScene, world: SimWorld, seed: int | None
 ) -> LockstepPerception | RealTimePerception | None:
-    """Return what watches the cell, None where it has no camera, or nothing to do for those that it has.
+    """Return the perception device of a cell, None without cameras or without a task for them.
 
     Raises:
-        CellError: a camera or the box of the map makes no sense, or the environment's wish for images.
+        CellError: a camera, the box of the map or `FLEXCELL_DEPTH` is invalid.
     """
     detects = any(camera.detect is not None for camera in document.cameras.values())
     if not document.cameras or (document.occupancy is None and not detects):
@@ -45,7 +45,7 @@ def _check_labels(document: CellDocument) -> None:
         for part in camera.detect.labels if camera.detect is not None else ():
             if part not in document.parts:
                 raise CellError(
-                    f"the detector of {name} has a label for {part}, which is no part of the cell",
+                    f"the detector of {name} has a label for {part}, which is not a part of the cell",
                     where=f"camera {name}",
                     hint=did_you_mean(part, document.parts),
                 )

@@ -1,4 +1,4 @@
-"""Depth images by OpenGL on the processor: loads the graphics libraries, so only in processes that render."""
+"""Depth images by OpenGL on the CPU: loads the graphics libraries, so only in processes that render."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from robots.vision.depth_rays import SEEN_GROUPS
 from robots.vision.physics_copy import PhysicsCopy
 
 GlKind = Literal["egl", "osmesa"]
-# What stands nearer is not seen, and does not hide what is behind it.
+# Nearer objects are not rendered and do not occlude.
 _NEAR_M = 0.05
 _BEYOND = 1.2
 _MORE_GEOMS = 100
 
 
 class GraphicsUnavailable(Exception):
-    """No OpenGL is to be had; the text says why."""
+    """OpenGL is unavailable; the text states why."""
 
 
 class GlDepthRenderer:
     """Renders with MuJoCo's classic renderer, on this thread only.
 
-    The context is made directly: `MUJOCO_GL` would have to be set before anything loads MuJoCo.
+    The context is created directly: `MUJOCO_GL` would have to be set before anything loads MuJoCo.
 
     Raises:
-        GraphicsUnavailable: there is no such OpenGL on this machine.
+        GraphicsUnavailable: this machine has no such OpenGL.
     """
 
     def __init__(self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, kind: GlKind) -> None:
@@ -46,7 +46,7 @@ class GlDepthRenderer:
             self._gl.make_current()
             self._context: Any = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         except Exception as error:
-            # Missing libraries and drivers show up as anything from ImportError to AttributeError.
+            # Missing libraries and drivers raise anything from ImportError to AttributeError.
             raise GraphicsUnavailable(f"{type(error).__name__}: {error}") from error
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
@@ -56,11 +56,11 @@ class GlDepthRenderer:
         self.words = f"with OpenGL ({kind})"
 
     def intrinsics(self, camera: CameraSpec) -> CameraIntrinsics:
-        """Return the lens: the camera's own."""
+        """Return the camera's own intrinsics."""
         return camera.intrinsics
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         scene, lens = self._scene, camera.intrinsics
         far = _BEYOND * camera.range_m[1]
         self._gl.make_current()
@@ -75,7 +75,7 @@ class GlDepthRenderer:
         )
         for flag in range(len(scene.flags)):
             scene.flags[flag] = False
-        # Without shading, and without the haze that would change far depths.
+        # Without shading, and without haze, which would change far depths.
         scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = True
         scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
         self._look(camera, far)
@@ -89,7 +89,7 @@ class GlDepthRenderer:
         return np.where(buffer > 0.0, depth, np.inf).astype(np.float32)
 
     def close(self) -> None:
-        """Let go of the graphics."""
+        """Release the graphics context."""
         self._gl.make_current()
         self._context.free()
         self._gl.free()
@@ -109,7 +109,7 @@ class GlDepthRenderer:
 
 
 def _bodies_only() -> Any:
-    """Return options that show bodies, and nothing that MuJoCo draws to explain them."""
+    """Return options that show bodies without MuJoCo's annotations."""
     options = mujoco.MjvOption()
     options.flags[:] = 0
     options.flags[mujoco.mjtVisFlag.mjVIS_STATIC] = 1

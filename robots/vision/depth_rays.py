@@ -1,4 +1,4 @@
-"""Depth images by rays against the collision shapes: needs no graphics, gives the same bits everywhere; slower."""
+"""Depth images by ray casting against the collision shapes: no graphics, bit-identical everywhere, slower."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from robots.vision.camera import CameraSpec, Image, directions, reduced
 from robots.vision.physics_copy import PhysicsCopy
 
 SEEN_GROUPS = 3
-"""Bodies in the geometry groups below this are there for cameras; helpers are in groups above."""
+"""Geometry groups below this are visible to cameras; helpers are in groups above."""
 _SEEN = np.array([group < SEEN_GROUPS for group in range(6)], dtype=np.uint8)
-# Coarser than this share of a voxel between rays, surfaces would have holes that no neighbour fills.
+# With rays farther apart than this share of a voxel, surfaces would have holes that no neighbour fills.
 _PITCH_VOXELS = 1.5
 _STEPS = (8, 4, 2)
 
 
 class RayDepthRenderer:
-    """Casts a ray for each pixel of a smaller image; `voxel_m` and `middle_m` say how small it may be."""
+    """Casts a ray for each pixel of a reduced image; `voxel_m` and `middle_m` determine the reduction."""
 
-    words = "by rays, in smaller images"
+    words = "by ray casting, at reduced resolution"
 
     def __init__(
         self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, voxel_m: float, middle_m: tuple[float, ...]
@@ -34,28 +34,28 @@ class RayDepthRenderer:
         self._rays = {camera.name: _Rays(camera, voxel_m, np.array(middle_m)) for camera in cameras}
 
     def intrinsics(self, camera: CameraSpec) -> CameraIntrinsics:
-        """Return the lens of the smaller image."""
+        """Return the intrinsics of the reduced image."""
         return self._rays[camera.name].intrinsics
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         rays = self._rays[camera.name]
         hit, distance = first_hits(self._cell, rays.start, rays.flat, reach_m=2.0 * camera.range_m[1])
         depth = np.where(hit >= 0, distance * rays.along, np.inf).astype(np.float32)
         return depth.reshape(rays.intrinsics.height_px, rays.intrinsics.width_px)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Nothing to release."""
 
 
 def first_hits(cell: PhysicsCopy, start: Array, along: Array, *, reach_m: float) -> tuple[NDArray[np.int32], Array]:
-    """Return the shape that each ray meets first, below 0 for none, and how far away, metres.
+    """Return the first shape that each ray hits, below 0 for none, and its distance, metres.
 
     Args:
-        cell: In the state that it is in.
-        start: Where all rays begin, (3,).
-        along: Where they go, k unit vectors in the world, flat (3 k,).
-        reach_m: How far at most.
+        cell: The cell in its present state.
+        start: Origin of all rays, (3,).
+        along: Directions, k unit vectors in the world, flat (3 k,).
+        reach_m: Maximum distance.
     """
     count = len(along) // 3
     hit, distance = np.empty(count, dtype=np.int32), np.empty(count)

@@ -1,7 +1,7 @@
-"""How depth images are made on this machine: with OpenGL where there is some, else by rays; decided at the start.
+"""Selects the rendering of depth images on this machine at the start: OpenGL if available, else ray casting.
 
-In virtual time it is rays, which give the same bits on every machine, so that runs repeat. The environment
-variable `FLEXCELL_DEPTH` (`egl`, `osmesa` or `rays`) decides otherwise.
+Virtual time uses ray casting, which is bit-identical on every machine, so that runs are repeatable. The environment
+variable `FLEXCELL_DEPTH` (`egl`, `osmesa` or `rays`) overrides the selection.
 """
 
 from __future__ import annotations
@@ -20,34 +20,34 @@ from robots.vision.physics_copy import PhysicsCopy
 from robots.vision.voxel_box import VoxelBox
 
 VARIABLE = "FLEXCELL_DEPTH"
-# How fine images by rays are where nothing is mapped: as for such voxels in the middle of the cell.
+# Resolution of ray-cast images without a map: as for such voxels in the middle of the cell.
 _PITCH_M = 0.02
 _MIDDLE_M = (0.0, 0.0, 0.0)
 
 
 class DepthRenderer(Protocol):
-    """Makes exact depth images of the state that its copy of the cell is in."""
+    """Renders exact depth images of the present state of its copy of the cell."""
 
     @property
     def words(self) -> str:
-        """How it makes them, for people."""
+        """Human-readable name of the rendering method."""
         ...
 
     def intrinsics(self, camera: CameraSpec) -> CameraIntrinsics:
-        """Return the lens of the images that it makes for a camera."""
+        """Return the intrinsics of the rendered images of a camera."""
         ...
 
     def exact(self, camera: CameraSpec) -> Image:
-        """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
+        """Return the exact depths, (height, width), infinite where nothing is hit."""
         ...
 
     def close(self) -> None:
-        """Let go of what it uses."""
+        """Release its resources."""
         ...
 
 
 def check_depth_setting() -> None:
-    """Raise CellError when `FLEXCELL_DEPTH` is none of its values."""
+    """Raise CellError if `FLEXCELL_DEPTH` has an invalid value."""
     if (choice := os.environ.get(VARIABLE, "")) not in ("", "egl", "osmesa", "rays"):
         raise CellError(f"{VARIABLE} is {choice}", where="cameras", hint="set it to egl, osmesa or rays")
 
@@ -55,10 +55,10 @@ def check_depth_setting() -> None:
 def new_depth_renderer(
     cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, box: VoxelBox | None, repeatable: bool
 ) -> DepthRenderer:
-    """Return who makes the images of `cameras`; `repeatable` asks for the same bits on every machine.
+    """Return the renderer of `cameras`; `repeatable` requires bit-identical images on every machine.
 
     Raises:
-        CellError: `FLEXCELL_DEPTH` asks for what there is not.
+        CellError: the method requested by `FLEXCELL_DEPTH` is unavailable.
     """
     check_depth_setting()
     rays = partial(
@@ -76,7 +76,7 @@ def new_depth_renderer(
                 return GlDepthRenderer(cell, cameras, kind=kind)
             except GraphicsUnavailable as error:
                 raise CellError(
-                    f"{VARIABLE} asks for {kind}, and it does not work: {error}",
+                    f"{VARIABLE} requests {kind}, which does not work: {error}",
                     where="cameras",
                     hint=f"install it, or set {VARIABLE}=rays",
                 ) from error
@@ -86,7 +86,7 @@ def new_depth_renderer(
 
 
 def _graphics(cell: PhysicsCopy, cameras: tuple[CameraSpec, ...]) -> GlDepthRenderer | None:
-    # Once the bindings have been loaded for one of the two, the process cannot go over to the other.
+    # Once the bindings are loaded for one of the two, the process cannot switch to the other.
     kind: GlKind | None = "egl" if find_library("EGL") else "osmesa" if find_library("OSMesa") else None
     if kind is None:
         return None

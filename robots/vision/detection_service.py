@@ -1,4 +1,4 @@
-"""Who wants to know what the cameras' detectors find, how often, and telling them; on the event loop's thread."""
+"""Detections of the cameras' detectors: demand, rate, topic and service; on the event loop's thread."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from robots.vision.detector_spec import DetectorSpec
 
 _FRESH_IMAGES = 3
 _LEAST_FRESH_S = 1.0
-# A quarter of a period early is on time: images come when they come.
+# A quarter of a period early is on time: image times are irregular.
 _EARLY = 0.25
 
 
 class DetectionService:
-    """Answers for the detectors of a cell's cameras; those without one are none of its business."""
+    """The detectors of a cell's cameras; ignores cameras without a detector."""
 
     def __init__(self, cameras: tuple[CameraSpec, ...]) -> None:
         self._desks = {
@@ -30,26 +30,26 @@ class DetectionService:
 
     @property
     def needed(self) -> bool:
-        """Whether anybody wants to know what any camera finds."""
+        """Whether any camera's detections are in demand."""
         return any(desk.needed for desk in self._desks.values())
 
     def due(self, cameras: tuple[CameraSpec, ...], *, now_s: float) -> tuple[str, ...]:
-        """Return those of the cameras, which take an image now, in whose images things are to be looked for."""
+        """Return those of `cameras`, which take an image now, whose detectors are due."""
         desks = [self._desks[camera.name] for camera in cameras if camera.name in self._desks]
         return tuple(desk.name for desk in desks if desk.begins(now_s))
 
     def take_result(self, found: tuple[Detections, ...]) -> None:
-        """Tell what was found."""
+        """Publish detections."""
         for each in found:
             self._desks[each.camera].take_result(each)
 
     def fail(self, reason: str) -> None:
-        """Refuse those who wait."""
+        """Fail all waiting requests."""
         for desk in self._desks.values():
             desk.fail(reason)
 
     def register(self, bus: SkillBus) -> None:
-        """Offer what each detector finds, as a topic and as a service, with its parameters."""
+        """Advertise the detections of each detector as topic and service, with its parameters."""
         for desk in self._desks.values():
             desk.register(bus)
 
@@ -62,7 +62,7 @@ class _CameraDetections:
         self._is_always_on = detector.always
         self._topic: Topic[Detections] | None = None
         self._began_s = float("-inf")
-        # Who asked before the image was taken that is being looked at, and who has asked since.
+        # Requests from before the image being processed, and requests since.
         self._served: list[asyncio.Future[Detections]] = []
         self._waiting: list[asyncio.Future[Detections]] = []
 
@@ -76,7 +76,7 @@ class _CameraDetections:
         return any(not each.done() for each in self._waiting)
 
     def begins(self, now_s: float) -> bool:
-        """Begin to look for things if it is time to; return whether it is."""
+        """Start a detection if one is due; return whether it is."""
         period_s = 1.0 / self._rate_hz - _EARLY / self._camera_hz
         if not self.needed or (now_s < self._began_s + period_s and not self._is_asked):
             return False
@@ -105,11 +105,11 @@ class _CameraDetections:
         bus.advertise_service(DetectObjects, self._detect, namespace=self.name)
         rate, always = f"{self.name}/detection_rate_hz", f"{self.name}/detect_always"
         bus.parameters.declare(
-            rate, DetectionRate, self._rate_hz, description="How often it looks for things, at most, while it is read"
+            rate, DetectionRate, self._rate_hz, description="Maximum detection rate while detections have subscribers"
         )
         bus.parameters.watch(rate, self._set_rate)
         bus.parameters.declare(
-            always, bool, self._is_always_on, description="Whether it looks for things while nobody reads it, too"
+            always, bool, self._is_always_on, description="Whether the detector also runs without subscribers"
         )
         bus.parameters.watch(always, self._set_always)
 

@@ -1,4 +1,4 @@
-"""A detector in numbers: what it calls the parts, what it takes to be found, how far off it is, in which frame."""
+"""The specification of a detector: labels, visibility thresholds, noise and frame."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.messages import Pose
 
 
 class DetectorSpec(msgspec.Struct, frozen=True, kw_only=True):
-    """A detector of a cell; `labels` by the names of parts, `frame_pose` is that of `frame` in the world."""
+    """A detector of a cell; `labels` by part name, `frame_pose` is that of `frame` in the world."""
 
     rate_hz: float
     always: bool
@@ -23,7 +23,7 @@ class DetectorSpec(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def detector_of(detector: ObjectDetector) -> DetectorSpec:
-    """Return a detector of a cell document in numbers."""
+    """Return the specification of a detector in a cell document."""
     return DetectorSpec(
         rate_hz=detector.rate_hz,
         always=detector.always,

@@ -1,4 +1,4 @@
-"""What is known to be in the cell: the arms where they are, obstacles, parts lying and held, as balls and solids."""
+"""The known geometry of a cell: arms, obstacles, free and held parts, as balls and solids."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 
 
 class KnownGeometry(msgspec.Struct, frozen=True, kw_only=True):
-    """The obstacles of a planning scene, and what arms hold in it."""
+    """The obstacles and held parts of a planning scene."""
 
     obstacles: tuple[Obstacle, ...] = ()
     held: tuple[AttachedPart, ...] = ()
 
     @classmethod
     def of(cls, scene: PlanningScene) -> KnownGeometry:
-        """Return what of a planning scene the map leaves out, besides the arms."""
+        """Return the geometry of a planning scene that the map excludes, besides the arms."""
         return cls(obstacles=scene.obstacles, held=scene.attached)
 
 
 class ArmConfiguration(msgspec.Struct, frozen=True, kw_only=True):
-    """Where the joints of an arm and of its tool were at an instant, radians or metres."""
+    """Joint positions of an arm and its tool at an instant, radians or metres."""
 
     joints: tuple[float, ...]
     tool_joints: dict[str, float] = {}
 
 
 class MeasuredState(msgspec.Struct, frozen=True, kw_only=True):
-    """What was where when images were taken: arms by name, and the parts whose poses in the world were measured."""
+    """The state of a cell when images were taken: arms by name, and the measured poses of parts in the world."""
 
     time_s: float
     arms: dict[str, ArmConfiguration] = {}

@@ -1,4 +1,4 @@
-"""Which voxels known obstacles and held parts take; worked out once for each thing in each place."""
+"""The voxels occupied by known obstacles and held parts; computed once per object and pose."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from robots.vision.occupancy_kernels import BESIDE, INSIDE, NEAR, Bytes
 from robots.vision.solid_distance import solid_distance
 from robots.vision.voxel_box import VoxelBox
 
-# A thing that moved less is where it was.
+# An object that moved less counts as unmoved.
 _SAME_M, _SAME_RAD = 1e-4, 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Taken:
-    """The voxels from `low` to before `high` that something takes: `levels` as in `occupancy_kernels`."""
+    """The voxels from `low` to before `high` that an object occupies: `levels` as in `occupancy_kernels`."""
 
     low: tuple[int, int, int]
     high: tuple[int, int, int]
@@ -38,7 +38,7 @@ class _Placed:
 
 
 class KnownVoxels:
-    """Keeps the voxels of things in their places, by name, and puts them together."""
+    """Caches the voxels of objects by name and merges them."""
 
     def __init__(self, box: VoxelBox) -> None:
         self._box = box
@@ -48,7 +48,7 @@ class KnownVoxels:
         self._together: Bytes = np.zeros(box.shape, dtype=np.uint8)
 
     def set_still(self, obstacles: Iterable[Obstacle]) -> None:
-        """Say what stands still, until said otherwise; raises CellError for a shape or pose that is none."""
+        """Set the static objects; raises CellError for an invalid shape or pose."""
         new = {thing.name: self._placed(self._still, thing, self._box.known_margin_m) for thing in obstacles}
         if new.keys() != self._still.keys() or any(placed is not self._still[name] for name, placed in new.items()):
             self._together[:] = 0
@@ -57,10 +57,10 @@ class KnownVoxels:
         self._still = new
 
     def taken(self, moving: Iterable[Obstacle], held: Iterable[Obstacle]) -> Bytes:
-        """Return what the still things, those that move by themselves and those `held` take, flat.
+        """Return the voxels occupied by static, `moving` and `held` objects, flat.
 
         Raises:
-            CellError: a shape or pose is none.
+            CellError: a shape or pose is invalid.
         """
         box = self._box
         self._moving = {thing.name: self._placed(self._moving, thing, box.known_margin_m) for thing in moving}
@@ -75,12 +75,12 @@ class KnownVoxels:
             pose, old = RigidTransform.from_pose(thing.pose), known.get(thing.name)
             inner = [RigidTransform.from_pose(solid.pose) for solid in thing.solids]
         except ValueError as error:
-            raise CellError(str(error), where=thing.name, hint="say where it stands") from error
+            raise CellError(str(error), where=thing.name, hint="give its pose") from error
         if old is not None and old.solids == thing.solids and _same(old.pose, pose):
             return old
         margin_m = max(margin_m, self._box.reach_m)
         for solid in thing.solids:
-            # Checks the sizes, and names what is wrong.
+            # Validates the sizes and names the invalid one.
             coal_shape(solid.shape, thing.name)
         taken = (
             self._taken(convex_solid(solid.shape), pose.then(at), margin_m, near)
@@ -100,7 +100,7 @@ class KnownVoxels:
     def _bounds(
         self, solid: ConvexSolid, pose: RigidTransform, margin_m: float
     ) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
-        """Return the voxels, first and last + 1 along each axis, that the solid with its margin can reach."""
+        """Return the voxel bounds, first and last + 1 along each axis, of the solid with its margin."""
         corners = to_frame(pose, _corners(*solid.box()))
         corner, voxel = np.array(self._box.corner_m), self._box.voxel_m
         first = np.floor((corners.min(axis=0) - margin_m - corner) / voxel)

@@ -1,4 +1,4 @@
-"""The cameras in virtual time: images are taken between two steps of the world, the map comes some steps later."""
+"""The cameras in virtual time: images are taken between two steps of the world; the map follows some steps later."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class _CameraRig(Protocol):
 
 
 class LockstepPerception(PerceptionDevice):
-    """Looks on the event loop's own thread; the copy of the cell is built at the first look: most runs need none.
+    """Renders on the event loop's thread; the copy of the cell is built on first use: most runs need none.
 
-    What `OccupancyState` tells of computing times is 0 here: no two runs would tell the same.
+    The computing times in `OccupancyState` are 0 here, as they would differ between runs.
     """
 
     def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
@@ -38,7 +38,7 @@ class LockstepPerception(PerceptionDevice):
         self._steps = 0
         super().__init__(sight, world=world, now_s=lambda: self._steps * step_s)
         self._every = {camera.name: max(1, round(1.0 / (camera.rate_hz * step_s))) for camera in sight.cameras}
-        # What all periods are whole numbers of: between, nothing can be due.
+        # Common divisor of all periods: nothing can be due in between.
         self._tick = math.gcd(*self._every.values())
         self._later = max(1, round(PROCESSING_S / step_s))
         self._coming: tuple[int, PerceptionResult] | None = None
@@ -60,19 +60,19 @@ class LockstepPerception(PerceptionDevice):
             eye.close()
 
     def _after_step(self) -> bool:
-        """Hand in what is ready, look if it is time to; return whether somebody was told."""
+        """Deliver finished results, render if due; return whether callbacks ran."""
         self._steps += 1
-        told = False
+        notified = False
         if self._coming is not None and self._steps >= self._coming[0] + self._later:
             (taken, seen), self._coming = self._coming, None
             self.take_result(seen, looked_at_s=taken * self.sight.scene.step_s)
-            told = True
+            notified = True
         if self._steps % self._tick == 0 and self.needed:
-            told = self._look_if_due() or told
-        return told
+            notified = self._look_if_due() or notified
+        return notified
 
     def _look_if_due(self) -> bool:
-        """Look if it is time to; return whether somebody was told that it cannot be done."""
+        """Render if due; return whether a failure was reported."""
         due = tuple(camera for camera in self.sight.cameras if self._steps % self._every[camera.name] == 0)
         if due and self._coming is not None:
             self.dropped += 1
@@ -81,14 +81,14 @@ class LockstepPerception(PerceptionDevice):
             try:
                 self._coming = (self._steps, self._look(order)) if order is not None else None
             except CellError as error:
-                # Who waits for detections is told; who needs the map hears that it is stale.
+                # Waiting detections fail; users of the map are notified that it is stale.
                 self.fail(str(error))
                 return True
         return False
 
     def _look(self, order: PerceptionRequest) -> PerceptionResult:
         if self._eye is None:
-            # It loads the compiled kernels and coal.
+            # Imported here: it loads the compiled kernels and coal.
             from robots.vision.camera_rig import CameraRig
 
             self._eye = CameraRig(self.sight, repeatable=True)

@@ -1,7 +1,7 @@
-"""The compiled steps of the occupancy map: count measured points in voxels, look through voxels, weigh the evidence.
+"""The compiled steps of the occupancy map: count measured points in voxels, look through voxels, apply the evidence.
 
-Voxels are flat arrays, z fastest. A camera is `lens` (fx, fy, cx, cy), its rotation (3, 3) and its place (3,) in
-the world. `taken` says what is known to be in a voxel: nothing (0), something near (1), something all through (2).
+Voxels are flat arrays, z fastest. A camera is `lens` (fx, fy, cx, cy), its rotation (3, 3) and its position (3,) in
+the world. `taken` is the known occupancy of a voxel: nothing (0), something near (1), fully occupied (2).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def count_hits(
     counts: Counts,
     touched: Counts,
 ) -> int:
-    """Count the measured points in each voxel that nothing known takes; return how many voxels were `touched`."""
+    """Count the measured points in each voxel free of known geometry; return the number of `touched` voxels."""
     height, width = depth.shape
     nx, ny, nz = shape[0], shape[1], shape[2]
     scale = 1.0 / voxel
@@ -185,10 +185,10 @@ def apply_evidence(
 ) -> int:
     """Fill and clear voxels by this image's evidence; return how many, in `waiting`, need more of it.
 
-    Hit well in the company of others: filled at once, or after `edge_images` where it adds to what is there. Hit
-    well alone, or badly beside one hit well: filled when that happened in `lone_images` in a row. Looked through,
-    and not hit, `misses_to_clear` times: cleared, or `misses_beside` times while something right beside it is hit
-    well, as at the edges of things. `through` is of the `filled`, then of the `waiting`.
+    Well hit with neighbours: filled at once, or after `edge_images` next to filled voxels. Well hit
+    alone, or weakly next to a well hit one: filled after `lone_images` consecutive images. Looked through,
+    and not hit, `misses_to_clear` times: cleared, or `misses_beside` times next to a well hit
+    voxel, as at the edges of objects. `through` refers to the `filled`, then to the `waiting`.
     """
     waited, waits = waits, 0
     for i in range(waited):
@@ -240,7 +240,7 @@ def apply_evidence(
 def stamp_balls(balls: Array, near: float, corner: Array, voxel: float, shape: Counts, taken: Bytes) -> None:
     """Mark the voxels whose centres are in balls (k, 4), or nearer than `near` to them.
 
-    The balls reach beyond the arm that they cover: what was seen in them before is hidden, not forgotten.
+    The balls extend beyond the arm that they cover: voxels filled earlier inside them are hidden, not cleared.
     """
     for b in range(len(balls)):
         radius = balls[b, 3]
@@ -275,6 +275,6 @@ def _span(middle: float, reach: float, voxel: float, count: int) -> tuple[int, i
 
 @compiled()
 def unknown_voxels(full: Bytes, taken: Bytes, out: Bytes) -> None:
-    """Write 1 for each voxel that is full and that nothing known takes; what an arm came beside is still there."""
+    """Write 1 for each full voxel free of known geometry; voxels near an arm that came later stay."""
     for i in range(len(full)):
         out[i] = full[i] if taken[i] <= BESIDE else 0

@@ -1,4 +1,4 @@
-"""The newest map with all that is to be said of it: who needs it, whether it may be trusted, who hears of changes."""
+"""The latest occupancy map with its validity and its change subscribers."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _log = logging.getLogger("flexcell.vision")
 
 
 class LiveOccupancyMap:
-    """Keeps the newest map, for whoever takes the images; belongs to the event loop's thread.
+    """Holds the latest map; owned by the event loop's thread.
 
     Args:
-        now_s: The time by which a map's age is told.
-        fresh_s: A map older than this must not be trusted.
+        now_s: Clock for the age of the map.
+        fresh_s: Maximum age of a valid map.
     """
 
     def __init__(self, *, now_s: Callable[[], float], fresh_s: float) -> None:
@@ -29,20 +29,20 @@ class LiveOccupancyMap:
         self.latest: OccupancyGrid | None = None
         self.required = 0
         self.starting = False
-        """Whether the cameras are still being started."""
+        """Whether the cameras are still starting."""
         self.lost_reason = ""
-        """Why no images come, in words; empty while they could."""
+        """Why no images arrive; empty while they can."""
 
     @property
     def stale_reason(self) -> str:
-        """Why the map must not be trusted, empty while it may be."""
+        """Why the map is not valid; empty while it is valid."""
         if self.lost_reason:
             return self.lost_reason
         if self.latest is None:
-            return "the cameras are still starting" if self.starting else "the cameras have not seen anything yet"
+            return "the cameras are still starting" if self.starting else "no camera image yet"
         age_s = self._now_s() - self._looked_at_s
         if math.isinf(age_s):
-            return "the cameras have not seen anything since the cell was brought back to an earlier state"
+            return "no camera image since the cell was restored to an earlier state"
         return f"the newest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""
 
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
@@ -56,28 +56,28 @@ class LiveOccupancyMap:
         return unsubscribe
 
     def arrived(self, grid: OccupancyGrid, *, looked_at_s: float) -> bool:
-        """Take a new map, of images taken at `looked_at_s`; return whether its voxels changed."""
+        """Set a new map of images taken at `looked_at_s`; return whether its voxels changed."""
         changed = self.latest is None or grid.revision != self.latest.revision
         if self.stale_reason:
-            # Nobody tells when a map grows too old; that it is fresh again is news all the same.
+            # A map becomes stale without notification; that it is valid again is still a change.
             self._told = (self._told[0], "stale")
         self.latest, self._looked_at_s, self.lost_reason = grid, looked_at_s, ""
         self.tell()
         return changed
 
     def outdated(self) -> None:
-        """Say that the map is of another time; nobody may trust it before the next image."""
+        """Invalidate the map until the next image."""
         self._looked_at_s = -math.inf
         self.tell()
 
     def lost(self, reason: str) -> None:
-        """Say why no images come any more."""
+        """Set the reason why no more images arrive."""
         self.lost_reason = reason
         self.tell()
 
     def tell(self) -> None:
-        """Call back if there is anything new: the age of a map is looked at only here."""
-        # Ages that rise are no news.
+        """Notify subscribers of changes; only this checks the age of the map."""
+        # A rising age is not a change.
         stale = self.lost_reason or ("stale" if self.stale_reason else "")
         now = (self.latest.revision if self.latest is not None else 0, stale)
         if now == self._told:
@@ -87,6 +87,6 @@ class LiveOccupancyMap:
             try:
                 callback()
             except Exception:
-                # Any listener may fail in any way; the cameras, on which others rely, must go on.
+                # A listener may fail in any way; the cameras, on which others rely, must continue.
                 _log.exception("a listener to the occupancy map failed and was removed")
                 self._callbacks.remove(callback)

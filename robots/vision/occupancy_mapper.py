@@ -1,4 +1,4 @@
-"""The occupancy map: what depth images show, less what is known to be there. Knows no camera and no simulator."""
+"""The occupancy map from depth images, minus the known geometry. Independent of cameras and simulator."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ from robots.vision.occupancy_kernels import (
 from robots.vision.voxel_box import VoxelBox
 
 SHARE_OF_WHOLE = 0.2
-"""A voxel counts as hit well when it has this share of the pixels that its face would fill at that distance."""
+"""A voxel counts as well hit with this share of the pixels that its face would fill at that distance."""
 COMPANY = 2
-"""So many of its 26 neighbours must be hit too for a voxel to be filled at once."""
+"""Number of its 26 neighbours that must be hit too for a voxel to be filled at once."""
 EDGE_IMAGES = 2
-"""A voxel that adds to something which is there already is filled when it was hit in so many images in a row."""
+"""Consecutive images with hits that fill a voxel adjacent to a filled one."""
 LONE_IMAGES = 3
-"""A voxel without that company is filled when it was hit in so many images in a row."""
+"""Consecutive images with hits that fill an isolated voxel."""
 MISSES_TO_CLEAR = 2
-"""A voxel is cleared when so many images looked through it and none between hit it."""
+"""Images that look through a voxel, without a hit in between, that clear it."""
 MISSES_BESIDE = 20
-"""Where a voxel right beside is hit well it takes so many: the edges of things are hit in some images only."""
+"""The same next to a well hit voxel: edges of objects are hit in some images only."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,18 +53,18 @@ class _View:
 
 
 class OccupancyMapper:
-    """Fills and clears the voxels of a box by what depth images show.
+    """Fills and clears the voxels of a box from depth images.
 
-    A voxel with measured points in it is filled at once where its neighbours have some too, as on a person's
-    arm; alone it must be hit in three images in a row, which noise is not. It is cleared when two images have
-    looked through it, or more at the edges of things. What no image shows stays as it was. Nothing is
-    filled near the arms, what they hold and the known obstacles; what is full near a known obstacle is left out, and
-    forgotten inside it. What was full before an arm came beside it is still there, and what its covering balls hide is
-    there again when it has gone on.
+    A voxel with measured points is filled at once if its neighbours have some too, as on a person's
+    arm; an isolated one must be hit in three consecutive images, which noise does not do. It is cleared after two
+    images that look through it, or more at the edges of objects. Voxels that no image shows keep their state. Nothing
+    is filled near the arms, held parts and known obstacles; filled voxels near a known obstacle are excluded, and
+    cleared inside it. Voxels filled before an arm came near stay filled, and those hidden by its covering balls
+    reappear when it has moved on.
 
     Args:
-        box: The voxels, and how near to something known a voxel is taken for it.
-        arms: All arms that a camera may see.
+        box: The voxels, and the margins around known geometry.
+        arms: All arms in view of the cameras.
 
     Raises:
         CellError: the model of an arm cannot be read.
@@ -89,21 +89,21 @@ class OccupancyMapper:
         self._bits = np.packbits(self._out).tobytes()
 
     def know(self, known: KnownGeometry) -> None:
-        """Leave out these obstacles and held parts from the next update on."""
+        """Exclude these obstacles and held parts from the next update on."""
         self._known = known
 
     def forget(self) -> None:
-        """Begin anew with an empty map; the revision goes on rising."""
+        """Restart with an empty map; the revision keeps increasing."""
         for array in (self._full, self._misses, self._streak):
             array[:] = 0
         self._waits = 0
 
     def update(self, images: Iterable[DepthImage], moment: MeasuredState) -> OccupancyGrid:
-        """Return the map after one more image of each of some cameras, taken when things were as `moment` says.
+        """Return the map after one more image of each of some cameras, taken in the state `moment`.
 
         Raises:
-            CellError: an image has not the bytes, lens or pose of one, a posture is of another arm, or a known
-                shape is none. The map is as it was.
+            CellError: an image has invalid bytes, intrinsics or pose, a configuration is of another arm, or a known
+                shape is invalid. The map is unchanged.
         """
         views = [_view(image) for image in images]
         taken = self._taken(moment)
@@ -179,7 +179,7 @@ class OccupancyMapper:
         )
 
     def _taken(self, moment: MeasuredState) -> Bytes:
-        """Return what is known to take each voxel at that moment."""
+        """Return the known occupancy of each voxel at that instant."""
         still: list[Obstacle] = []
         moving: list[Obstacle] = []
         for thing in self._known.obstacles:
@@ -206,7 +206,7 @@ class OccupancyMapper:
 
     def _body(self, name: str) -> ArmBody:
         if name not in self._arms:
-            raise CellError(f"the map knows no arm {name}", where="occupancy", hint=f"it knows {list(self._arms)}")
+            raise CellError(f"the map has no arm {name}", where="occupancy", hint=f"its arms are {list(self._arms)}")
         return self._arms[name]
 
     def _grid(self, time_s: float) -> OccupancyGrid:
@@ -230,9 +230,11 @@ def _view(image: DepthImage) -> _View:
     numbers = np.array([lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px], dtype=np.float64)
     where = f"camera {image.camera}"
     if not np.isfinite(numbers).all() or min(lens.fx_px, lens.fy_px) <= 0.0:
-        raise CellError(f"{numbers.tolist()} is no lens", where=where, hint="give focal lengths above 0 and a centre")
+        raise CellError(
+            f"{numbers.tolist()} are not intrinsics", where=where, hint="give focal lengths above 0 and a centre"
+        )
     try:
         pose = RigidTransform.from_pose(image.pose)
     except ValueError as error:
-        raise CellError(str(error), where=where, hint="say where the camera stands") from error
+        raise CellError(str(error), where=where, hint="give the pose of the camera") from error
     return _View(depth=depths(image), lens=numbers, turn=pose.rotation, place=pose.xyz)

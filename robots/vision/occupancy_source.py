@@ -1,4 +1,4 @@
-"""What a planner needs of whoever keeps the occupancy map: the map itself, whether to trust it, when it changed."""
+"""The occupancy map interface for planners: the map, its validity and its changes."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ Unsubscribe = Callable[[], None]
 class OccupancySource(Protocol):
     """A live occupancy map; everything happens on the event loop's thread.
 
-    Images are taken only while somebody needs the map: between `require` and `release`, or while
+    Images are taken only while the map is needed: between `require` and `release`, or while
     `cell/occupancy` has subscribers.
     """
 
     @property
     def latest(self) -> OccupancyGrid | None:
-        """The newest map, None before the first image. Its revision rises only when voxels changed."""
+        """The latest map, None before the first image. Its revision increases only when voxels changed."""
         ...
 
     @property
     def stale_reason(self) -> str:
-        """Why `latest` must not be trusted, in words: no image yet, cameras lost. Empty while it may be."""
+        """Why `latest` is not valid: no image yet, cameras lost. Empty while it is valid."""
         ...
 
     @property
     def starting(self) -> bool:
-        """Whether what takes the images is still being started, so that none can have come."""
+        """Whether the cameras are still starting, so that no image can have arrived."""
         ...
 
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
@@ -41,20 +41,20 @@ class OccupancySource(Protocol):
         ...
 
     def require(self) -> None:
-        """Take images from now on, until as many `release` as `require`. The map is stale until the first one."""
+        """Start taking images until as many `release` as `require` calls. The map is stale until the first image."""
         ...
 
     def release(self) -> None:
-        """Say that one who required the map needs it no more."""
+        """Undo one `require`."""
         ...
 
     def forget(self) -> None:
-        """Begin with an empty map at the next image; until then `latest` stays as it is."""
+        """Restart with an empty map at the next image; until then `latest` stays unchanged."""
         ...
 
     def know(self, scene: PlanningScene) -> None:
-        """Leave out the obstacles and held parts of `scene` from the next image on.
+        """Exclude the obstacles and held parts of `scene` from the next image on.
 
-        Arms and the parts of a simulated cell are taken where they were when the image was made.
+        Arms and the parts of a simulated cell use their state at the time of the image.
         """
         ...

@@ -1,9 +1,9 @@
-"""An ideal detector for simulated cameras: it finds the parts of which a camera sees enough.
+"""An ideal detector for simulated cameras: it detects the sufficiently visible parts.
 
-It stands in for a learned one and knows what no such detector knows: the parts' shapes and where they are. What it
-takes from the image is how much of each part is seen, by rays at the camera's own resolution: something in front,
-the edge of the image and the camera's range hide a part, bad light, blur and likeness do not; nothing is
-taken for something else, and nothing is found where there is none.
+It replaces a learned detector and uses the true shapes and poses of the parts. From the image it takes only
+the visible share of each part, by ray casting at the camera's resolution: occlusion,
+the edge of the image and the camera's range hide a part; light, blur and similarity have no effect. There are
+no misclassifications and no false detections.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from robots.vision.detector_spec import DetectorSpec
 from robots.vision.physics_copy import PhysicsCopy
 from robots.vision.visibility import bounding_edges_m, intersects_shape
 
-# Of a part that fills the image it is enough to look at every second or third pixel.
+# For a part that fills the image every second or third pixel suffices.
 _MOST_RAYS = 4096
 
 
 class PartDetector:
-    """Finds the parts of a copy of the cell, in the state that it is in.
+    """Detects the parts of a copy of the cell in its present state.
 
     Args:
-        cell: What is looked at.
-        parts: Those of its scene.
-        seed: Of the noise.
+        cell: The copy of the cell.
+        parts: The parts of its scene.
+        seed: Seed of the noise.
     """
 
     def __init__(self, cell: PhysicsCopy, parts: tuple[PartBody, ...], *, seed: int) -> None:
@@ -47,7 +47,7 @@ class PartDetector:
         self._geoms = {part.name: int(cell.model.geom(part.name).id) for part in parts}
 
     def detections(self, camera: CameraSpec, detector: DetectorSpec, *, time_s: float) -> Detections:
-        """Return what the detector of a camera finds now, the best seen first."""
+        """Return the present detections of a camera's detector, most visible first."""
         poses = self._cell.moment(time_s).parts
         found: list[Detection] = []
         for part in self._parts:
@@ -74,7 +74,7 @@ class PartDetector:
         )
 
     def _seen(self, camera: CameraSpec, part: PartBody, pose: RigidTransform) -> _VisiblePixels | None:
-        """Return how much the camera sees of a part, None where that is nothing."""
+        """Return the visible pixels of a part, None if it is invisible."""
         eye = RigidTransform.from_pose(camera.pose)
         rays = _rays_around(camera.intrinsics, eye.inverse().then(pose), bounding_edges_m(part.shape, part.size_m))
         if rays is None:
@@ -88,7 +88,7 @@ class PartDetector:
         if not len(alone):
             return None
         lens, (near, far) = camera.intrinsics, camera.range_m
-        # What the edge of the image cuts off is hidden as well: it would be there in a larger image.
+        # Pixels beyond the edge of the image count as hidden: a larger image would show them.
         framed = ((alone >= -0.5) & (alone < (lens.width_px - 0.5, lens.height_px - 0.5))).all(axis=1)
         depth = self._depths(self._geoms[part.name], eye.xyz, world, far)
         seen = alone[framed & (depth >= near) & (depth <= far)]
@@ -98,14 +98,14 @@ class PartDetector:
         return _VisiblePixels(len(seen) * step * step, len(seen) / len(alone), (left, top, right, bottom))
 
     def _depths(self, geom: int, start: Array, along: Array, far: float) -> Array:
-        """Return how deep the part is where a ray, one metre deep each, meets it first; else infinity."""
+        """Return the depth at which each ray, scaled to 1 m depth, first hits the part; else infinity."""
         lengths = np.linalg.norm(along, axis=1)
         units = np.ascontiguousarray(along / lengths[:, None]).ravel()
         hit, distance = first_hits(self._cell, start.copy(), units, reach_m=far * float(lengths.max()))
         return np.where(hit == geom, distance / lengths, np.inf)
 
     def _measured(self, camera: CameraSpec, detector: DetectorSpec, part: str, pose: Pose, time_s: float) -> Pose:
-        """Return the pose of a part in the detector's frame, off by its noise."""
+        """Return the pose of a part in the detector's frame, with noise."""
         true = RigidTransform.from_pose(pose)
         if detector.noise_m > 0.0 or detector.noise_rad > 0.0:
             names = (zlib.crc32(name.encode()) for name in (camera.name, part))
@@ -126,7 +126,7 @@ class _VisiblePixels:
 
 
 def _directions(lens: CameraIntrinsics, at_px: Array) -> Array:
-    """Return the points at depth 1 m that the pixels (k, 2) look at, (k, 3), optical frame."""
+    """Return the points of the pixels (k, 2) at depth 1 m, (k, 3), optical frame."""
     x, y = (at_px[:, 0] - lens.cx_px) / lens.fx_px, (at_px[:, 1] - lens.cy_px) / lens.fy_px
     return np.column_stack((x, y, np.ones(len(at_px))))
 
@@ -134,10 +134,10 @@ def _directions(lens: CameraIntrinsics, at_px: Array) -> Array:
 def _rays_around(
     lens: CameraIntrinsics, pose: RigidTransform, edges: tuple[float, float, float]
 ) -> tuple[Array, int] | None:
-    """Return the pixels (k, 2) around a box of which one stands for `step` by `step`, and `step`.
+    """Return the pixels (k, 2) around a box, subsampled by `step` in both directions, and `step`.
 
-    They go beyond the image where the box does. None where the box, at `pose` in the optical frame, is not
-    wholly in front of the camera, or beside the image.
+    They extend beyond the image where the box does. None if the box, at `pose` in the optical frame, is not
+    entirely in front of the camera, or is outside the image.
     """
     signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     corners = (signs * np.array(edges)) @ pose.rotation.T + pose.xyz

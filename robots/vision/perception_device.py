@@ -1,4 +1,4 @@
-"""The cameras of a simulated cell as a device: takes images while somebody needs them, and tells what is in them."""
+"""The cameras of a simulated cell as a device: takes images on demand and publishes map and detections."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ _log = logging.getLogger("flexcell.vision")
 class PerceptionDevice:
     """Implements `engine.robot.Robot` for a world and `OccupancySource` for planners.
 
-    How images come is up to `LockstepWatch` and `RealTimeWatch`, which ask here what to look at and hand in
-    here what was seen.
+    `LockstepPerception` and `RealTimePerception` produce the images: they fetch requests here and deliver
+    results here.
     """
 
     name = "cell/cameras"
@@ -56,21 +56,21 @@ class PerceptionDevice:
         self._states: Topic[OccupancyState] | None = None
         self._depths: dict[str, Topic[DepthImage]] = {}
 
-    # What a planner needs: `OccupancySource`.
+    # `OccupancySource`, for planners.
 
     @property
     def latest(self) -> OccupancyGrid | None:
-        """The newest map."""
+        """The latest map."""
         return self.map.latest
 
     @property
     def stale_reason(self) -> str:
-        """Why the map must not be trusted."""
+        """Why the map is not valid."""
         return self.map.stale_reason
 
     @property
     def starting(self) -> bool:
-        """Whether there is no map only because the cameras are still being started."""
+        """Whether the cameras are still starting."""
         return self.map.starting
 
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
@@ -78,34 +78,34 @@ class PerceptionDevice:
         return self.map.subscribe(callback)
 
     def require(self) -> None:
-        """Take images until as many `release`."""
+        """Take images until as many `release` calls."""
         self.map.required += 1
 
     def release(self) -> None:
-        """End what one `require` began."""
+        """Undo one `require`."""
         self.map.required = max(0, self.map.required - 1)
 
     def forget(self) -> None:
-        """Begin with an empty map at the next image."""
+        """Restart with an empty map at the next image."""
         self._forget = True
 
     def know(self, scene: PlanningScene) -> None:
-        """Leave out the obstacles and held parts of `scene` from the next image on."""
+        """Exclude the obstacles and held parts of `scene` from the next image on."""
         known = KnownGeometry.of(scene)
         if known != self.known:
             self.known = known
 
-    # What is asked by those who take the images.
+    # Interface of the image producers.
 
     @property
     def needed(self) -> bool:
-        """Whether anybody needs the map, an image or what is found in one now."""
+        """Whether the map, an image or detections are in demand."""
         return self._needs_images or self.desk.needed
 
     def next_look(self, due: tuple[CameraSpec, ...], *, now_s: float) -> PerceptionRequest | None:
-        """Return the order to look at the world as it is now with those of the cameras `due` that are needed.
+        """Return the request for the present world state with the needed cameras among `due`.
 
-        None where none is, or while there is no world.
+        None if no camera is needed, or while the world is lost.
         """
         if self._world.lost_reason:
             return None
@@ -119,7 +119,7 @@ class PerceptionDevice:
         forget = self._forget and bool(names)
         self._forget = self._forget and not forget
         return PerceptionRequest(
-            # An image begins with the number of steps done.
+            # An image begins with the step count.
             time_s=round(float(image[0])) * self._world.host.summary.step_s,
             state=state_bytes(image),
             cameras=names,
@@ -129,11 +129,11 @@ class PerceptionDevice:
         )
 
     def restart_revisions(self) -> None:
-        """Know that the next map is of an eye that has seen nothing before; revisions go on rising all the same."""
+        """Prepare for the maps of a new camera rig; revisions keep increasing."""
         self._base = self.map.latest.revision if self.map.latest is not None else 0
 
     def take_result(self, seen: PerceptionResult, *, looked_at_s: float) -> None:
-        """Publish what was seen; what comes after the world is lost is of no use."""
+        """Publish a result; results that arrive after the loss of the world are discarded."""
         if self._world.lost_reason:
             return
         self.status = DeviceStatus.READY
@@ -148,7 +148,7 @@ class PerceptionDevice:
         self.desk.take_result(seen.detections)
 
     def fail(self, reason: str) -> None:
-        """Say why no images come."""
+        """Report why no images arrive."""
         if reason != self.map.lost_reason:
             _log.error("no camera images: %s", reason)
         self.status = DeviceStatus.FAULT
@@ -156,32 +156,32 @@ class PerceptionDevice:
         self.desk.fail(reason)
 
     def set_rendering(self, words: str) -> None:
-        """Say how depth images are made."""
+        """Set the name of the rendering method."""
         if words != self.made:
             self.made = words
-            _log.info("depth images are made %s", words)
+            _log.info("depth images are rendered %s", words)
 
-    # What a device of the world is.
+    # Interface of a device of the world.
 
     def grips(self) -> dict[str, GraspCommand]:
         """Cameras hold nothing."""
         return {}
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
-        """The world was brought to an earlier state: what was seen since is forgotten."""
+        """The world was restored to an earlier state: the map is discarded."""
         self._forget = True
         self.map.outdated()
 
     def world_lost(self, reason: str) -> None:
-        """There is nothing to see: images of a world that stands still would look like a cell at rest."""
+        """Invalidate the map: images of a stopped world would look like a cell at rest."""
         self.fail(reason)
 
     def world_restored(self) -> None:
-        """Look again; what was seen before counts no more."""
+        """Resume with an empty map."""
         self.recall({})
 
     def register(self, bus: SkillBus) -> None:
-        """Publish what cameras there are; map, images and detections come while somebody reads them."""
+        """Publish the list of cameras; map, images and detections are published while they have subscribers."""
         if self.sight.box is not None:
             self._grids = bus.topic("cell/occupancy", OccupancyGrid)
             self._states = bus.topic("cell/occupancy_state", OccupancyState)

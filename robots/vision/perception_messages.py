@@ -1,4 +1,4 @@
-"""What is looked at, the order to look, and what is seen: as data that crosses the border of the camera process."""
+"""Setup, request and result of perception as data that can be sent to the camera process."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from robots.vision.voxel_box import VoxelBox
 
 
 class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True):
-    """What is looked at: a simulated cell, its cameras; `seed` is that of the noise.
+    """A simulated cell with its cameras; `seed` is that of the noise.
 
-    `box` is what is mapped, None where nothing is.
+    `box` is the mapped box, None without a map.
     """
 
     scene: SimScene
@@ -26,10 +26,10 @@ class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """An order to take images with `cameras` of the world at `time_s`; `wanted` are those to be handed out too.
+    """A request for images of `cameras` at world time `time_s`; `wanted` are those whose images are returned too.
 
-    With those of `detecting` objects are looked for. `state` are the float64 of `Host.image`. With `forget` the map
-    begins anew with these images.
+    The cameras in `detecting` also detect objects. `state` are the float64 of `WorldHost.image`. With `forget` the map
+    restarts with these images.
     """
 
     time_s: float
@@ -41,9 +41,9 @@ class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True):
-    """The map after a look, the images that were wanted, and how long making the images and mapping them took.
+    """The map after a request, the wanted images, and the times for rendering and mapping.
 
-    `grid` is None where nothing is mapped, or no images were taken.
+    `grid` is None without a map, or if no images were taken.
     """
 
     grid: OccupancyGrid | None
@@ -54,5 +54,5 @@ class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def state_bytes(image: Array) -> bytes:
-    """Return an image of the world (`Host.image`) as a `PerceptionRequest` carries it."""
+    """Encode an image of the world (`WorldHost.image`) for a `PerceptionRequest`."""
     return np.ascontiguousarray(image, dtype=np.float64).tobytes()

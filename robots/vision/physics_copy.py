@@ -1,4 +1,4 @@
-"""A second copy of a simulated cell, set to where the world was at an instant, for cameras to look at."""
+"""A copy of a simulated cell, set to the state of the world at an instant, for rendering."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from robots.vision.known_geometry import ArmConfiguration, MeasuredState
 
 
 class PhysicsCopy:
-    """MuJoCo's model of a scene and a state of it; raises CellError as `build_cell` does.
+    """MuJoCo's model of a scene and one state; raises CellError as `build_cell` does.
 
-    `model` and `data` are MuJoCo's, for who renders.
+    `model` and `data` are MuJoCo's, for renderers.
     """
 
     def __init__(self, scene: SimScene) -> None:
@@ -38,14 +38,14 @@ class PhysicsCopy:
         }
 
     def go_to(self, image: Array) -> None:
-        """Be where `image`, as of `Host.image`, was made; raises CellError where it is none of this world."""
+        """Set the state of `image`, from `WorldHost.image`; raises CellError if it is not of this world."""
         if len(image) < self._physics.stop or not np.isfinite(image[self._physics]).all():
-            raise CellError(f"{len(image)} numbers are no state of this world", where="cameras")
+            raise CellError(f"{len(image)} numbers are not a state of this world", where="cameras")
         mujoco.mj_setState(self.model, self.data, np.ascontiguousarray(image[self._physics]), self._kind)
         mujoco.mj_kinematics(self.model, self.data)
 
     def moment(self, time_s: float) -> MeasuredState:
-        """Return where arms and parts are in this state."""
+        """Return the configurations of arms and poses of parts in this state."""
         q: Array = self.data.qpos
         return MeasuredState(
             time_s=time_s,

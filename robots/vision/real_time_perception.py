@@ -1,4 +1,4 @@
-"""The cameras in real time: a process of their own looks, one moment at a time; moments that it misses are dropped."""
+"""The cameras in real time: a separate process renders one instant at a time; missed instants are dropped."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.2, 10.0
 
 
 class RealTimePerception(PerceptionDevice):
-    """Keeps a camera process running, and asks it to look while somebody needs it.
+    """Keeps a camera process running and sends it requests on demand.
 
-    When the process dies or hangs the map is stale, with the reason, until a new process has seen the cell.
+    If the process dies or hangs, the map is stale, with the reason, until the first result of a new process.
     """
 
     def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
@@ -40,7 +40,7 @@ class RealTimePerception(PerceptionDevice):
     async def __aenter__(self) -> Self:
         self.status = DeviceStatus.CONNECTED
         self.map.starting = True
-        # In the background: the process takes seconds to start, and most of what a cell does needs no cameras.
+        # In the background: the process takes seconds to start, and most work of a cell needs no cameras.
         self._task = asyncio.get_running_loop().create_task(self._watch(), name="cameras")
         return self
 
@@ -73,36 +73,36 @@ class RealTimePerception(PerceptionDevice):
                 await asyncio.sleep(pause_s)
 
     def _has_started(self) -> None:
-        """Say that it is up, or has failed: from now on what is missing is missing for another reason."""
+        """Mark the start as finished, successful or not."""
         self.map.starting = False
         self.map.tell()
 
     async def _look_on(self) -> None:
-        """Look whenever it is time to; raises RobotError once the process is lost."""
-        loop, told = asyncio.get_running_loop(), None
+        """Send requests whenever they are due; raises RobotError once the process is lost."""
+        loop, sent = asyncio.get_running_loop(), None
         while True:
             now_s = loop.time()
             await asyncio.sleep(self._fastest_s - now_s % self._fastest_s)
             self.map.tell()
             if not self.needed:
                 continue
-            if self.known is not None and self.known is not told:
-                told = self.known
-                self._process.know(told)
+            if self.known is not None and self.known is not sent:
+                sent = self.known
+                self._process.know(sent)
             looked_at_s = loop.time()
             order = self.next_look(self._due(looked_at_s), now_s=looked_at_s)
             if order is not None:
                 try:
                     self.take_result(await self._seen(order), looked_at_s=looked_at_s)
                 except CellError as error:
-                    # The process is well; what it was told of the cell cannot be mapped, and may be put right.
+                    # The process works; the known geometry it received is invalid, and may be corrected.
                     self.fail(str(error))
                 self.dropped += int((loop.time() - looked_at_s) / self._fastest_s)
 
     def _due(self, now_s: float) -> tuple[CameraSpec, ...]:
         found: list[CameraSpec] = []
         for camera in self.sight.cameras:
-            # A quarter of a period early is on time: timers come when they come.
+            # A quarter of a period early is on time: timers are irregular.
             if now_s >= self._due_s[camera.name] - 0.25 / camera.rate_hz:
                 self._due_s[camera.name] = max(self._due_s[camera.name], now_s - 0.5 / camera.rate_hz)
                 self._due_s[camera.name] += 1.0 / camera.rate_hz
@@ -110,7 +110,7 @@ class RealTimePerception(PerceptionDevice):
         return tuple(found)
 
     async def _seen(self, order: PerceptionRequest) -> PerceptionResult:
-        """Return what is seen; meanwhile others hear how old the map gets."""
+        """Return the result; meanwhile subscribers are notified of the map's age."""
         answer = self._process.ask(order)
         waited_s = 0.0
         while not answer.done() and waited_s < _PATIENCE_S:

@@ -1,4 +1,4 @@
-"""How far points are from a convex shape: exact outside, negative inside."""
+"""Distance of points from a convex shape: exact outside, negative inside."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robots.port import Array
 
 
 def solid_distance(solid: ConvexSolid, points: Array) -> Array:
-    """Return the distances (k,) of points (k, 3) of the solid's frame; of a hull a lower bound."""
+    """Return the distances (k,) of points (k, 3) in the solid's frame; a lower bound for a hull."""
     size = solid.size
     match solid.kind:
         case kind if kind == BOX:
@@ -28,5 +28,5 @@ def solid_distance(solid: ConvexSolid, points: Array) -> Array:
 
 
 def _outside(beyond: Array) -> Array:
-    """Return the distance from how far points are beyond each of some right-angled faces."""
+    """Return the distance from the excess of points beyond each of some orthogonal faces."""
     return np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)

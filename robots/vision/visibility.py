@@ -1,4 +1,4 @@
-"""Which rays meet a box, cylinder or sphere that stands alone: what a camera would see of it if nothing hid it."""
+"""Which rays hit an isolated box, cylinder or sphere: its image without occlusion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PARALLEL = 1e-12
 
 
 def bounding_edges_m(shape: str, size_m: tuple[float, ...]) -> Vector3:
-    """Return the edges of the box that a shape of a cell document fills, in its own axes."""
+    """Return the edges of the bounding box of a shape of a cell document, in its own axes."""
     match shape:
         case "sphere":
             return (size_m[0], size_m[0], size_m[0])
@@ -24,13 +24,13 @@ def bounding_edges_m(shape: str, size_m: tuple[float, ...]) -> Vector3:
 
 
 def intersects_shape(shape: str, size_m: tuple[float, ...], start: Array, along: Array) -> Mask:
-    """Return which rays meet the shape, (k,).
+    """Return which rays hit the shape, (k,).
 
     Args:
         shape: `box`, `cylinder` (along z) or `sphere`, centred at the origin.
         size_m: As in a cell document.
-        start: Where all rays begin, (3,), outside the shape.
-        along: Where they go, (k, 3).
+        start: Origin of all rays, (3,), outside the shape.
+        along: Directions, (k, 3).
     """
     half = np.array(bounding_edges_m(shape, size_m)) / 2.0
     match shape:
@@ -47,7 +47,7 @@ def intersects_shape(shape: str, size_m: tuple[float, ...], start: Array, along:
 
 
 def _slab(start: float, along: Array, half: float) -> tuple[Array, Array]:
-    """Return from where to where, in lengths of each ray, it is within `half` of the middle; from inf if never."""
+    """Return entry and exit, in lengths of each ray, of the slab within `half` of the centre; entry inf if never."""
     is_level = np.abs(along) < _PARALLEL
     pace = np.where(is_level, 1.0, along)
     one, other = (-half - start) / pace, (half - start) / pace

@@ -1,4 +1,4 @@
-"""The box of voxels that is mapped, in numbers."""
+"""The mapped box of voxels."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from engine.messages.sensing import OccupancyGrid
 from robots.port import Array
 
 _MOST_VOXELS = 20_000_000
-# A size that is a whole number of voxels but for rounding is taken for that.
+# Tolerance for sizes that are a whole number of voxels except for rounding.
 _ROUNDING = 1e-6
 
 
 class VoxelBox(msgspec.Struct, frozen=True, kw_only=True):
-    """A box along the world's axes from `corner_m` on, cut into cubes; margins as in the cell document."""
+    """An axis-aligned box from `corner_m` on, divided into cubes; margins as in the cell document."""
 
     corner_m: Vector3
     voxel_m: float
@@ -29,12 +29,12 @@ class VoxelBox(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def reach_m(self) -> float:
-        """From the centre of a voxel to its corners."""
+        """Distance from the centre of a voxel to its corners."""
         return self.voxel_m * math.sqrt(3.0) / 2.0
 
     @property
     def middle_m(self) -> Vector3:
-        """The middle of the box."""
+        """Centre of the box."""
         x, y, z = (a + self.voxel_m * count / 2.0 for a, count in zip(self.corner_m, self.shape, strict=True))
         return (x, y, z)
 
@@ -48,16 +48,16 @@ class VoxelBox(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def voxel_box(occupancy: OccupancyMap) -> VoxelBox:
-    """Return the box of a cell document, made larger to a whole number of voxels.
+    """Return the box of a cell document, enlarged to a whole number of voxels.
 
     Raises:
-        CellError: it has more voxels than can be kept up to date.
+        CellError: it has more voxels than can be updated in time.
     """
     voxel = occupancy.voxel_m
     x, y, z = (max(1, math.ceil(size / voxel - _ROUNDING)) for size in occupancy.size_m)
     if x * y * z > _MOST_VOXELS:
         raise CellError(
-            f"{x} x {y} x {z} voxels are more than {_MOST_VOXELS}",
+            f"{x} x {y} x {z} voxels exceed the limit of {_MOST_VOXELS}",
             where="occupancy",
             hint="make the box smaller or the voxels larger",
         )

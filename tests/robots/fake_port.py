@@ -264,7 +264,7 @@ class FakeArmPort:
                 f"the arm has stopped by itself: {self._reflex}", where="fake arm", hint="recover it first"
             )
         if self.motion is not None and not self.motion.ended:
-            raise RobotError("another motion is under way", where="fake arm")
+            raise RobotError("another motion is active", where="fake arm")
 
     def _play(self, trajectory: JointTrajectory, *, data: bytes = b"") -> FakeMotion:
         assert np.abs(trajectory.position_rad[0] - self._present()).max() < 0.01

@@ -1,8 +1,8 @@
-"""Inverse kinematics of any serial arm: nearest and all solutions within joint limits, following, postures.
+"""Inverse kinematics of any serial arm: nearest and all solutions within joint limits, tracking, postures.
 
-`InverseKinematicsSolver` is what others use. `chain` takes an arm's numbers from its forward kinematics,
-`ideal_arm` and `analytic` solve six-axis arms in closed form, `kernels` holds the compiled descents,
-`configuration_quality` tells singularities, `failure_reason` the reason why not.
+`InverseKinematicsSolver` is the public interface. `chain` derives an arm's parameters from its forward kinematics,
+`ideal_arm` and `analytic` solve six-axis arms in closed form, `kernels` contains the compiled descents,
+`configuration_quality` detects singularities, `failure_reason` explains failures.
 """
 
 from robots.model.inverse_kinematics.configuration_quality import SINGULAR, ConfigurationQuality

@@ -1,7 +1,7 @@
 """Closed-form solutions by EAIK: six-axis arms whose axes meet or are parallel, seven-axis arms with one joint locked.
 
 EAIK (Ostermeier, Külz, Althoff: "Automatic geometric decomposition for analytical inverse kinematics",
-IEEE RA-L 2025) decides by the geometry whether it can solve an arm.
+IEEE RA-L 2025) determines from the geometry whether it can solve an arm.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from robots.model.inverse_kinematics.ideal_arm import IdealArm, ideal_arm
 from robots.port import Array
 
 _AXES = 6
-# An ideal arm that is moved less than this from the true one has all of its solutions.
+# An ideal arm displaced less than this from the true one has all of its solutions.
 _EXACT = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnalyticSolver:
-    """The closed form of one arm; `locked` is the joint that is given a value, -1 for six-axis arms.
+    """The closed form of one arm; `locked` is the joint with a fixed value, -1 for six-axis arms.
 
-    `exact` is False where the solutions are those of an ideal arm next to the true one.
+    `exact` is False if the solutions are those of an ideal arm close to the true one.
     """
 
     ideal: IdealArm
@@ -37,21 +37,21 @@ class AnalyticSolver:
     solver: Any
 
     def candidates(self, goal: Array) -> Array:
-        """Return solutions (k, 6) for a goal (3, 4) in the world, any turns, near-misses included."""
+        """Return solutions (k, 6) for a goal (3, 4) in the world, with any turns, approximate ones included."""
         return _solved(self.solver, goal, _AXES)
 
     def candidates_with(self, goal: Array, value: float) -> Array:
-        """Return solutions (k, 7) that have the locked joint at `value`."""
+        """Return solutions (k, 7) with the locked joint at `value`."""
         return _solved(_solver(self.ideal, self.tool, ((self.locked, value),)), goal, _AXES + 1)
 
 
 def new_analytic_solver(chain: KinematicChain) -> AnalyticSolver | None:
     """Return the closed form of an arm, None if EAIK has none or is not installed."""
-    # EAIK has wheels for Linux only; elsewhere these arms are solved as all others are.
+    # EAIK has wheels for Linux only; elsewhere these arms use the general solver.
     if chain.sliding.any() or chain.dof not in (_AXES, _AXES + 1) or find_spec("eaik") is None:
         return None
     ideal = ideal_arm(chain)
-    # Of a seven-axis arm the last joint that leaves a solvable rest is locked: it moves the others least.
+    # For a seven-axis arm the last joint that leaves a solvable remainder is locked: it affects the others least.
     joints = [-1] if chain.dof == _AXES else range(_AXES, -1, -1)
     for locked in joints:
         solver = _solver(ideal, chain.tool, () if locked < 0 else ((locked, 0.0),))
@@ -65,13 +65,13 @@ def new_analytic_solver(chain: KinematicChain) -> AnalyticSolver | None:
 
 
 def _solver(ideal: IdealArm, tool: Array, locked: tuple[tuple[int, float], ...]) -> Any:
-    # The compiled part itself: the package's Python classes read URDFs with a library that we do not need.
+    # The compiled part only: the package's Python classes read URDFs with a library that is not needed here.
     eaik: Any = import_module("eaik.pybindings.EAIK")
     offsets = np.vstack((ideal.points[0], np.diff(ideal.points, axis=0), tool[:, 3] - ideal.points[-1]))
     try:
         return eaik.Robot(ideal.axes.T, offsets.T, tool[:, :3], list(locked), True)
     except RuntimeError:
-        # EAIK's way to say that it cannot decompose this geometry, for example of axes that almost meet.
+        # EAIK raises this for a geometry that it cannot decompose, for example axes that almost intersect.
         return None
 
 

@@ -1,4 +1,4 @@
-"""An arm as the numbers that fast kinematics works on, taken from its forward kinematics and nothing else."""
+"""The parameters of an arm for fast kinematics, derived only from its forward kinematics."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from robots.model.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 
-# Agreement demanded of the chain with the kinematics it was taken from, metres and entries of the rotation.
+# Required agreement of the chain with its source kinematics, metres and entries of the rotation.
 _AGREEMENT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
 class KinematicChain:
-    """A serial arm whose every joint turns about, or slides along, the z axis of its frame.
+    """A serial arm whose joints rotate about, or slide along, the z axis of their frames.
 
-    `placements` (n + 1, 3, 4): the pose of each joint's frame in the one before with all joints at 0,
-    from the world to the tool. `sliding` (n,) tells prismatic joints. `bounds` (3, n): lower limits,
-    upper limits, speeds. `axes` and `points` (n, 3) are the joints' lines in the world at 0, `tool`
+    `placements` (n + 1, 3, 4): the pose of each joint's frame in the previous one with all joints at 0,
+    from the world to the tool. `sliding` (n,) marks prismatic joints. `bounds` (3, n): lower limits,
+    upper limits, speeds. `axes` and `points` (n, 3) are the joint lines in the world at 0, `tool`
     (3, 4) the tool's pose there.
     """
 
@@ -40,10 +40,10 @@ class KinematicChain:
 
 
 def chain_of(kinematics: ArmKinematics) -> KinematicChain:
-    """Return the chain of an arm at its place in the cell.
+    """Return the chain of an arm at its base pose in the cell.
 
-    A column of the Jacobian with all joints at 0 is a joint's line: its direction, and its moment about
-    the tool. The lines and the tool's pose there determine the arm.
+    A column of the Jacobian with all joints at 0 is a joint line: its direction, and its moment about
+    the tool. The lines and the tool's pose at 0 determine the arm.
 
     Raises:
         CellError: the arm is not a serial chain of single joints.
@@ -91,7 +91,7 @@ def tool_at(chain: KinematicChain, joints: Array) -> Array:
 
 
 def jacobian_of(chain: KinematicChain, axes: Array, points: Array, tool: Array) -> Array:
-    """Return the Jacobian (6, n) of a configuration in which the joints' lines and the tool (3, 4) are these."""
+    """Return the Jacobian (6, n) of a configuration with these joint lines and tool pose (3, 4)."""
     arms = tool[:, 3] - points
     moving = np.where(chain.sliding[:, None], axes, np.cross(axes, arms))
     turning = np.where(chain.sliding[:, None], 0.0, axes)
@@ -126,12 +126,12 @@ def _about_z(angle: float) -> Array:
 def _check(chain: KinematicChain, kinematics: ArmKinematics) -> None:
     lower, upper = chain.bounds[:2]
     for share in (0.21, 0.83):
-        # Another share for each joint, so that no two move alike.
+        # A different share for each joint, so that no two move equally.
         joints = lower + (upper - lower) * ((share + 0.37 * np.arange(chain.dof)) % 1.0)
         off = float(np.abs(tool_at(chain, joints) - matrix_of(kinematics.tool_pose(joints))).max())
         if off > _AGREEMENT:
             raise CellError(
-                f"the arm is not a chain of single joints: its tool is {off:.2g} off",
+                f"the arm is not a serial chain of one-axis joints: tool pose error {off:.2g}",
                 where=kinematics.model.name,
-                hint="every arm joint must move the tool by itself, about or along one line",
+                hint="every arm joint must move the tool about or along one axis, independently of the other joints",
             )

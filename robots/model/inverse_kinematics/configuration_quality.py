@@ -1,4 +1,4 @@
-"""How well an arm can move in a configuration: distance to a singularity, which kind it is, what the tool cannot do."""
+"""The quality of a configuration: distance to a singularity, its kind, and the tool motion it impedes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robots.model.inverse_kinematics.ideal_arm import IdealArm, meeting_point
 from robots.port import Array
 
 SINGULAR = 0.03
-"""Below this smallest singular value (metres and radians weighed alike) an arm counts as singular."""
+"""Below this smallest singular value (metres and radians weighted equally) an arm counts as singular."""
 
 _PARALLEL = 1e-6
 _SAME_POINT_M = 1e-6
@@ -19,12 +19,12 @@ _SAME_POINT_M = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class ConfigurationQuality:
-    """One configuration judged.
+    """The quality of one configuration.
 
     `dexterity` is the smallest singular value of the Jacobian: some unit tool motion needs 1/dexterity of
     joint motion. `manipulability` is the product of all singular values (Yoshikawa). `kind` is `wrist`,
     `elbow` or `shoulder` where a six-axis arm of a known family is singular, otherwise empty. `hardest`
-    (6,) is the unit tool motion (m/s, then rad/s, world axes) that needs the most joint motion.
+    (6,) is the unit tool motion (m/s, then rad/s, world axes) that requires the most joint motion.
     """
 
     dexterity: float
@@ -34,23 +34,23 @@ class ConfigurationQuality:
 
     @property
     def singular(self) -> bool:
-        """Whether the arm is at, or next to, a singularity."""
+        """Whether the arm is at or near a singularity."""
         return self.dexterity < SINGULAR
 
     @property
     def words(self) -> str:
-        """What people are told; empty away from singularities."""
+        """Description for messages; empty away from singularities."""
         if not self.singular:
             return ""
         what = f"its {self.kind} singularity" if self.kind else "a singularity"
-        return f"next to {what} (dexterity {self.dexterity:.3f}): the tool can hardly {_motion(self.hardest)}"
+        return f"near {what} (dexterity {self.dexterity:.3f}): the tool can hardly {_motion(self.hardest)}"
 
 
 def evaluate_configuration(jacobian: Array, kind: str) -> ConfigurationQuality:
-    """Return the posture of a configuration with this Jacobian (6, n)."""
+    """Return the quality of a configuration with this Jacobian (6, n)."""
     directions, values, _ = np.linalg.svd(jacobian)
     hardest = directions[:, len(values) - 1]
-    # The sign of a singular vector is arbitrary: make the largest entry positive, so that answers repeat.
+    # The sign of a singular vector is arbitrary: the largest entry is made positive, for reproducible results.
     hardest = hardest * np.sign(hardest[int(np.argmax(np.abs(hardest)))])
     return ConfigurationQuality(
         dexterity=float(values[-1]),
@@ -61,9 +61,9 @@ def evaluate_configuration(jacobian: Array, kind: str) -> ConfigurationQuality:
 
 
 def kind_of_singularity(chain: KinematicChain, ideal: IdealArm, axes: Array, points: Array) -> str:
-    """Return which of its singularities a six-axis arm is next to; empty for arms of no known family.
+    """Return the singularity that a six-axis arm is near; empty for arms of unknown families.
 
-    `axes` and `points` (6, 3) are its joints' lines in the configuration.
+    `axes` and `points` (6, 3) are its joint lines in the configuration.
     """
     if chain.dof != 6 or chain.sliding.any() or not _parallel(ideal, 1, 2):
         return ""
@@ -75,7 +75,7 @@ def kind_of_singularity(chain: KinematicChain, ideal: IdealArm, axes: Array, poi
 
 
 def _three_parallel(axes: Array, points: Array) -> dict[str, float]:
-    """Measures, 0 at the singularity, of an arm whose axes 2, 3, 4 are parallel (Universal Robots)."""
+    """Return measures, 0 at the singularity, of an arm whose axes 2, 3, 4 are parallel (Universal Robots)."""
     normal, upper_arm_m = _normal_of_arm(axes, points)
     centre = _meeting(axes, points, 4, 5)
     side = np.cross(axes[0], axes[1])
@@ -87,7 +87,7 @@ def _three_parallel(axes: Array, points: Array) -> dict[str, float]:
 
 
 def _spherical_wrist(axes: Array, points: Array) -> dict[str, float]:
-    """Measures, 0 at the singularity, of an arm whose axes 2 and 3 are parallel and 4, 5, 6 meet (ABB and others)."""
+    """Return measures, 0 at a singularity, of an arm with parallel axes 2, 3 and a spherical wrist (ABB and others)."""
     normal, upper_arm_m = _normal_of_arm(axes, points)
     centre = _meeting(axes, points, 4, 5)
     away = centre - points[0]
@@ -99,7 +99,7 @@ def _spherical_wrist(axes: Array, points: Array) -> dict[str, float]:
 
 
 def _normal_of_arm(axes: Array, points: Array) -> tuple[Array, float]:
-    """Return the direction square to the plane of axes 2 and 3, and their distance."""
+    """Return the direction normal to the plane of axes 2 and 3, and their distance."""
     along = points[2] - points[1]
     along = along - axes[1] * (axes[1] @ along)
     length = float(np.linalg.norm(along))

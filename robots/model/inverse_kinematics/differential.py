@@ -1,4 +1,4 @@
-"""The differential side of inverse kinematics in numpy: what a pose misses, and the joint step that mends it."""
+"""Differential inverse kinematics in numpy: the pose error, and the joint step that reduces it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from robots.port import Array
 
 
 def pose_error(actual: RigidTransform, target: RigidTransform) -> Array:
-    """Return what is missing: metres, then the rotation vector in world axes, shape (6,)."""
+    """Return the pose error: metres, then the rotation vector in world axes, shape (6,)."""
     turn = rotation_vector(product(target.xyzw, conjugate(actual.xyzw)))
     return np.concatenate((target.xyz - actual.xyz, turn))
 
 
 def weighted_step(jacobian: Array, error: Array, *, damping: float, pull: Array | None = None) -> Array:
-    """Return the joint step that removes `error`, damped; `pull` acts where it does not disturb the tool."""
+    """Return the damped joint step that reduces `error`; `pull` acts in the null space."""
     square = jacobian @ jacobian.T
     square[np.diag_indices_from(square)] += damping + 1e-12
     if pull is None:

@@ -1,4 +1,4 @@
-"""Why a goal has no solution, in words: how far out of reach, what is missing, which joints are at limits."""
+"""Explains why a goal has no solution: distance out of reach, remaining error, joints at limits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _REACHED_M = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class DescentAttempt:
-    """Where a descent ended: joints (n,), and what is missing there."""
+    """The end of a descent: joints (n,), and the remaining error."""
 
     joints: Array
     distance_m: float
@@ -34,9 +34,9 @@ def unreachable_error(
     starts: Sequence[Array],
     to_position: Callable[[Array], DescentAttempt],
 ) -> RobotError:
-    """Return the error for a goal that no attempt has reached.
+    """Return the error for a goal that no attempt reached.
 
-    `best` came closest; `to_position` descends towards the bare position from a configuration, which is
+    `best` came closest; `to_position` descends towards the position only; it is
     tried from `best` and, while it fails, from `starts`.
     """
     place = "({:.3f}, {:.3f}, {:.3f})".format(*target.xyz)
@@ -48,15 +48,15 @@ def unreachable_error(
         free = other if other.distance_m < free.distance_m else free
     if free.distance_m > _REACHED_M or match is PoseMatch.POSITION:
         return RobotError(f"{place} is out of reach by {free.distance_m:.3f} m{_at_limits(chain, names, free.joints)}")
-    missing = f"{best.angle_rad:.2f} rad and {best.distance_m * 1e3:.1f} mm are missing"
+    error = f"error {best.angle_rad:.2f} rad and {best.distance_m * 1e3:.1f} mm"
     what = "in this orientation" if match is PoseMatch.POSE else "with the tool's axis in this direction"
     needed = 6 if match is PoseMatch.POSE else 5
     hint = None
     if chain.dof < needed:
         parts = "position or axis" if match is PoseMatch.POSE and chain.dof == 5 else "position"
-        hint = f"an arm of {chain.dof} joints cannot choose its orientation: ask for the {parts} only (`match`)"
+        hint = f"an arm of {chain.dof} joints cannot choose its orientation: request the {parts} only (`match`)"
     limits = _at_limits(chain, names, best.joints)
-    return RobotError(f"{place} is reached, but not {what}: {missing}{limits}", hint=hint)
+    return RobotError(f"{place} is reachable, but not {what}: {error}{limits}", hint=hint)
 
 
 def _at_limits(chain: KinematicChain, names: Sequence[str], joints: Array) -> str:

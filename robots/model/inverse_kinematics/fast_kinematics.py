@@ -1,4 +1,4 @@
-"""One arm prepared for fast inverse kinematics: its chain, its closed form, and typed calls of the compiled loops."""
+"""One arm prepared for fast inverse kinematics: chain, closed form, and typed calls of the compiled loops."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from robots.model.inverse_kinematics.pose_match import PoseMatch
 from robots.model.kinematics import ArmKinematics
 from robots.port import Array
 
-# The compiled loops are imported inside the functions that run them: numba costs a third of a second,
-# and most programs that import robots never ask for inverse kinematics.
+# The compiled loops are imported inside the functions that run them: numba takes a third of a second to import,
+# and most programs that import robots never use inverse kinematics.
 
 POSITION_TOLERANCE_M = 1e-5
 ANGLE_TOLERANCE_RAD = 1e-4
 
 PULLED, ITERATIONS, PATIENT_ITERATIONS = 30, 60, 150
-"""Iterations of a descent while redundant joints are drawn to the seed, and in all; of a patient descent."""
+"""Iterations of a descent with redundant joints pulled to the seed, and in total; of a patient descent."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RefinedSolutions:
-    """Near-solutions brought to the goal: `joints` (k, n), the row soonest reached, and how regular the arm is there.
+    """Refined solutions: `joints` (k, n), the row soonest reached, and a measure of regularity.
 
-    `pivot` bounds the square of the smallest singular value met from above.
+    `pivot` is an upper bound of the square of the smallest singular value encountered.
     """
 
     joints: Array
@@ -39,7 +39,7 @@ class RefinedSolutions:
 
 @dataclass(frozen=True, kw_only=True)
 class FastKinematics:
-    """The numbers of one arm at its place in the cell; holds no state, so threads may share it."""
+    """The parameters of one arm at its base pose; stateless, so threads may share it."""
 
     chain: KinematicChain
     ideal: IdealArm
@@ -54,7 +54,7 @@ class FastKinematics:
         return axes, points, tool
 
     def descend(self, goal: Array, match: PoseMatch, start: Array, *, near: Array) -> DescentAttempt:
-        """Descend from `start` (n,) within the limits while a redundant arm is drawn to `near`."""
+        """Descend from `start` (n,) within the limits; a redundant arm is pulled to `near`."""
         from robots.model.inverse_kinematics import kernels
 
         c = self.chain
@@ -65,7 +65,7 @@ class FastKinematics:
         return DescentAttempt(joints=joints, distance_m=distance, angle_rad=angle)
 
     def descend_patiently(self, goal: Array, match: PoseMatch, start: Array) -> DescentAttempt:
-        """Descend from `start` (n,), which is within the limits, with nothing in mind but the goal."""
+        """Descend from `start` (n,), which is within the limits, towards the goal only."""
         from robots.model.inverse_kinematics import kernels
 
         c, joints = self.chain, start.copy()
@@ -75,7 +75,7 @@ class FastKinematics:
         return DescentAttempt(joints=joints, distance_m=distance, angle_rad=angle)
 
     def refine(self, goal: Array, candidates: Array, *, seed: Array) -> RefinedSolutions:
-        """Bring near-solutions (k, n) to the goal, each joint to the turn within the limits next to `seed`."""
+        """Refine approximate solutions (k, n), each joint in the turn within the limits nearest to `seed`."""
         from robots.model.inverse_kinematics import kernels
 
         c = self.chain
@@ -95,7 +95,7 @@ class FastKinematics:
         return RefinedSolutions(joints=found[:count], nearest=nearest, pivot=pivot)
 
     def follow(self, goal: Array, match: PoseMatch, seed: Array) -> DescentAttempt:
-        """Bring joints that are almost at the goal to it, whatever the limits."""
+        """Refine joints that are almost at the goal, regardless of limits."""
         from robots.model.inverse_kinematics import kernels
 
         joints = seed.copy()
@@ -104,7 +104,7 @@ class FastKinematics:
 
 
 def new_fast_kinematics(kinematics: ArmKinematics) -> FastKinematics:
-    """Return the prepared arm, made once for each `kinematics`.
+    """Return the prepared arm, created once per `kinematics`.
 
     Raises:
         CellError: the arm is not a serial chain of single joints.

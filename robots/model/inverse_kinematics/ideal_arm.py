@@ -1,8 +1,8 @@
-"""The textbook arm next to a real one: axes that almost meet or are almost parallel made to do so exactly.
+"""The ideal arm close to a real one: almost intersecting or almost parallel axes made exactly so.
 
-Closed-form inverse kinematics exists for arms whose axes meet or are parallel. Rounded numbers in a
-description, and every factory calibration, spoil that by some micrometres or millimetres; the solutions
-of the ideal arm next to it are then refined on the true one.
+Closed-form inverse kinematics exists for arms whose axes intersect or are parallel. Rounded numbers in a
+description, and every factory calibration, break that by micrometres or millimetres; the solutions
+of the ideal arm are then refined on the true one.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ NEARLY_MEETING_M = 0.006
 
 @dataclass(frozen=True, kw_only=True)
 class IdealArm:
-    """The joints' lines with all joints at 0: `axes` and `points` (n, 3) in the world; `moved` from the true ones.
+    """The joint lines with all joints at 0: `axes` and `points` (n, 3) in the world; `moved` from the true ones.
 
-    `moved` is the greatest displacement of a line in metres, or its turn in radians.
+    `moved` is the maximum displacement of a line in metres, or its rotation in radians.
     """
 
     axes: Array
@@ -31,7 +31,7 @@ class IdealArm:
 
 
 def ideal_arm(chain: KinematicChain) -> IdealArm:
-    """Return the ideal arm next to a chain."""
+    """Return the ideal arm close to a chain."""
     axes = _parallel(chain.axes)
     points = chain.points.copy()
     for i in range(1, chain.dof):
@@ -41,7 +41,7 @@ def ideal_arm(chain: KinematicChain) -> IdealArm:
 
 
 def _parallel(axes: Array) -> Array:
-    """Return directions of which successive almost parallel ones are exactly parallel."""
+    """Return directions with successive almost parallel ones made exactly parallel."""
     ideal = axes.copy()
     first = 0
     for i in range(1, len(axes) + 1):
@@ -56,7 +56,7 @@ def _parallel(axes: Array) -> Array:
 
 
 def _shift_to_meet(axes: Array, points: Array, i: int) -> Array:
-    """Return the displacement of line i that makes it meet the line before, and the one before that where they meet."""
+    """Return the displacement of line i that makes it intersect the previous line, and if possible the two previous."""
     nearest = meeting_point(axes, points, i - 1, i)
     if nearest is None:
         return np.zeros(3)
@@ -72,7 +72,7 @@ def _shift_to_meet(axes: Array, points: Array, i: int) -> Array:
 
 
 def meeting_point(axes: Array, points: Array, i: int, j: int) -> Array | None:
-    """Return the point of line i next to line j; None if the lines are parallel."""
+    """Return the point of line i nearest to line j; None if the lines are parallel."""
     normal = np.cross(axes[i], axes[j])
     square = float(normal @ normal)
     if square < NEARLY_PARALLEL_RAD**2:
@@ -82,7 +82,7 @@ def meeting_point(axes: Array, points: Array, i: int, j: int) -> Array | None:
 
 
 def _gap_vector(axes: Array, points: Array, i: int, j: int) -> Array:
-    """Return the shortest way from line i to line j, which are not parallel."""
+    """Return the shortest vector from line i to line j, which are not parallel."""
     normal = np.cross(axes[i], axes[j])
     normal = normal / np.linalg.norm(normal)
     return normal * float(normal @ (points[j] - points[i]))

@@ -1,9 +1,9 @@
 """The inner loops of inverse kinematics, compiled: forward kinematics, Levenberg-Marquardt, Newton refinement.
 
 A chain is `placements` (n + 1, 3, 4): the pose of each joint in the frame of the one before, the last
-is the tool; every joint turns about, or slides along, the z axis of its frame. `bounds` (3, n) holds
-lower limits, upper limits and speeds. A goal is a pose (3, 4) in the world. `match` says what of it
-counts, see `robots.model.inverse_kinematics.pose_match`. All arrays are C-contiguous float64.
+is the tool; every joint rotates about, or slides along, the z axis of its frame. `bounds` (3, n) contains
+lower limits, upper limits and speeds. A goal is a pose (3, 4) in the world. `match` selects the part of it
+to match, see `robots.model.inverse_kinematics.pose_match`. All arrays are C-contiguous float64.
 """
 
 from __future__ import annotations
@@ -247,10 +247,10 @@ def descend(
     iterations: int,
     joints: Array,
 ) -> tuple[float, float]:
-    """Change `joints` by Levenberg-Marquardt within the limits; returns the metres and radians still missing.
+    """Change `joints` by Levenberg-Marquardt within the limits; returns the remaining error, metres and radians.
 
-    During the first `pulled` iterations the self-motion of a redundant arm draws the joints to `near`; when
-    they are over the descent is given up unless it comes near. With `pulled` 0 it goes on to the end.
+    During the first `pulled` iterations the self-motion of a redundant arm pulls the joints to `near`; after
+    them the descent is abandoned unless it is close to the goal. With `pulled` 0 it continues to the end.
     """
     n = len(joints)
     jacobian, error, new_jacobian, new_error = np.empty((6, n)), np.empty(6), np.empty((6, n)), np.empty(6)
@@ -323,7 +323,7 @@ def place(placements: Array, sliding: Flags, joints: Array, axes: Array, points:
 
 @compiled(f"UniTuple(f8, 2)({_CHAIN}, f8[:,::1], i8, f8[::1])")
 def follow(placements: Array, sliding: Flags, goal: Array, match: int, joints: Array) -> tuple[float, float]:
-    """Change `joints`, which are almost there, whatever the limits; returns the metres and radians still missing."""
+    """Refine `joints`, which are almost at the goal, ignoring limits; returns the remaining error, metres, radians."""
     distance, angle, _ = _newton(placements, sliding, goal, match, 1e30, joints)
     return distance, angle
 
@@ -341,10 +341,10 @@ def refine(
     radians: float,
     solutions: Array,
 ) -> tuple[int, int, float]:
-    """Bring near-solutions (k, n) exactly to the goal and each joint to the turn within limits next to `seed`.
+    """Refine approximate solutions (k, n), each joint in the turn within limits nearest to `seed`.
 
-    Writes those that succeed to `solutions` (k, n). Returns their number, which of them is soonest
-    reached from the seed, and the smallest pivot met, which is small next to a singularity.
+    Writes those that succeed to `solutions` (k, n). Returns their number, the index of the one soonest
+    reached from the seed, and the smallest pivot, which is small near a singularity.
     """
     n = len(seed)
     count, nearest, soonest, pivot = 0, 0, 1e30, 1e30

@@ -1,4 +1,4 @@
-"""What of a goal pose the tool must match: all of it, its position only, or its position and the tool's axis."""
+"""The part of a goal pose that the tool must match: pose, position only, or position and tool axis."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from enum import Enum
 
 
 class PoseMatch(Enum):
-    """Which part of a goal pose counts; the values are those of `robots.model.inverse_kinematics.kernels`."""
+    """The part of a goal pose to match; the values are those of `robots.model.inverse_kinematics.kernels`."""
 
     POSE = 0
-    """Position and orientation: three and three conditions, so the arm needs six joints."""
+    """Position and orientation: six conditions, so the arm needs six joints."""
 
     POSITION = 1
-    """The position; the orientation comes as it comes. For arms of two or three joints.
+    """The position; the orientation is free. For arms of two or three joints.
 
-    With two the tool moves on a surface, and a position within a millimetre of it is met by the nearest one on it.
+    With two joints the tool moves on a surface; a position within a millimetre of it is matched by the nearest point.
     """
 
     AXIS = 2
-    """Position and direction of the tool's z axis; the turn about it is free. For tools that are round."""
+    """Position and direction of the tool's z axis; the rotation about it is free. For axially symmetric tools."""
 
     @classmethod
     def of(cls, word: str) -> PoseMatch:
-        """Return the match that skills and behaviors call `word`: `pose`, `position` or `axis`."""
+        """Return the match of a name in skills and behaviors: `pose`, `position` or `axis`."""
         return cls[word.upper()]

@@ -1,4 +1,4 @@
-"""Sets of solutions: doubles removed, whole turns added where the limits allow, soonest reached first."""
+"""Sets of solutions: duplicates removed, whole turns added within limits, ordered by time from the seed."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class SolutionSet:
-    """All solutions that were found for a goal, soonest reached first.
+    """The solutions for a goal, soonest reached first.
 
-    `joints` (k, n) are within the limits, k is 1 at least. `complete` tells whether these are all there
-    are; a redundant arm has infinitely many, and then `joints` is a sample. `how` says where they come from.
+    `joints` (k, n) are within the limits, k is at least 1. `complete` is true if these are all solutions;
+    a redundant arm has infinitely many, and then `joints` is a sample. `how` names the method.
     """
 
     joints: Array
@@ -29,7 +29,7 @@ class SolutionSet:
 
 
 def distinct(chain: KinematicChain, joints: Array) -> Array:
-    """Return the rows of (k, n) that are different, whole turns aside."""
+    """Return the distinct rows of (k, n), up to whole turns."""
     kept = np.empty((0, chain.dof))
     turning = ~chain.sliding
     for row in joints:
@@ -41,7 +41,7 @@ def distinct(chain: KinematicChain, joints: Array) -> Array:
 
 
 def with_turns(chain: KinematicChain, joints: Array) -> Array:
-    """Return the rows of (k, n) with every joint in every turn that its limits allow."""
+    """Return the rows of (k, n) with every joint in every turn within its limits."""
     rows: list[tuple[float, ...]] = []
     for row in joints:
         choices = [_turns(chain, i, float(value)) for i, value in enumerate(row)]

@@ -1,4 +1,4 @@
-"""Inverse kinematics of any arm within its joint limits: nearest solution, all solutions, following, reason why not."""
+"""Inverse kinematics of any arm within its joint limits: nearest solution, all solutions, tracking, failure reason."""
 
 from __future__ import annotations
 
@@ -22,51 +22,51 @@ from robots.model.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 
-# A solution this near to the seed is taken without looking for a nearer one.
+# A solution this near to the seed is accepted without a search for a nearer one.
 _NEAR_RAD = 0.3
-# Descents from other starts until a first solution, and after it in search of a nearer one; when there is
-# none, patient descents from the rest of the starts.
+# Descents from other starts until a first solution, and after it for a nearer one; without a
+# solution, patient descents from the remaining starts.
 _RESTARTS, _ALTERNATIVES, _PATIENT = 40, 6, 100
 _STARTS = _RESTARTS + _ALTERNATIVES + _PATIENT
-# Starts of the sample of all solutions, values of a locked joint.
+# Number of starts in a sample of all solutions, and of values of a locked joint.
 _SAMPLES, _LOCKED_VALUES = 200, 64
-# A position so near to the surface on which the tool of an arm with fewer joints moves is taken for one on it.
+# A position this close to the surface reachable by the tool of an arm with fewer joints counts as on it.
 _POSITION_CONDITIONS, _OFF_ITS_SURFACE_M = 3, 1e-3
-# Below this pivot (a singular value of 0.03 squared) an arm has solutions that the closed form does not list.
+# Below this pivot (a singular value of 0.03, squared) an arm has solutions that the closed form misses.
 _IRREGULAR = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointSolution:
-    """The joints (n,) for a goal, within the limits, and how well the arm can move there."""
+    """The joints (n,) for a goal, within the limits, and the quality of the configuration."""
 
     joints: Array
     posture: ConfigurationQuality
 
 
 class InverseKinematicsSolver:
-    """Finds joints for a tool pose; deterministic: the same request gives the same answer.
+    """Computes joints for a tool pose; deterministic: equal requests give equal results.
 
-    Six-axis arms are solved in closed form where their geometry allows it (also next to it, refined on
+    Six-axis arms are solved in closed form where their geometry allows it (or almost allows it, refined on
     the true arm), all others by Levenberg-Marquardt descents from the seed and from other starts. Once
-    prepared it may be used by several threads at once.
+    prepared, several threads may use it concurrently.
     """
 
     def __init__(self, kinematics: ArmKinematics) -> None:
         self._kinematics = kinematics
 
     def prepare(self) -> None:
-        """Load what the first request would otherwise wait for: the compiled loops and the arm's closed form."""
+        """Load the compiled loops and the arm's closed form, so that the first request does not wait."""
         self._arm().lines(np.array(self._kinematics.model.home_rad))
 
     def nearest(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> Array:
-        """Return the configuration for `target` (world) that is soonest reached from `seed`, shape (n,).
+        """Return the configuration for `target` (world) soonest reached from `seed`, shape (n,).
 
-        Soonest by the slowest joint at its speed limit. Exact where the closed form lists all solutions;
-        of other arms the best that a bounded search finds.
+        The measure is the time of the slowest joint at its speed limit. Exact if the closed form lists all solutions;
+        for other arms the best result of a bounded search.
 
         Raises:
-            RobotError: none within the joint limits was found; says by how much and which joint is in the way.
+            RobotError: no solution within the joint limits; states the remaining error and the limiting joint.
         """
         arm, goal, seed = self._arm(), matrix_of(target), self._checked(seed)
         if match is PoseMatch.POSE and arm.analytic is not None and arm.analytic.locked < 0:
@@ -89,7 +89,7 @@ class InverseKinematicsSolver:
         raise self._unreachable(arm, target, match, best)
 
     def solve(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> JointSolution:
-        """Return the nearest solution and how well the arm can move there; raises as `nearest` does."""
+        """Return the nearest solution and its quality; raises as `nearest` does."""
         joints = self.nearest(target, seed=seed, match=match)
         return JointSolution(joints=joints, posture=self.posture(joints))
 
@@ -98,31 +98,31 @@ class InverseKinematicsSolver:
     ) -> SolutionSet:
         """Return the solutions for `target` (world), soonest reached from `seed` (the home configuration) first.
 
-        Every turn of a joint that its limits allow is a solution of its own.
+        Every turn of a joint within its limits is a separate solution.
 
         Raises:
-            RobotError: none within the joint limits was found.
+            RobotError: no solution within the joint limits.
         """
         arm, goal = self._arm(), matrix_of(target)
         seed = self._checked(np.array(self._kinematics.model.home_rad) if seed is None else seed)
         found = self._listed(arm, goal, match, seed)
         joints = with_turns(arm.chain, found.joints)
         if not len(joints):
-            # The search is more patient than the list, and knows the reason when it fails too.
+            # The search is more patient than the list, and also gives the reason of a failure.
             joints = self.nearest(target, seed=seed, match=match)[None]
             found = SolutionSet(joints=joints, complete=False, how="one solution by a search")
         return SolutionSet(joints=soonest_first(arm.chain, joints, seed), complete=found.complete, how=found.how)
 
     def track(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> Array | None:
-        """Return the configuration for `target` next to `seed`, which is almost there; None if there is none.
+        """Return the configuration for `target` close to `seed`, which is almost there; None if there is none.
 
-        Joint limits are left to the caller.
+        The caller checks joint limits.
         """
         attempt = self._arm().follow(matrix_of(target), match, self._checked(seed))
         return attempt.joints if is_solved(attempt) else None
 
     def posture(self, joints: Array) -> ConfigurationQuality:
-        """Return how well the arm can move in a configuration of shape (n,)."""
+        """Return the quality of a configuration of shape (n,)."""
         arm = self._arm()
         axes, points, tool = arm.lines(self._checked(joints))
         kind = kind_of_singularity(arm.chain, arm.ideal, axes, points)
@@ -151,12 +151,12 @@ class InverseKinematicsSolver:
         seed: Array,
         first: DescentAttempt,
     ) -> DescentAttempt:
-        """Return the solution soonest reached from `seed`, or the attempt that came closest.
+        """Return the solution soonest reached from `seed`, or the closest attempt.
 
         `first` is the descent from the seed.
         """
         lower, upper, speed = arm.chain.bounds
-        # All starts at once: drawing them one by one would take longer than a descent.
+        # All starts at once: drawing them singly would take longer than a descent.
         starts = np.random.default_rng(_request_seed(target, seed)).uniform(lower, upper, size=(_STARTS, len(seed)))
         unused = iter(starts)
         solutions = [first] if is_solved(first) else []
@@ -164,7 +164,7 @@ class InverseKinematicsSolver:
         tries = 0
         while tries < (_ALTERNATIVES if solutions else _RESTARTS):
             tries += 1
-            # Every other start stays on the seed's side of the workspace, where the nearest solutions are.
+            # Every other start is on the seed's side of the workspace, where the nearest solutions are.
             share = 1.0 if tries % 2 else 0.35
             attempt = arm.descend(goal, match, seed + share * (next(unused) - seed), near=seed)
             if is_solved(attempt):
@@ -183,7 +183,7 @@ class InverseKinematicsSolver:
         return closest
 
     def _listed(self, arm: FastKinematics, goal: Array, match: PoseMatch, seed: Array) -> SolutionSet:
-        """Return the distinct solutions, whole turns aside; there may be none."""
+        """Return the distinct solutions, up to whole turns; there may be none."""
         closed = arm.analytic
         if match is not PoseMatch.POSE or closed is None:
             random = np.random.default_rng(0)
@@ -211,7 +211,7 @@ class InverseKinematicsSolver:
         return unreachable_error(
             target,
             match,
-            # To the end, so that what is told to be missing is what is missing.
+            # A complete descent, so that the reported error is the true remaining error.
             arm.descend_patiently(goal, match, best.joints),
             chain=arm.chain,
             names=model.arm_joints,
@@ -223,7 +223,7 @@ class InverseKinematicsSolver:
         return new_fast_kinematics(self._kinematics)
 
     def _checked(self, joints: Array) -> Array:
-        """Return `joints` as the compiled loops take them, which check nothing."""
+        """Return validated `joints` for the compiled loops, which do not check."""
         array = np.ascontiguousarray(joints, dtype=np.float64)
         if array.shape != (self._kinematics.dof,) or not np.isfinite(array).all():
             raise RobotError(
@@ -235,7 +235,7 @@ class InverseKinematicsSolver:
 
 def _request_seed(target: RigidTransform, seed: Array) -> int:
     numbers = np.concatenate((target.xyz, target.xyzw, seed))
-    # Rounding multiplies, and a place may be as far as a number can say.
+    # Rounding multiplies, and a position may be as far as a float can represent.
     return zlib.crc32(numbers.clip(-1e9, 1e9).round(9).tobytes())
 
 

@@ -1,4 +1,4 @@
-"""Dynamic movement primitives: roll-out, learning, planning, and offsets learned from force control.
+"""Dynamic movement primitives: integration, learning, planning, and offsets learned from force control.
 
 The formulas are those of Ijspeert et al. 2013 (joints and positions) and Ude et al. 2014 (orientations),
 with the parameters of RCL tables 6 to 8; see `docs/concepts/movement-primitives.md`.

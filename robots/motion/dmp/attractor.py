@@ -1,6 +1,6 @@
 """The transformation systems: critically damped attractors driven by a forcing term, solved over time.
 
-Time is counted in shares s = t / tau of the duration; a velocity is per tau. For positions
+Time is normalised, s = t / tau; velocities are per tau. For positions
 
     y'' = a_z (b_z (g - y) - y') + f(x),   b_z = a_z / 4            (Ijspeert et al. 2013)
 
@@ -24,7 +24,7 @@ _SMALL = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorResponse:
-    """A solution at even shares of time: `value` (T, n) or quaternions (T, 4), `rate` and `push` per tau and tau²."""
+    """A solution at even time steps: `value` (T, n) or quaternions (T, 4), `rate` per tau and `push` per tau²."""
 
     value: Array
     rate: Array
@@ -32,17 +32,17 @@ class AttractorResponse:
 
 
 def attract(*, force: Array, goal: Array, value: Array, rate: Array, a_z: float, step: float) -> AttractorResponse:
-    """Return the positions over time, exact for forces and goals that are linear between the samples.
+    """Return the positions over time, exact for forces and goals that are linear between samples.
 
     Args:
         force: The forcing term at each sample, (T, n).
         goal: The goal at each sample, (T, n).
-        value: Where it starts, (n,).
-        rate: The velocity at the start per tau, (n,).
+        value: Start position, (n,).
+        rate: Start velocity per tau, (n,).
         a_z: The gain.
-        step: The distance of the samples as a share of tau.
+        step: Sample period as a share of tau.
     """
-    # With b_z = a_z / 4 both poles lie at -a_z / 2: two equal first-order systems, one after the other.
+    # With b_z = a_z / 4 both poles are at -a_z / 2: two equal first-order systems in series.
     pole = a_z / 2.0
     drive = force + pole * pole * goal
     slope = np.diff(drive, axis=0) / step
@@ -76,10 +76,10 @@ def attract_orientation(
     Args:
         force: The forcing term, (2 T - 1, 3): at each sample and halfway between.
         goal: The goals, unit quaternions, (2 T - 1, 4).
-        value: Where it starts, (4,).
-        rate: The angular velocity at the start per tau, (3,).
+        value: Start orientation, (4,).
+        rate: Start angular velocity per tau, (3,).
         a_z: The gain.
-        step: The distance of the samples as a share of tau.
+        step: Sample period as a share of tau.
     """
     samples = (len(force) + 1) // 2
     values, rates = np.empty((samples, 4)), np.empty((samples, 3))
@@ -106,7 +106,7 @@ Four = tuple[float, float, float, float]
 
 
 def orientation_acceleration(turn: Four, spin: Three, goal: list[float], force: list[float], a_z: float) -> Three:
-    """Return the angular acceleration per tau² towards `goal` under `force`; plain numbers, as arrays of 3 are slow."""
+    """Return the angular acceleration per tau² towards `goal` under `force`; plain floats, as arrays of 3 are slow."""
     x, y, z, w = _error(goal, turn)
     sine = math.sqrt(x * x + y * y + z * z)
     pull = a_z * a_z / 4.0 * (2.0 * math.atan2(sine, w) / sine if sine > _SMALL else 2.0)
@@ -118,7 +118,7 @@ def orientation_acceleration(turn: Four, spin: Three, goal: list[float], force: 
 
 
 def integrate_rotation(turn: Four, spin: Three, span: float) -> Four:
-    """Return the orientation after turning at `spin` (world axes) for `span`."""
+    """Return the orientation after a rotation at `spin` (world axes) for `span`."""
     speed = math.sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2])
     share = math.sin(0.5 * speed * span) / speed if speed * span > _SMALL else 0.5 * span
     x, y, z, w = share * spin[0], share * spin[1], share * spin[2], math.cos(0.5 * speed * span)

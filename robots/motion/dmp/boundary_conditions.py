@@ -1,8 +1,8 @@
-"""Brings a rolled out path to start where the arm stands at rest and to end at its goal at rest.
+"""Corrects an integrated path to start at the arm's position at rest and to end at its goal at rest.
 
-A primitive starts at its `y0` with `dy0` and approaches its goal for ever. What is missing at either
-end is added as a quintic that fades within a share of the duration, so the path in between is the
-primitive's own.
+A primitive starts at its `y0` with `dy0` and approaches its goal asymptotically. The error at either
+end is added as a quintic that fades within a share of the duration, so the path in between is that
+of the primitive.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ import numpy as np
 from robots.port import Array
 
 START_SHARE, END_SHARE = 0.4, 0.25
-"""Within which share of tau what is missing at the start fades, and at the end comes in."""
+"""Share of tau within which the correction fades out at the start, and fades in at the end."""
 
 ENDS = (1.0, 1.25, 1.5, 2.0, 3.0, 5.0, 8.0)
-"""After which shares of tau a path may end; it does at the first where hardly anything is missing."""
+"""Shares of tau at which a path may end; it ends at the first one with a negligible error."""
 
 
 def is_negligible(value: Array, rate: Array, push: Array, *, a_z: float, least: float) -> bool:
-    """Tell whether an end that lacks `value` and still has `rate` and `push` is as good as at rest, within `least`."""
+    """Return whether an end with error `value`, `rate` and `push` counts as at rest, within `least`."""
     pole = a_z / 2.0
     return max(_longest(value), _longest(rate) / pole, _longest(push) / pole**2) <= least
 
 
 def fade(shares: Array, width: float, *, value: Array, rate: Array, push: Array | None = None) -> tuple[Array, Array]:
-    """Return what begins with `value`, `rate` and `push`, each (n,), and is nothing from `width` on: it and its rate.
+    """Return a function and its rate that start with `value`, `rate` and `push`, each (n,), and are 0 from `width` on.
 
-    Both are (T, n) at the shares (T,), which count from 0.
+    Both are (T, n) at the shares (T,), which start at 0.
     """
     u = np.minimum(shares / width, 1.0)[:, None]
     u2, u3, u4 = u * u, u**3, u**4
@@ -46,7 +46,7 @@ def fade(shares: Array, width: float, *, value: Array, rate: Array, push: Array 
 
 
 def fade_in(shares: Array, width: float, *, value: Array, rate: Array, push: Array) -> tuple[Array, Array]:
-    """Return what is nothing until `width` before the last share and ends with `value`, `rate` and `push`."""
+    """Return a function, and its rate, that is 0 until `width` before the last share and ends with the given values."""
     values, rates = fade((shares[-1] - shares)[::-1], width, value=value, rate=-rate, push=push)
     return values[::-1], -rates[::-1]
 

@@ -1,6 +1,6 @@
-"""Rolls movement primitives out: where the joints or the tool are over time, also with goals that change on the way.
+"""Integrates movement primitives: joints or tool poses over time, with optional goal changes.
 
-Time is counted in shares of the duration tau, so a path does not depend on how long it takes.
+Time is normalised to the duration tau, so a path does not depend on its duration.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from robots.motion.dmp.quaternions import conjugate, exp, log, product, toward
 from robots.port import Array
 
 _STEPS = 500
-# At least this many samples between the centres of two kernels.
+# Minimum number of samples between the centres of two kernels.
 _STEPS_PER_KERNEL = 6
 
 
@@ -26,8 +26,8 @@ _STEPS_PER_KERNEL = 6
 class GoalChange:
     """At `share` of tau the goal becomes `goal`, (n,) or x y z and quaternion (7,).
 
-    The goal that the attractor sees moves there as tau ġ = a_g (goal - g), so that the acceleration
-    does not jump (Ijspeert et al. 2013, section 2.1.6); `a_g` is a_z / 4 unless given.
+    The attractor's goal moves there as tau ġ = a_g (goal - g), so that the acceleration
+    does not jump (Ijspeert et al. 2013, section 2.1.6); `a_g` is a_z / 4 by default.
     """
 
     share: float
@@ -61,7 +61,7 @@ def integrate_joints(
 ) -> JointPath:
     """Return the joints from 0 to `end` shares of tau; `tasktrans` is not applied, see `in_task_frame`.
 
-    `steps` is the number of samples per tau, chosen by itself when None.
+    `steps` is the number of samples per tau, automatic when None.
     """
     shares = _shares(end, dmp.N, steps)
     response = attract(
@@ -121,7 +121,7 @@ def _joint_goals(dmp: JointDmp, shares: Array, changes: Sequence[GoalChange]) ->
 
 
 def _left(dmp: JointDmp | CartDmp, change: GoalChange, shares: Array) -> Array:
-    """Return how much of the way to the new goal is left at `shares` after the change, (T, 1)."""
+    """Return the remaining share of the path to the new goal at `shares` after the change, (T, 1)."""
     return np.exp(-(change.a_g or dmp.a_z / 4.0) * (shares - change.share))[:, None]
 
 

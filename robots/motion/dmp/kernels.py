@@ -9,7 +9,7 @@ import numpy as np
 
 from robots.port import Array
 
-# Width of a kernel as a share of the distance to the next one, as in the library of the Jožef Stefan Institute.
+# Width of a kernel as a share of the distance to the next one, as in the Jožef Stefan Institute's library.
 _OVERLAP = 0.75
 
 
@@ -35,7 +35,7 @@ class GaussianKernels:
 
     @classmethod
     def evenly(cls, number: int, *, a_x: float) -> GaussianKernels:
-        """Return kernels that follow each other at even times from the start to tau."""
+        """Return kernels at even times from the start to tau."""
         if number == 1:
             return cls(c=np.exp([-a_x / 2.0]), sigma=np.ones(1))
         c = np.exp(-a_x * np.linspace(0.0, 1.0, number))
@@ -45,7 +45,7 @@ class GaussianKernels:
     def at(self, phase: Array) -> Array:
         """Return the activations at each phase, (T, N), normalised to the sum 1.
 
-        Far from all kernels the nearest one counts alone, instead of 0 divided by 0.
+        Far from all kernels only the nearest one is active, which avoids 0 / 0.
         """
         exponents = -((np.asarray(phase)[:, None] - self.c) ** 2) / (2.0 * self.sigma)
         activations = np.exp(exponents - exponents.max(axis=1, keepdims=True))

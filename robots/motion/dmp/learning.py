@@ -1,4 +1,4 @@
-"""Learns movement primitives from recorded motions, and measures how far they are from them."""
+"""Learns movement primitives from recorded motions, and measures their fit."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ from robots.port import Array
 L = TypeVar("L")
 
 CANDIDATES = (10, 15, 25, 40, 60, 90, 130, 184)
-"""Numbers of kernels that are tried when none is asked for; RCL allows 184."""
+"""Kernel numbers tried by default; RCL allows 184."""
 
 GOOD_RAD, GOOD_M, GOOD_TURN_RAD = 1e-3, 5e-4, 2e-3
-"""With errors below these no more kernels are tried."""
+"""Errors below which no more kernels are tried."""
 
-# Below these speeds a recorded arm stands still.
+# Speeds below which a recorded arm is at rest.
 _REST_RAD_S, _REST_M_S, _REST_TURN_RAD_S = 2e-3, 5e-4, 2e-3
-# Fewer kernels are preferred unless more of them lessen the error by more than this factor.
+# Fewer kernels are preferred unless more kernels reduce the error by more than this factor.
 _WORTHWHILE = 1.15
 _SAMPLES_PER_KERNEL = 10
 _FEWEST_POINTS = 400
-# Until which share of the duration an arm that rests at the end is held to rest.
+# Share of the duration until which an arm that rests at the end is constrained to rest.
 _REST_AFTER = 1.4
 _MOST_TURN_RAD = 6.0
 _TOOL_SAMPLES = 1000
-# Keeps the regression solvable where kernels overlap nearly wholly; too small to be seen in the motion.
+# Regularises the regression where kernels overlap almost entirely; too small to affect the motion.
 _RIDGE = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
 class _LearnedSection:
-    """The part of a recording that is learned: shares of its duration (T,), where it rests, and what was cut."""
+    """The learned part of a recording: shares of its duration (T,), its rest ends, and the trimmed times."""
 
     shares: Array
     duration_s: float
@@ -63,12 +63,12 @@ def learn_joint_dmp(
     trim: bool = True,
     tool_at: Callable[[Array], Array] | None = None,
 ) -> LearnedJointDmp:
-    """Return the joint DMP of a recording and how well it fits; `kernels` 0 chooses their number.
+    """Return the joint DMP of a recording and its fit; `kernels` 0 selects the number automatically.
 
-    With `tool_at`, which gives the place (m) of the tool at joints, also how far the tool is off.
+    With `tool_at`, which returns the tool position (m) for joints, the fit includes the tool error.
 
     Raises:
-        RobotError: the recording has no joints, too few samples, or nothing moves in it.
+        RobotError: the recording has no joints, too few samples, or no motion.
     """
     if not recorded.joints:
         raise RobotError("the recording has no joints", hint="record `joints`, or learn a Cartesian primitive")
@@ -90,10 +90,10 @@ def learn_joint_dmp(
 def learn_cart_dmp(
     recorded: Trajectory, *, kernels: int = 0, a_z: float = 48.0, a_x: float = 2.0, trim: bool = True
 ) -> LearnedCartDmp:
-    """Return the Cartesian DMP of a recording's tool poses and how well it fits; `kernels` 0 chooses their number.
+    """Return the Cartesian DMP of a recording's tool poses and its fit; `kernels` 0 selects the number automatically.
 
     Raises:
-        RobotError: the recording has no tool poses, too few samples, nothing moves in it, or it turns all around.
+        RobotError: the recording has no tool poses, too few samples, no motion, or a rotation near a full turn.
     """
     if not recorded.poses:
         raise RobotError("the recording has no tool poses", hint="record `poses`")
@@ -101,7 +101,7 @@ def learn_cart_dmp(
     turns = continuous(poses[:, 3:])
     moving = [
         MotionChannel(values=poses[:, :3], rest=_REST_M_S),
-        # Half the speed of turning is that of the quaternion's components.
+        # The quaternion's components change at half the angular speed.
         MotionChannel(values=turns, rest=_REST_TURN_RAD_S / 2.0),
     ]
     part = _part(recorded, moving, trim=trim)
@@ -121,16 +121,16 @@ def learn_cart_dmp(
 
 
 def _positive_goal(xyzw: Array) -> Array:
-    """Return a continuous row of quaternions with the sign that makes the last one's w positive."""
+    """Return a continuous sequence of quaternions with the sign that makes the last w positive."""
     return -xyzw if xyzw[-1, 3] < 0.0 else xyzw
 
 
 def _check_turn(xyzw: Array) -> None:
-    """Refuse a motion that comes near a whole turn from its end, where the way to the goal is not defined."""
+    """Reject a motion that comes near a full turn from its end, where the direction to the goal is undefined."""
     farthest = float(np.linalg.norm(log(product(xyzw[-1], conjugate(xyzw))), axis=1).max())
     if farthest > _MOST_TURN_RAD:
         raise RobotError(
-            f"the tool turns by {np.degrees(farthest):.0f}° in the recording, which one primitive cannot say",
+            f"the tool turns by {np.degrees(farthest):.0f}° in the recording, which one primitive cannot represent",
             hint="learn it in two parts, each less than a whole turn",
         )
 
@@ -155,7 +155,7 @@ def _numbers(kernels: int, part: _LearnedSection) -> tuple[int, ...]:
 
 
 def _best(learn: Callable[[int], L], error: Callable[[L], tuple[float, bool]], numbers: tuple[int, ...]) -> L:
-    """Return the first that is good enough, else the one with fewest kernels among those about as good as the best."""
+    """Return the first sufficient fit, else the one with fewest kernels among those about as good as the best."""
     tried: list[tuple[float, L]] = []
     for number in numbers:
         learned = learn(number)
@@ -165,7 +165,7 @@ def _best(learn: Callable[[int], L], error: Callable[[L], tuple[float, bool]], n
         if math.isfinite(size):
             tried.append((size, learned))
     if not tried:
-        raise RobotError("the numbers overflow while it is learned", hint="choose smaller gains a_z and a_x")
+        raise RobotError("learning the movement primitive overflows", hint="choose smaller gains a_z and a_x")
     least = min(size for size, _ in tried)
     return next(learned for size, learned in tried if size <= _WORTHWHILE * least)
 
@@ -180,8 +180,8 @@ def _weights(
 ) -> tuple[tuple[float, ...], ...]:
     """Return the weights, one row for each column of the forcing term (T, n), by least squares.
 
-    An arm that rests at the end needs no force afterwards either: without that the last kernel, which
-    goes on as long as the phase falls, would hold the arm beside its goal.
+    An arm that rests at the end needs zero force afterwards too: otherwise the last kernel, active
+    while the phase decays, would hold the arm away from its goal.
     """
     if rests.end:
         after = np.linspace(1.0, _REST_AFTER, max(2, len(shares) // 5))[1:]
@@ -235,9 +235,9 @@ def _cart_dmp(part: _LearnedSection, xyz: Array, xyzw: Array, number: int, *, a_
 
 
 def _spin(raw: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
-    """Return orientations (T, 4), angular velocity and acceleration (T, 3) of quaternions that need not be of length 1.
+    """Return orientations (T, 4), angular velocity and acceleration (T, 3) of quaternions of any length.
 
-    A component along the quaternion changes only its length, which drops out of ω = 2 vec(q̇ conj(q)) / |q|².
+    A component along the quaternion changes only its length, which cancels in ω = 2 vec(q̇ conj(q)) / |q|².
     """
     square = (raw * raw).sum(axis=1, keepdims=True)
     spin = 2.0 * product(rate, conjugate(raw))[:, :3] / square
@@ -261,7 +261,7 @@ def _joint_fit(dmp: JointDmp, part: _LearnedSection, wanted: Array) -> JointFit:
 def _with_tool(
     learned: LearnedJointDmp, part: _LearnedSection, wanted: Array, tool_at: Callable[[Array], Array]
 ) -> LearnedJointDmp:
-    """Add how far the tool is off, at no more than so many samples of the whole."""
+    """Add the tool error, at a limited number of samples."""
     path = integrate_joints(learned.dmp)
     rows = np.unique(np.linspace(0, len(wanted) - 1, min(len(wanted), _TOOL_SAMPLES)).astype(int))
     made = _at(part.shares[rows], path.shares, path.position)

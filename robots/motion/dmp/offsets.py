@@ -1,8 +1,8 @@
 """Values over the phase as kernel sums: learned offsets and wanted forces, evaluated and fitted (RCL table 8).
 
-Learning is iterative (Gams et al. 2014): a pass adds the offsets of the passes before and records the
-whole offset that force control ended up with; that record, smoothed by the kernels, is what the next
-pass adds. So the force error falls from pass to pass.
+Learning is iterative (Gams et al. 2014): a pass adds the offsets of the previous passes and records the
+total offset of force control; the next pass adds that record, smoothed by the kernels. So the force error
+decreases from pass to pass.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from robots.motion.dmp.kernels import GaussianKernels
 from robots.port import Array
 
 OFFSET_KERNELS = 50
-"""How many kernels encode offsets when none are given and none are asked for."""
+"""Default number of kernels for offsets."""
 
-# Keeps the weights of kernels that no sample is near at what they were, against one sample's weight.
+# Regularisation that keeps the weights of kernels without nearby samples, relative to the weight of one sample.
 _KEEP = 1e-3
 
 
@@ -32,28 +32,29 @@ def wrench_at(force: ForceReference, phase: Array) -> Array:
 
 
 def no_offsets(kernels: int = OFFSET_KERNELS, *, a_x: float) -> CartOffsets:
-    """Return offsets of zero with `kernels` kernels, evenly over a primitive's duration."""
+    """Return zero offsets with `kernels` kernels, evenly over a primitive's duration."""
     return _offsets(GaussianKernels.evenly(kernels, a_x=a_x), np.zeros((6, kernels)))
 
 
 def offsets_from_samples(phase: Array, added: Array, *, given: CartOffsets, share: float = 1.0) -> CartOffsets:
-    """Return the offsets for the next pass: those of this one plus what was added to them on the way.
+    """Return the offsets for the next pass: those of this pass plus the added deviations.
 
     Args:
-        phase: The phase at each sample, (T,), falling.
-        added: By how much the motion deviated beyond the given offsets: metres and rotation vector, (T, 6).
-        given: What this pass started with; it lends its kernels.
-        share: How much of what was added is learned, 0 to 1; below 1 noise averages out over the passes.
+        phase: The phase at each sample, (T,), decreasing.
+        added: Deviation of the motion beyond the given offsets: metres and rotation vector, (T, 6).
+        given: Offsets of this pass; their kernels are reused.
+        share: Learned share of the deviation, 0 to 1; below 1 noise averages out over the passes.
 
     Raises:
-        RobotError: the shapes do not fit, a number is not finite, or there are no samples.
+        RobotError: the shapes do not match, a value is not finite, or there are no samples.
     """
     if phase.ndim != 1 or added.shape != (len(phase), 6) or len(phase) == 0:
         raise RobotError(
-            f"phases {phase.shape} and offsets {added.shape} are no record", hint="give one row of six for each phase"
+            f"phases {phase.shape} and offsets {added.shape} are not a record",
+            hint="give one row of six for each phase",
         )
     if not (np.isfinite(phase).all() and np.isfinite(added).all()):
-        raise RobotError("the recorded offsets have numbers that are not finite")
+        raise RobotError("the recorded offsets have values that are not finite")
     kernels = GaussianKernels.of(given.c_o, given.sigma_o)
     activations = kernels.at(phase)
     normal = activations.T @ activations + _KEEP * np.eye(len(kernels.c))

@@ -1,8 +1,8 @@
-"""Movement primitives run step by step: new goals, another speed, and phase stopping while they move.
+"""Step-by-step execution of movement primitives: new goals, speed changes and phase stopping during the motion.
 
 Phase stopping (Ude et al. 2014; Ijspeert et al. 2002): when the arm is held back by the error e, the
-phase falls as tau ẋ = -a_x x / (1 + a_px e), and the state is drawn to where the arm is with the gain
-`a_py`, so the movement waits and goes on when the arm is let go.
+phase decays as tau ẋ = -a_x x / (1 + a_px e), and the state is pulled to the arm's position with the gain
+`a_py`, so the motion waits and resumes when the arm is released.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from robots.port import Array
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseStopping:
-    """How strongly an error stops the phase, and how strongly it draws the state; both 0 for never.
+    """Gains with which an error slows the phase and pulls the state; both 0 for never.
 
     `a_px` is per radian or metre of error, `a_py` per tau. In a pose `metres_per_rad` weighs the angle in the error.
     """
@@ -34,7 +34,7 @@ NEVER_STOPPING = PhaseStopping(a_px=0.0, a_py=0.0)
 
 
 class _OnlineDmp:
-    """What both kinds have in common: phase, duration and the goal that moves to where it was set."""
+    """Base of both kinds: phase, duration and the moving goal."""
 
     def __init__(self, dmp: JointDmp | CartDmp, weights: Array, stopping: PhaseStopping) -> None:
         self.tau_s = dmp.tau
@@ -47,7 +47,7 @@ class _OnlineDmp:
 
     @property
     def share(self) -> float:
-        """The share of tau that has passed in the primitive's own time."""
+        """Elapsed share of tau in the primitive's own time."""
         return float(-np.log(self.phase) / self._a_x)
 
     def _forcing(self) -> Array:
@@ -59,9 +59,9 @@ class _OnlineDmp:
 
 
 class OnlineJointDmp(_OnlineDmp):
-    """A joint DMP on its way; `position` (rad) and `velocity` (rad/s) are its present state, (n,).
+    """An active joint DMP; `position` (rad) and `velocity` (rad/s) are its present state, (n,).
 
-    Set `tau_s` at any time to go slower or faster. `tasktrans` is not applied, see `joints_in_task_frame`.
+    Set `tau_s` at any time to change the speed. `tasktrans` is not applied, see `joints_in_task_frame`.
     """
 
     def __init__(self, dmp: JointDmp, *, stopping: PhaseStopping = NEVER_STOPPING) -> None:
@@ -78,11 +78,11 @@ class OnlineJointDmp(_OnlineDmp):
         return self._velocity
 
     def set_goal(self, goal: Array) -> None:
-        """Go to another goal from now on; it is approached smoothly."""
+        """Set another goal; it is approached smoothly."""
         self._wanted = np.array(goal, dtype=np.float64)
 
     def step(self, step_s: float, *, actual: Array | None = None) -> Array:
-        """Pass on by `step_s` and return the position; `actual` is where the arm is, for phase stopping."""
+        """Advance by `step_s` and return the position; `actual` is the measured position, for phase stopping."""
         span = step_s / self.tau_s
         lag = np.zeros_like(self.position) if actual is None else actual - self.position
         self._goal = self._wanted + np.exp(-self._a_g * span) * (self._goal - self._wanted)
@@ -96,9 +96,9 @@ class OnlineJointDmp(_OnlineDmp):
 
 
 class OnlineCartDmp(_OnlineDmp):
-    """A Cartesian DMP on its way; `xyz` (m) and `xyzw` are its present pose in the primitive's frame.
+    """An active Cartesian DMP; `xyz` (m) and `xyzw` are its present pose in the primitive's frame.
 
-    Set `tau_s` at any time to go slower or faster. `tasktrans` is not applied, see `poses_in_task_frame`.
+    Set `tau_s` at any time to change the speed. `tasktrans` is not applied, see `poses_in_task_frame`.
     """
 
     def __init__(self, dmp: CartDmp, *, stopping: PhaseStopping = NEVER_STOPPING) -> None:
@@ -110,11 +110,11 @@ class OnlineCartDmp(_OnlineDmp):
         self._wanted = self._goal
 
     def set_goal(self, xyz: Array, xyzw: Array) -> None:
-        """Go to another goal from now on; it is approached smoothly, and turned to the shorter way."""
+        """Set another goal; it is approached smoothly, and rotated along the shorter arc."""
         self._wanted = np.array(xyz, dtype=np.float64), toward(xyzw / np.linalg.norm(xyzw), self._goal[1])
 
     def step(self, step_s: float, *, actual: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
-        """Pass on by `step_s` and return position and orientation; `actual` is where the tool is."""
+        """Advance by `step_s` and return position and orientation; `actual` is the measured tool pose."""
         span = step_s / self.tau_s
         lag, turn_lag = self._lag(actual)
         self._move_goal(span)

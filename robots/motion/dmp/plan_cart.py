@@ -1,4 +1,4 @@
-"""Plans a Cartesian DMP: the tool follows it from where it stands, or it is refused with the reason."""
+"""Plans a Cartesian DMP from the tool's present pose, or rejects it with the reason."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from robots.motion.tool_path import (
 from robots.port import Array, JointTrajectory
 
 START_REACH_M, START_REACH_RAD = 0.03, 0.2
-"""How far the tool may be from where the primitive starts."""
+"""Maximum distance of the tool from the start of the primitive."""
 
 _NEAR = 0.01
 WORLD = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
@@ -48,14 +48,14 @@ def plan_cart_dmp(
     start_reach_m: float = START_REACH_M,
     start_reach_rad: float = START_REACH_RAD,
 ) -> JointTrajectory:
-    """Return the joints that carry the tool along the primitive, from `start` (radians, (n,)) to its goal or to `goal`.
+    """Return the trajectory of the tool along the primitive, from `start` (radians, (n,)) to its goal or to `goal`.
 
-    `frame` is the pose in the world of the frame that the primitive is given in; `goal` is in the world. A
-    start beside the primitive's own is carried along and fades out; `goal` replaces the goal smoothly.
+    `frame` is the pose in the world of the primitive's frame; `goal` is in the world. The
+    deviation from the primitive's start fades out; `goal` replaces the goal smoothly.
 
     Raises:
-        RobotError: the tool stands too far from the start, the path is out of reach or passes a singularity, or a
-            joint would leave its range, its speed or its acceleration; the message names joint, time and amount.
+        RobotError: the tool is too far from the start, the path is out of reach or passes a singularity, or a
+            joint would exceed its range, speed or acceleration; the message names joint, time and amount.
     """
     own = transform_dmp(poses_in_task_frame(dmp), frame, frame="world")
     here = kinematics.tool_pose(start)
@@ -78,7 +78,7 @@ def resting_pose(dmp: CartDmp, start: RigidTransform, goal: RigidTransform | Non
     """Return the path of a primitive without `tasktrans` from `start` at rest to its goal, or to `goal`, at rest.
 
     Raises:
-        RobotError: it does not come to its goal.
+        RobotError: the primitive does not reach its goal.
     """
     target = np.array(dmp.goal) if goal is None else np.concatenate((goal.xyz, goal.xyzw))
     changes = () if goal is None else (GoalChange(share=0.0, goal=target),)
@@ -103,7 +103,7 @@ def resting_pose(dmp: CartDmp, start: RigidTransform, goal: RigidTransform | Non
 
 
 def _missing(path: PosePath, at: int, pose: Array) -> Array:
-    """Return what leads from the path at a sample to a pose: metres and a rotation vector, (6,)."""
+    """Return the difference from the path at a sample to a pose: metres and a rotation vector, (6,)."""
     turn = product(toward(pose[3:], path.xyzw[at]), conjugate(path.xyzw[at]))
     return np.concatenate((pose[:3] - path.xyz[at], log(turn / np.linalg.norm(turn))))
 
@@ -114,14 +114,14 @@ def _check_start(dmp: CartDmp, here: RigidTransform, reach_m: float, reach_rad: 
     if away_m > reach_m or away_rad > reach_rad:
         place = "({:.3f}, {:.3f}, {:.3f})".format(*start.xyz)
         raise RobotError(
-            f"the movement primitive starts with the tool at {place}, it stands {away_m:.3f} m and {away_rad:.2f} rad"
-            f" away (at most {reach_m:g} m and {reach_rad:g} rad)",
-            hint="move the tool to its start y0 first",
+            f"the tool is {away_m:.3f} m and {away_rad:.2f} rad from the start {place} of the movement primitive"
+            f" (at most {reach_m:g} m and {reach_rad:g} rad)",
+            hint="move the tool to the start y0 first",
         )
 
 
 def _tool_path(path: PosePath, duration_s: float) -> ToolPath:
-    """Return the poses of the path at knots that are near enough to each other."""
+    """Return the poses of the path at sufficiently dense knots."""
     speed = np.linalg.norm(path.rate[:, :3], axis=1).max(), np.linalg.norm(path.rate[:, 3:], axis=1).max()
     span = float(path.shares[-1])
     wanted = max(duration_s / KNOT_S, speed[0] * span / KNOT_M, speed[1] * span / KNOT_RAD, FEWEST_KNOTS)
@@ -141,7 +141,7 @@ def _tool_path(path: PosePath, duration_s: float) -> ToolPath:
 
 
 def _poses_at(path: PosePath, shares: Array) -> list[RigidTransform]:
-    """Return the poses at shares between the samples: cubic in place, and turning on from the sample before."""
+    """Return the poses at shares between samples: cubic position, orientation extrapolated from the sample before."""
     step = float(path.shares[1])
     below = np.minimum((shares / step).astype(int), len(path.shares) - 2)
     u = (shares / step - below)[:, None]

@@ -1,4 +1,4 @@
-"""Plans a joint DMP: from where the arm stands, at rest at both ends, within its limits or refused with the reason."""
+"""Plans a joint DMP from the arm's present joints, at rest at both ends, or rejects it with the reason."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from robots.motion.joint_checks import check_duration, check_range, check_speed
 from robots.port import Array, JointTrajectory
 
 START_REACH_RAD = 0.1
-"""How far a joint may be from where the primitive starts."""
+"""Maximum distance of a joint from the start of the primitive."""
 
 _NEAR_RAD = 0.01
 
@@ -28,14 +28,14 @@ def plan_joint_dmp(
     goal: Array | None = None,
     start_reach_rad: float = START_REACH_RAD,
 ) -> JointTrajectory:
-    """Return the joints over time, from `start` (radians, (n,)) to the primitive's goal or to `goal`.
+    """Return the joint trajectory from `start` (radians, (n,)) to the primitive's goal or to `goal`.
 
-    It takes `tau` where the primitive is at rest at its goal by then, as learned ones are, else longer. A
-    start beside the primitive's own is carried along and fades out; `goal` replaces the goal smoothly.
+    It takes `tau` if the primitive is at rest at its goal by then, as learned ones are, else longer. The
+    deviation from the primitive's start fades out; `goal` replaces the goal smoothly.
 
     Raises:
-        RobotError: another number of joints, a start that is too far away, or a joint that would leave its
-            range, its speed or its acceleration on the way; the message names joint, time and amount.
+        RobotError: wrong number of joints, a start too far away, or a joint that would exceed its
+            range, speed or acceleration; the message names joint, time and amount.
     """
     own = joints_in_task_frame(dmp)
     _check_joints(own, start, goal, joint_names, start_reach_rad)
@@ -60,7 +60,7 @@ def resting_joints(dmp: JointDmp, start: Array, goal: Array | None = None) -> Jo
     """Return the path of a primitive without `tasktrans` from `start` at rest to its goal, or to `goal`, at rest.
 
     Raises:
-        RobotError: it does not come to its goal.
+        RobotError: the primitive does not reach its goal.
     """
     changes = () if goal is None else (GoalChange(share=0.0, goal=goal),)
     target = np.array(dmp.goal) if goal is None else goal
@@ -79,7 +79,7 @@ def resting_joints(dmp: JointDmp, start: Array, goal: Array | None = None) -> Jo
 
 
 def unreachable_goal_error() -> RobotError:
-    """Return the refusal of a primitive whose forcing term keeps it away from its goal."""
+    """Return the error for a primitive whose forcing term keeps it away from its goal."""
     return RobotError(
         f"the movement primitive is not at rest at its goal after {ENDS[-1]:g} tau",
         hint="its weights are far too great for its gains: learn it again",
@@ -87,7 +87,7 @@ def unreachable_goal_error() -> RobotError:
 
 
 def advise_slower(tau_s: float, factor: float) -> str:
-    """Return the advice to make a primitive slower."""
+    """Return the hint to slow a primitive down."""
     return f"give it a tau of at least {np.ceil(tau_s * factor * 100.0 + 1e-6) / 100.0:.2f} s"
 
 
@@ -101,19 +101,19 @@ def _check_joints(
         if count != len(names):
             raise RobotError(f"{what} has {count} joints", hint=f"this arm has {len(names)}")
     if goal is not None and not np.isfinite(goal).all():
-        raise RobotError("the goal has a number that is not finite")
+        raise RobotError("the goal has a value that is not finite")
     away = np.abs(start - np.array(dmp.y0))
     worst = int(np.argmax(away))
     if away[worst] > start_reach_rad:
         raise RobotError(
-            f"the movement primitive starts with {names[worst]} at {dmp.y0[worst]:.3f} rad, it stands at"
-            f" {start[worst]:.3f} rad ({away[worst]:.3f} rad away, at most {start_reach_rad:g})",
-            hint="move the joints to its start y0 first",
+            f"{names[worst]} is at {start[worst]:.3f} rad, {away[worst]:.3f} rad from the start"
+            f" {dmp.y0[worst]:.3f} rad of the movement primitive (at most {start_reach_rad:g})",
+            hint="move the joints to the start y0 first",
         )
 
 
 def _farthest(position: Array, start: Array, limits: JointLimits) -> tuple[int, int]:
-    """Return the samples that are nearest to or farthest beyond a lower and an upper limit, or `start` beyond that."""
+    """Return the samples nearest to, or farthest beyond, the lower and the upper limit (or `start` if beyond)."""
     below = (np.minimum(np.array(limits.lower_rad), start) - position).max(axis=1)
     above = (position - np.maximum(np.array(limits.upper_rad), start)).max(axis=1)
     return int(np.argmax(below)), int(np.argmax(above))

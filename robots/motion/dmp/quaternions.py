@@ -10,7 +10,7 @@ _SMALL = 1e-12
 
 
 def product(left: Array, right: Array) -> Array:
-    """Return the quaternions that turn by `right` first, then by `left`; (..., 4), broadcast."""
+    """Return the quaternions of the rotation by `right` first, then by `left`; (..., 4), broadcast."""
     left, right = np.broadcast_arrays(left, right)
     turned = np.empty(left.shape)
     lv, lw, rv, rw = left[..., :3], left[..., 3:], right[..., :3], right[..., 3:]
@@ -20,15 +20,15 @@ def product(left: Array, right: Array) -> Array:
 
 
 def conjugate(xyzw: Array) -> Array:
-    """Return the quaternions of the opposite turns, (..., 4)."""
+    """Return the quaternions of the inverse rotations, (..., 4)."""
     return xyzw * np.array([-1.0, -1.0, -1.0, 1.0])
 
 
 def log(xyzw: Array) -> Array:
     """Return axis times angle, (..., 3), up to 2 pi long: a quaternion and its negative differ.
 
-    It is twice the quaternion logarithm of Ude et al. 2014. The sign is not changed on the way, so it
-    is continuous along a continuous row of quaternions, also past half a turn.
+    It is twice the quaternion logarithm of Ude et al. 2014. The sign is preserved, so it
+    is continuous along a continuous sequence of quaternions, also beyond half a turn.
     """
     sine = np.linalg.norm(xyzw[..., :3], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, xyzw[..., 3:])
@@ -37,7 +37,7 @@ def log(xyzw: Array) -> Array:
 
 
 def exp(vector: Array) -> Array:
-    """Return the unit quaternions that turn by rotation vectors, (..., 3) to (..., 4)."""
+    """Return the unit quaternions of rotation vectors, (..., 3) to (..., 4)."""
     angle = np.linalg.norm(vector, axis=-1, keepdims=True)
     small = angle < _SMALL
     shares = np.where(small, 0.5, np.sin(0.5 * angle) / np.where(small, 1.0, angle))
@@ -50,7 +50,7 @@ def toward(xyzw: Array, other: Array) -> Array:
 
 
 def continuous(xyzw: Array) -> Array:
-    """Return the rows, (T, 4), normalised and with signs such that neighbours are near each other."""
+    """Return the rows, (T, 4), normalised and with signs such that neighbours are close."""
     unit = xyzw / np.linalg.norm(xyzw, axis=-1, keepdims=True)
     flips = np.where((unit[1:] * unit[:-1]).sum(axis=-1) < 0.0, -1.0, 1.0)
     return unit * np.concatenate(([1.0], np.cumprod(flips)))[:, None]

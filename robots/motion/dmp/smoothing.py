@@ -1,4 +1,4 @@
-"""Samples of a recorded motion made smooth: a quintic spline with few knots gives clean rates and accelerations."""
+"""Smooths a recorded motion: a quintic spline with few knots gives clean rates and accelerations."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from engine.errors import RobotError
 from robots.port import Array
 
 _DEGREE = 5
-# Fewer samples than this between two knots would let the spline follow the noise, or leave it undetermined.
+# With fewer samples than this between two knots the spline would follow the noise or be underdetermined.
 _SAMPLES_PER_KNOT = 3
-# A quintic spline at rest at an end has its first three coefficients in common there.
+# A quintic spline at rest at an end has three equal coefficients there.
 _EQUAL_AT_REST = 3
 FEWEST_SAMPLES = 10
-"""With fewer samples nothing is learned."""
+"""Minimum number of samples for learning."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RestEnds:
-    """At which ends of a recording the arm rests."""
+    """The ends of a recording at which the arm is at rest."""
 
     start: bool
     end: bool
@@ -42,12 +42,12 @@ class SmoothMotion:
 
 
 def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> SmoothMotion:
-    """Return the spline of at most `intervals` pieces nearest to samples, least squares.
+    """Return the least-squares spline of the samples with at most `intervals` pieces.
 
     Args:
-        shares: When they were taken, rising from 0 to 1, (T,).
+        shares: Sample times, increasing from 0 to 1, (T,).
         values: The samples, (T, n).
-        intervals: How many pieces.
+        intervals: Maximum number of pieces.
         rests: Where rate and acceleration are 0.
 
     Raises:
@@ -57,7 +57,7 @@ def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> 
         raise RobotError(
             f"the recording has {len(shares)} samples of the motion", hint=f"record at least {FEWEST_SAMPLES} of them"
         )
-    # scipy has no stubs, and takes most of a second to import: it stays in here.
+    # scipy has no type stubs and takes most of a second to import: it is imported here only.
     splines: Any = import_module("scipy.interpolate")
     pieces = max(1, min(intervals, (len(shares) - _DEGREE - 1) // _SAMPLES_PER_KNOT))
     # Inner knots lie at quantiles of the samples, so that a gap in the recording takes no knots.
@@ -72,7 +72,7 @@ def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> 
 
 
 def _ties(coefficients: int, rests: RestEnds) -> Array:
-    """Return the matrix that makes the spline's coefficients of the free ones: at rest those at the end are one."""
+    """Return the matrix from free to spline coefficients: at rest those at the end coincide."""
     kept = list(range(coefficients))
     if rests.start and len(kept) > _EQUAL_AT_REST:
         kept[:_EQUAL_AT_REST] = [0] * _EQUAL_AT_REST

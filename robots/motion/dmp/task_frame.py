@@ -1,7 +1,7 @@
-"""Puts a movement primitive elsewhere: its own `tasktrans`, and the frame that it is given in.
+"""Transforms a movement primitive: applies its `tasktrans`, and changes its frame.
 
-The equations keep their form under a linear map of joints and under a rigid transform of poses, so
-the moved primitive is a primitive again: goal, start, speed and weights are mapped.
+The equations are invariant under a linear map of joints and a rigid transform of poses, so
+the transformed primitive is a primitive again: goal, start, speed and weights are mapped.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from robots.port import Array
 
 
 def joints_in_task_frame(dmp: JointDmp) -> JointDmp:
-    """Return the same motion with `tasktrans` worked in and empty."""
+    """Return the same motion with `tasktrans` applied and empty."""
     if not dmp.tasktrans:
         return dmp
     n = len(dmp.goal)
@@ -32,7 +32,7 @@ def joints_in_task_frame(dmp: JointDmp) -> JointDmp:
 
 
 def poses_in_task_frame(dmp: CartDmp) -> CartDmp:
-    """Return the same motion with `tasktrans` worked in and empty."""
+    """Return the same motion with `tasktrans` applied and empty."""
     if not dmp.tasktrans:
         return dmp
     matrix = np.array(dmp.tasktrans).reshape(4, 4)
@@ -41,7 +41,7 @@ def poses_in_task_frame(dmp: CartDmp) -> CartDmp:
 
 
 def transform_dmp(dmp: CartDmp, transform: RigidTransform, *, frame: str) -> CartDmp:
-    """Return `dmp` as it is said in another frame, in which its own one lies at `transform`; it has no `tasktrans`."""
+    """Return `dmp` expressed in another frame, in which its own frame is at `transform`; it has no `tasktrans`."""
     turn = transform.rotation
     weights = turn @ np.array(dmp.weights[:3]), turn @ np.array(dmp.weights[3:])
     w1, w2, w3, w4, w5, w6 = (_row(row) for half in weights for row in half)

@@ -11,16 +11,16 @@ from engine.errors import RobotError
 from robots.motion.dmp.smoothing import FEWEST_SAMPLES, RestEnds, smooth
 from robots.port import Array
 
-# Speeds are judged after smoothing over about this time; this much rest is left at either end.
+# Speeds are evaluated after smoothing over about this time; this much rest is kept at either end.
 _SMOOTHING_S, _KEPT_REST_S = 0.1, 0.1
 _SHARE_OF_PEAK = 0.01
-# The speed that noise feigns after smoothing is about this many times its size over time and root of samples.
+# Apparent speed of noise after smoothing, in multiples of its size over time and root of samples.
 _NOISE_GAIN = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionChannel:
-    """Values that move together, (T, n), and the speed below which they rest whatever their peak."""
+    """Values that move together, (T, n), and the speed below which they are at rest regardless of their peak."""
 
     values: Array
     rest: float
@@ -28,14 +28,14 @@ class MotionChannel:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionWindow:
-    """The samples from the beginning to the end of a motion with a little rest, and whether it was at rest there."""
+    """The samples from the start to the end of a motion with a little rest, and whether it was at rest there."""
 
     taken: slice
     rests: RestEnds
 
 
 def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> MotionWindow:
-    """Return where the motion is in a recording.
+    """Return the window of the motion in a recording.
 
     Raises:
         RobotError: there are too few samples, or nothing moves.
@@ -48,7 +48,7 @@ def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> Mot
     for channel in channels:
         moves |= _moves(times_s, channel)
     if not moves.any():
-        raise RobotError("nothing moves in the recording", hint="record while the arm is led")
+        raise RobotError("nothing moves in the recording", hint="record while the arm is guided")
     first, last = (float(times_s[at]) for at in np.flatnonzero(moves)[[0, -1]])
     begin = int(np.searchsorted(times_s, first - _KEPT_REST_S))
     end = int(np.searchsorted(times_s, last + _KEPT_REST_S, side="right"))
@@ -61,7 +61,7 @@ def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> Mot
 
 
 def _moves(times_s: Array, channel: MotionChannel) -> Array:
-    """Tell at which samples a channel moves faster than its rest, its noise and a small share of its peak."""
+    """Return at which samples a channel moves faster than its rest speed, its noise and a small share of its peak."""
     duration_s = float(times_s[-1] - times_s[0])
     shares = (times_s - times_s[0]) / duration_s
     wanted = max(8, round(duration_s / _SMOOTHING_S))

@@ -1,1 +1,1 @@
-"""Commands to a simulated world, as messages that cross the border to its process. For the other rooms of sim."""
+"""Commands to a simulated world, as messages to its process. For the other packages of sim."""

@@ -1,4 +1,4 @@
-"""What one arm of a simulation can be told, as messages that also cross the border to its own process."""
+"""Commands to one arm of a simulation, as messages that can also be sent to its own process."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from robots.port import (
 
 
 class SimCommand(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
-    """Root of the commands; motions are numbered by the sender, from 1, never twice."""
+    """Base of the commands; the sender numbers motions from 1, each number once."""
 
 
 class CommandToArm(SimCommand, frozen=True, kw_only=True):
-    """Root of the commands for one arm."""
+    """Base of the commands to one arm."""
 
     arm: str
 
@@ -56,7 +56,7 @@ class EncodedTrajectory(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EncodedTolerance(msgspec.Struct, frozen=True, kw_only=True):
-    """A tolerance."""
+    """A tolerance as a message."""
 
     path_rad: float
     goal_rad: float
@@ -73,7 +73,7 @@ class EncodedTolerance(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FollowTrajectory(CommandToArm, frozen=True, kw_only=True, tag="follow"):
-    """Follow a trajectory, up to a contact of `contact_n` along `contact_direction` if that is more than 0."""
+    """Follow a trajectory, ended by a contact of `contact_n` along `contact_direction` if `contact_n` is above 0."""
 
     motion: int
     way: EncodedTrajectory
@@ -101,14 +101,14 @@ class FollowTrajectory(CommandToArm, frozen=True, kw_only=True, tag="follow"):
         )
 
     def contact(self) -> ContactCondition | None:
-        """Return the contact that it ends at, if it does."""
+        """Return the contact condition that ends it, if any."""
         return (
             ContactCondition(force_n=self.contact_n, direction=self.contact_direction) if self.contact_n > 0.0 else None
         )
 
 
 class TrackForce(CommandToArm, frozen=True, kw_only=True, tag="track_force"):
-    """Follow a tool path while pressing; `offset` and `wrench` are float64 row-major bytes of shape (samples, 6)."""
+    """Follow a tool path under force control; `offset` and `wrench` are float64 row-major bytes, shape (samples, 6)."""
 
     motion: int
     way: EncodedTrajectory
@@ -122,7 +122,7 @@ class TrackForce(CommandToArm, frozen=True, kw_only=True, tag="track_force"):
 
     @classmethod
     def of(cls, arm: str, motion: int, task: ForceTask, tolerance: Tolerance) -> TrackForce:
-        """Return the command to do `task`."""
+        """Return the command to execute `task`."""
         return cls(
             arm=arm,
             motion=motion,
@@ -137,7 +137,7 @@ class TrackForce(CommandToArm, frozen=True, kw_only=True, tag="track_force"):
         )
 
     def task(self) -> ForceTask:
-        """Return the task it carries."""
+        """Return the task."""
         return ForceTask(
             trajectory=self.way.trajectory(),
             offset=np.frombuffer(self.offset).reshape(-1, 6),
@@ -150,7 +150,7 @@ class TrackForce(CommandToArm, frozen=True, kw_only=True, tag="track_force"):
 
 
 class StartStream(CommandToArm, frozen=True, kw_only=True, tag="listen"):
-    """Do from now on what `Setpoint` says, until `FinishStream` or `Cancel`."""
+    """Follow the `Setpoint` commands until `FinishStream` or `CancelMotion`."""
 
     motion: int
     kind: StreamKind
@@ -158,14 +158,14 @@ class StartStream(CommandToArm, frozen=True, kw_only=True, tag="listen"):
 
 
 class StartGuiding(CommandToArm, frozen=True, kw_only=True, tag="float"):
-    """Let the arm be led by hand, with this share of the joints' damping, until `FinishStream` or `Cancel`."""
+    """Start guiding by hand, with this share of the joint damping, until `FinishStream` or `CancelMotion`."""
 
     motion: int
     damping: float
 
 
 class Setpoint(CommandToArm, frozen=True, kw_only=True, tag="tell"):
-    """Say where, or how fast, a stream goes from now on; it was said `age_s` ago."""
+    """Target positions or velocities of a stream, sent `age_s` ago."""
 
     motion: int
     values: tuple[float, ...]
@@ -173,19 +173,19 @@ class Setpoint(CommandToArm, frozen=True, kw_only=True, tag="tell"):
 
 
 class FinishStream(CommandToArm, frozen=True, kw_only=True, tag="finish"):
-    """Bring a stream to rest and end it as reached."""
+    """Bring a stream to rest and end it as REACHED."""
 
     motion: int
 
 
 class ConfigureArm(CommandToArm, frozen=True, kw_only=True, tag="configure"):
-    """Put checked settings into force."""
+    """Apply validated settings."""
 
     settings: ArmSettings
 
 
 class RecoverArm(CommandToArm, frozen=True, kw_only=True, tag="recover"):
-    """End a reflex."""
+    """End a reflex stop."""
 
 
 ArmCommand = (

@@ -1,4 +1,4 @@
-"""What a simulation can be told, as messages that also cross the border to its own process."""
+"""Commands to a simulation, as messages that can also be sent to its own process."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class HoldMotion(SimCommand, frozen=True, kw_only=True, tag="hold"):
 
 
 class ResumeMotion(SimCommand, frozen=True, kw_only=True, tag="resume"):
-    """Let a held motion go on."""
+    """Resume a held motion."""
 
     motion: int
     request: int
@@ -64,11 +64,11 @@ class StopAll(SimCommand, frozen=True, kw_only=True, tag="stop_all"):
 
 
 class ResetFreeParts(SimCommand, frozen=True, kw_only=True, tag="reset_parts"):
-    """Put the free parts back where the scene has them, at rest."""
+    """Return the free parts to their poses in the scene, at rest."""
 
 
 class PushSimBody(SimCommand, frozen=True, kw_only=True, tag="push"):
-    """Push at a body with a force (world) at a point of its frame for a while, as a hand does."""
+    """Push a body with a force (world) at a point of its frame for a while, as a hand does."""
 
     body: str
     force_n: Vector3
@@ -77,7 +77,7 @@ class PushSimBody(SimCommand, frozen=True, kw_only=True, tag="push"):
 
 
 class MovePersonHand(SimCommand, frozen=True, kw_only=True, tag="move_hand"):
-    """Let the hand of a person go to a place (world); it goes back after `stay_s` there, or stays."""
+    """Move the hand of a person to a point (world); it returns after `stay_s`, or stays."""
 
     person: str
     hand_m: Vector3
@@ -86,17 +86,17 @@ class MovePersonHand(SimCommand, frozen=True, kw_only=True, tag="move_hand"):
 
 
 class RestoreWorld(SimCommand, frozen=True, kw_only=True, tag="restore"):
-    """Go to where an image of this world was made, at rest; `numbers` are float64 as in `ImageLayout`."""
+    """Restore an image of this world, at rest; `numbers` are float64 as in `ImageLayout`."""
 
     numbers: bytes
 
     @classmethod
     def of(cls, image: Array) -> RestoreWorld:
-        """Return the command to go to `image`."""
+        """Return the command to restore `image`."""
         return cls(numbers=to_bytes(image))
 
     def image(self) -> Array:
-        """Return the image it carries."""
+        """Return the image."""
         return np.frombuffer(self.numbers)
 
 

@@ -1,1 +1,1 @@
-"""The mechanics of tools in a simulated world: what is added to their specification, and what moves them."""
+"""The mechanics of tools in a simulated world: additions to their specification, and their drives."""

@@ -1,4 +1,4 @@
-"""Two fingers that slide, or turn on a linkage, moved by a finger servo."""
+"""Two fingers, sliding or on a linkage, driven by a finger servo."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from robots.sim.physics.tool_indices import FingerIndices, LinkageIndices
 
 
 class Gear(Protocol):
-    """What lies between the motors of a gripper and the opening between its pads."""
+    """The transmission between the motors of a gripper and the opening between its pads."""
 
     def opening(self) -> tuple[float, float]:
-        """Return the opening now, metres, and how fast it grows."""
+        """Return the present opening, metres, and its rate."""
         ...
 
     def press(self, force_n: float) -> None:
-        """Set the motors so that each pad presses outward with `force_n`, the fingers' weight carried."""
+        """Set the motors so that each pad presses outward with `force_n`, the fingers' weight compensated."""
         ...
 
     def closing_axis(self) -> Array | None:
@@ -32,14 +32,14 @@ class Gear(Protocol):
 
 
 class SlidingGear:
-    """A parallel gripper: one motor a finger, both with the same force."""
+    """A parallel gripper: one motor per finger, both with the same force."""
 
     def __init__(self, indices: FingerIndices, physics: Physics) -> None:
         self._indices = indices
         self._physics = physics
 
     def opening(self) -> tuple[float, float]:
-        """Return the sum of the fingers' ways."""
+        """Return the sum of the fingers' travels."""
         indices, physics = self._indices, self._physics
         ways, speeds = physics.positions[indices.qpos], physics.velocities[indices.dof]
         return float(np.add.reduce(ways)), float(np.add.reduce(speeds))
@@ -63,7 +63,7 @@ class TurningGear:
 
     @property
     def finger_kg(self) -> float:
-        """Mass of each of two fingers, moving half of the opening, that has the energy of the turning motor."""
+        """Equivalent mass of each finger, moving half of the opening, with the kinetic energy of the motor."""
         model = self._indices.model
         travel_m_rad = model.max_width_m / abs(model.closed_rad - model.open_rad)
         return 2.0 * model.armature_kg_m2 / travel_m_rad**2
@@ -74,14 +74,14 @@ class TurningGear:
         return width_m, travel_m_rad * float(self._physics.velocities[self._indices.dof[0]])
 
     def press(self, force_n: float) -> None:
-        """Set the torque that does the same work as the pads."""
+        """Set the torque that does the same work as the pad forces."""
         indices, physics = self._indices, self._physics
         _, travel_m_rad = self._at()
         weight_nm = float(indices.factors @ physics.bias[indices.dof])
         physics.motors[indices.motor] = weight_nm + force_n * travel_m_rad
 
     def closing_axis(self) -> Array | None:
-        """Pads on a linkage look at one another."""
+        """Pads on a linkage face each other."""
         left, right = self._indices.pad_geoms
         across = self._physics.geom_position(right) - self._physics.geom_position(left)
         return across / np.linalg.norm(across)
@@ -91,7 +91,7 @@ class TurningGear:
 
 
 class FingerMechanics:
-    """Implements `Mechanics`: a finger servo on a gear, and what the pads touch."""
+    """Implements `ToolMechanics`: a finger servo on a gear, and the pad contacts."""
 
     def __init__(self, gear: Gear, servo: FingerServo, contacts: ContactReader, pads: tuple[int, int]) -> None:
         self.drive = servo
@@ -119,7 +119,7 @@ class FingerMechanics:
         return events
 
     def measured(self) -> tuple[float, ...]:
-        """Return progress, width, velocity, force and what the pads touch."""
+        """Return progress, width, velocity, force and the pad contacts."""
         width_m, velocity_m_s = self._gear.opening()
         left, right = self._contacts.pads(self._pads, axis=self._gear.closing_axis())
         force_n = (left.force_n + right.force_n) / 2.0
@@ -131,6 +131,6 @@ class FingerMechanics:
         return command.set_m, command.target_m, command.speed_m_s, command.force_n
 
     def take_over(self, command: tuple[float, ...]) -> None:
-        """Go on with these."""
+        """Resume from these values."""
         set_m, target_m, speed_m_s, force_n = command
         self.drive.take_over(FingerCommand(set_m=set_m, target_m=target_m, speed_m_s=speed_m_s, force_n=force_n))

@@ -1,4 +1,4 @@
-"""A switchable magnet in a simulated world: it pulls at ferrous parts near its face, the rest is contact."""
+"""A switchable magnet in a simulated world: it attracts ferrous parts near its face; contact does the rest."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
 from robots.sim.physics.tool_indices import MagnetIndices
 
-# Where the field is sampled over the face, as shares of its half edge; without its corners, the face is round.
+# Sample points of the field over the face, as shares of its half edge; without corners, as the face is round.
 _GRID = (-0.8, -0.4, 0.0, 0.4, 0.8)
 _POINTS = tuple((x, y) for x in _GRID for y in _GRID if x * x + y * y < 1.0)
 # A gap of this share of the reach halves the field, which leaves a quarter of the force.
 _QUARTER_SHARE = 1.0 / 3.0
-# A ray that starts inside a body does not meet the side it should: parts sink in a little.
+# A ray that starts inside a body misses the near side: parts sink in a little.
 _BACK_M = 0.01
-# A switch is not over while a part jumps to the face.
+# A switch has not ended while a part jumps to the face.
 _STILL_M_S = 0.005
 
 
 class MagnetMechanics:
-    """Pulls at every ferrous part with a force that is spread over its face and falls with the gap.
+    """Pulls every ferrous part with a force that is distributed over the face and decreases with the gap.
 
-    A part that is pulled off harder than that opens a gap and falls; one that tilts peels off from the
-    edge. The magnet is pulled the other way.
+    A part pulled off by a larger force opens a gap and falls; a tilted part peels off from the
+    edge. The reaction force acts on the magnet.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class MagnetMechanics:
             self.drive.switch(command.motion, on=command.on)
 
     def step(self, step_s: float) -> tuple[AnyMotionEvent, ...]:
-        """Pull at what is near."""
+        """Pull the parts within reach."""
         self._find_pulls()
         physics = self._physics
         for body, (force, point) in self._pulls.items():
@@ -59,7 +59,7 @@ class MagnetMechanics:
         return self.drive.step(step_s, still=still)
 
     def measured(self) -> tuple[float, ...]:
-        """Return progress, on, pull at what touches, nothing, and what touches."""
+        """Return progress, on, pull on the touching part, nothing, and the touching part."""
         (touched,) = self._contacts.touched((frozenset((self._indices.body,)),), own=self._own, fixed=True)
         pull_n = float(np.linalg.norm(self._pulls[touched][0])) if touched in self._pulls else 0.0
         return (self.drive.progress, float(self.drive.on), pull_n, 0.0, touched)
@@ -70,13 +70,13 @@ class MagnetMechanics:
         return float(command.on), command.level
 
     def take_over(self, command: tuple[float, ...]) -> None:
-        """Go on with these."""
+        """Resume from these values."""
         on, level = command[:2]
         self.drive.take_over(MagnetCommand(on=on > 0.0, level=level))
         self._find_pulls()
 
     def _find_pulls(self) -> None:
-        """Find which body is pulled with which force, and the point that it acts at, in the world."""
+        """Compute the pull on each body and its point of application in the world."""
         self._pulls.clear()
         if self.drive.level == 0.0:
             return
@@ -92,11 +92,11 @@ class MagnetMechanics:
             forces = np.array([share_n * self._fading(geom, point, out) for point in points])
             force_n = float(forces.sum())
             if force_n > 0.0:
-                # Forces along one direction act like their sum at the middle of them.
+                # Parallel forces act like their sum at their centre.
                 self._pulls[physics.geom_body[geom]] = (force_n * out, forces @ points / force_n)
 
     def _fading(self, geom: int, point: Array, out: Array) -> float:
-        """Return the share of the force that is left of the field where it meets a part, `out` of a point of it."""
+        """Return the remaining share of the force where the field, from `point` along `out`, meets a part."""
         reach_m = self._indices.model.reach_m
         gap_m = self._physics.ray(geom, point - _BACK_M * out, out) - _BACK_M
         if not -_BACK_M < gap_m <= reach_m:

@@ -1,4 +1,4 @@
-"""What moves a tool in a simulated world, one for each kind: its drive, what it measures, what it goes on doing."""
+"""The mechanics interface of a tool in a simulated world: its drive, measurements and standing command."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from robots.sim.commands.world_commands import ToolCommand
 
 
 class ToolDrive(Protocol):
-    """The motor or switch of a tool: carries out one numbered motion at a time."""
+    """The motor or switch of a tool: executes one numbered motion at a time."""
 
     @property
     def number(self) -> int:
-        """The motion under way, 0 when there is none."""
+        """Number of the active motion, 0 for none."""
         ...
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Stop on the way."""
+        """Stop and keep the motion."""
         ...
 
     def resume(self, number: int, *, request: int = 0) -> None:
-        """Go on."""
+        """Resume."""
         ...
 
     def cancel(self, number: int) -> None:
-        """Stop and end as canceled."""
+        """Stop and end as CANCELED."""
         ...
 
     def stop(self, cause: str = "") -> None:
-        """Cancel whatever runs, what is held stays held; with a `cause` it ends as failed."""
+        """Cancel the active motion; a held object stays held. With a `cause` the motion fails."""
         ...
 
 
@@ -38,7 +38,7 @@ class ToolMechanics(Protocol):
 
     @property
     def drive(self) -> ToolDrive:
-        """What carries out its motions."""
+        """The drive that executes its motions."""
         ...
 
     def begin(self, command: ToolCommand) -> None:
@@ -46,17 +46,17 @@ class ToolMechanics(Protocol):
         ...
 
     def step(self, step_s: float) -> tuple[AnyMotionEvent, ...]:
-        """Read the present state, set motors and fields, return what happened; called between the halves of a step."""
+        """Read the state, set motors and fields, return the events; called between the halves of a step."""
         ...
 
     def measured(self) -> tuple[float, ...]:
-        """Return progress, three measures and the bodies touched, as `SnapshotLayout` has them."""
+        """Return progress, three measurements and the touched bodies, as in `SnapshotLayout`."""
         ...
 
     def command(self) -> tuple[float, ...]:
-        """Return at most `TOOL_FIELDS` numbers that say what it does when its motion is cancelled now."""
+        """Return at most `TOOL_FIELDS` numbers: the command that stays in force if its motion is cancelled now."""
         ...
 
     def take_over(self, command: tuple[float, ...]) -> None:
-        """Do from now on what another life of this tool did."""
+        """Adopt the command of an earlier instance of this tool."""
         ...

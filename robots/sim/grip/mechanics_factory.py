@@ -1,4 +1,4 @@
-"""Makes the mechanics of whatever tool is on an arm."""
+"""Creates the mechanics of the tool on an arm."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robots.sim.physics.tool_indices import FingerIndices, HandIndices, LinkageI
 
 
 def new_mechanics(arm: ArmIndices, physics: Physics, contacts: ContactReader) -> ToolMechanics | None:
-    """Return what moves the tool of an arm, None for a bare flange; the tool stands as it is in `physics`."""
+    """Return the mechanics of an arm's tool, None for a bare flange; the tool keeps its state in `physics`."""
     match arm.tool:
         case FingerIndices() as fingers:
             servo = FingerServo(fingers.model)

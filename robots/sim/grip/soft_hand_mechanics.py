@@ -11,7 +11,7 @@ from robots.sim.physics.tool_indices import HandIndices
 
 
 class SoftHandMechanics:
-    """Blocked fingers stop and the others go on closing: the tendon slides to where it is slack."""
+    """Blocked fingers stop while the others continue to close: the tendon slides to where it is slack."""
 
     def __init__(self, indices: HandIndices, physics: Physics, contacts: ContactReader, *, own: frozenset[int]) -> None:
         self._indices = indices
@@ -22,7 +22,7 @@ class SoftHandMechanics:
         self.drive = TendonServo(
             travel_m=model.travel_m, max_speed_m_s=model.travel_speed_m_s, max_force_n=model.max_force_n
         )
-        # A free tendon's pull turns each joint until its spring holds against it: they give as in series.
+        # The pull of a free tendon turns each joint until its spring balances it: the springs act in series.
         self._give_m_n = sum(joint.radius_m**2 / joint.stiffness_nm_rad for joint in model.flexion)
 
     def begin(self, command: ToolCommand) -> None:
@@ -38,18 +38,18 @@ class SoftHandMechanics:
         return events
 
     def measured(self) -> tuple[float, ...]:
-        """Return progress, closed share, pull beyond that of the springs, nothing, what fingers and palm touch."""
+        """Return progress, closed share, pull beyond that of the springs, nothing, contacts of fingers and palm."""
         touched = self._contacts.touched(self._indices.places, own=self._own)
         pulled_m, _ = self._physics.tendon(self._indices.tendon)
         pressing_n = max(0.0, self.drive.force_n - pulled_m / self._give_m_n)
         return (self.drive.progress, self.drive.closed_share, pressing_n, 0.0, *touched)
 
     def command(self) -> tuple[float, ...]:
-        """Return what is wound up, target, speed."""
+        """Return wound-up length, target, speed."""
         command = self.drive.command
         return command.wound_m, command.target_m, command.speed_m_s
 
     def take_over(self, command: tuple[float, ...]) -> None:
-        """Go on with these."""
+        """Resume from these values."""
         wound_m, target_m, speed_m_s = command[:3]
         self.drive.take_over(TendonCommand(wound_m=wound_m, target_m=target_m, speed_m_s=speed_m_s))

@@ -1,4 +1,4 @@
-"""What a port must know of the tool on an arm: what kind of device it is, its range, how many contacts it tells of."""
+"""Summary of the tool on an arm for its port: kind of device, range, number of contacts."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ ToolDevice = Literal["gripper", "hand", "magnet"]
 
 
 class ToolSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """A tool as its port sees it; figures that a kind does not have are 0.
+    """A tool as its port sees it; values that a kind does not have are 0.
 
-    `contacts` is the number of places where it tells what it touches: the pads of a gripper left then
+    `contacts` is the number of places with a contact measurement: the pads of a gripper left then
     right, the fingers of a hand thumb first and then its palm, the face of a magnet.
     """
 
@@ -26,7 +26,7 @@ class ToolSummary(msgspec.Struct, frozen=True, kw_only=True):
     min_force_n: float = 0.0
     max_force_n: float = 0.0
     shortest_time_s: float = 0.0
-    """Of closing a hand all the way."""
+    """Time to close a hand fully."""
 
 
 def tool_summary(tool: ToolModel | None) -> ToolSummary | None:
@@ -56,7 +56,7 @@ def opening_summary(fingers: GripperModel | LinkageModel | ClawModel) -> ToolSum
         case LinkageModel():
             speed_m_s, force_n, least_n = fingers.max_speed_m_s, fingers.max_force_n, fingers.min_force_n
         case ClawModel():
-            # A servo has an angle, a speed and a torque of its own; the fingers make lengths and forces of them.
+            # A servo has an angle, a speed and a torque; the fingers convert them to lengths and forces.
             travel_m_rad = fingers.max_width_m / abs(fingers.closed_rad - fingers.open_rad)
             speed_m_s, force_n = fingers.max_speed_rad_s * travel_m_rad, fingers.max_effort_nm / travel_m_rad
     return ToolSummary(

@@ -1,4 +1,4 @@
-"""A world in this process, stepped by virtual time: it passes only as fast as it is asked to."""
+"""A world in this process, stepped in virtual time on demand."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from robots.sim.scene.sim_scene import SimScene
 
 
 class LockstepHost:
-    """Steps the simulation on the calling thread; deterministic, faster than real time where it can."""
+    """Steps the simulation on the calling thread; deterministic, faster than real time if possible."""
 
     def __init__(self, scene: SimScene) -> None:
         self._scene = scene
@@ -39,12 +39,12 @@ class LockstepHost:
 
     @property
     def summary(self) -> CellSummary:
-        """What the world consists of."""
+        """Summary of the world."""
         return self.simulation.summary
 
     @property
     def busy(self) -> bool:
-        """True while a motion is under way."""
+        """True while a motion is active."""
         return self.simulation.busy
 
     def snapshot(self) -> SimSnapshot:
@@ -54,20 +54,20 @@ class LockstepHost:
         return SimSnapshot(self.simulation.layout, values)
 
     def image(self) -> Array:
-        """Everything that the future depends on, after the last step."""
+        """The complete state after the last step."""
         image = np.zeros(self.summary.image_size)
         self.simulation.write_image(image)
         return image
 
     async def restore(self, image: Array) -> None:
-        """Go to where an image of this world was made, at rest."""
+        """Restore an image of this world, at rest."""
         before = self.simulation.steps
         self.simulation.apply(RestoreWorld.of(image))
-        # The world's clock jumps, the loop's does not.
+        # The world's clock jumps; the loop's does not.
         self._start_steps += self.simulation.steps - before
 
     def send(self, command: AnyCommand) -> None:
-        """Give a command, which acts from the next step on."""
+        """Send a command, which acts from the next step on."""
         self.simulation.apply(command)
 
     async def open(self, listener: WorldListener) -> None:
@@ -76,12 +76,12 @@ class LockstepHost:
         self._listener = listener
 
     def begin(self, now_s: float) -> None:
-        """Let the world's present be `now_s` of the time that `advance` is asked for."""
+        """Align the world's present with `now_s` of the time base of `advance`."""
         self._start_s = now_s
         self._start_steps = self.simulation.steps
 
     def advance(self, until_s: float, *, after_step: StepHook) -> float:
-        """Step towards `until_s`; return early, with the time reached, once somebody was told something."""
+        """Step towards `until_s`; return early, with the time reached, after any callback into the event loop."""
         simulation, listener = self.simulation, self._listener
         assert listener is not None
         step_s = simulation.step_s
@@ -100,5 +100,5 @@ class LockstepHost:
         return self._start_steps + math.floor((until_s - self._start_s) / self.simulation.step_s + 1e-9)
 
     async def close(self) -> None:
-        """Forget the world."""
+        """Drop the world."""
         self._listener = None

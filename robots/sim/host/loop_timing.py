@@ -1,4 +1,4 @@
-"""How punctual a real-time loop is: lateness in a histogram, overruns, time given up."""
+"""Timing statistics of a real-time loop: lateness histogram, overruns, skipped time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ SIZE = _FIELDS + _BUCKETS
 
 @dataclass(frozen=True, kw_only=True)
 class LoopTiming:
-    """Late is the wake-up after its due time; an overrun is a step that ended after the next was due.
+    """Lateness is the delay of a wake-up after its due time; an overrun is a step that ended after the next due time.
 
-    `slipped_s` is world time given up because the machine stood still for too long.
+    `slipped_s` is world time skipped because the machine stalled for too long.
     """
 
     steps: int
@@ -29,12 +29,12 @@ class LoopTiming:
     late_p99_s: float
     late_max_s: float
     values: Array = field(repr=False, compare=False)
-    """What all this was worked out from, as a `TimingCounter` has it."""
+    """The raw values of the `TimingCounter`."""
 
     def since(self, earlier: LoopTiming) -> LoopTiming:
-        """Return the figures of the time after `earlier`, of the same loop.
+        """Return the statistics of the time after `earlier`, of the same loop.
 
-        The maximum is known to 5 µs only, unless it is the greatest of all.
+        The maximum is exact to 5 µs only, unless it is the overall maximum.
         """
         values = self.values - earlier.values
         late_max_s = self.late_max_s
@@ -46,7 +46,7 @@ class LoopTiming:
 
 
 class TimingCounter:
-    """Counts in the loop's own process; `values` is what `decode_timing` understands."""
+    """Counts in the loop's own process; `decode_timing` reads `values`."""
 
     def __init__(self) -> None:
         self.values = np.zeros(SIZE)
@@ -62,12 +62,12 @@ class TimingCounter:
         values[_FIELDS + min(int(late_s / _BUCKET_S), _BUCKETS - 1)] += 1.0
 
     def slip(self, duration_s: float) -> None:
-        """Count world time given up."""
+        """Count skipped world time."""
         self.values[2] += duration_s
 
 
 def decode_timing(values: Array, *, late_max_s: float | None = None) -> LoopTiming:
-    """Return the figures behind a counter's values, or behind a sum of some with another maximum."""
+    """Return the statistics of a counter's values, or of a sum of counters with another maximum."""
     histogram: Array = np.cumsum(values[_FIELDS:])
     return LoopTiming(
         steps=int(values[0]),
@@ -81,7 +81,7 @@ def decode_timing(values: Array, *, late_max_s: float | None = None) -> LoopTimi
 
 
 def _share(cumulated: Array, share: float) -> float:
-    """Return the upper edge of the bucket that `share` of the counts lie in or below."""
+    """Return the upper edge of the bucket in or below which `share` of the counts lie."""
     if cumulated[-1] == 0.0:
         return 0.0
     bucket = int(np.searchsorted(cumulated, share * float(cumulated[-1])))

@@ -1,4 +1,4 @@
-"""A world in a process of its own, in real time: control keeps its deadlines while this process plans and serves."""
+"""A world in its own process, in real time: control keeps its deadlines while this process plans and serves."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _WHAT = "the world's process"
 # On a loaded machine that compiles the controllers for the first time, one arm takes half a minute.
 _START_S = 180.0
 _END_S = 6.0
-# On an overloaded machine this takes seconds, and who gives up too soon cannot resume a run.
+# On an overloaded machine this takes seconds; a timeout too early makes a run impossible to resume.
 _RESTORE_S = 20.0
 
 
@@ -40,11 +40,11 @@ NewStopLine = Callable[[str], socket.socket]
 
 
 class ProcessHost:
-    """Starts the process, sends it commands, hears its events, reads its state from shared memory.
+    """Starts the process, sends commands, receives events and reads its state from shared memory.
 
     Args:
-        scene: What the world consists of.
-        new_stop_line: Makes the line on which the process takes STOP; None for a world that has none.
+        scene: The scene of the world.
+        new_stop_line: Creates the line on which the process receives STOP; None for a world without one.
     """
 
     def __init__(self, scene: SimScene, *, new_stop_line: NewStopLine | None = None) -> None:
@@ -60,7 +60,7 @@ class ProcessHost:
 
     @property
     def summary(self) -> CellSummary:
-        """What the world consists of."""
+        """Summary of the world."""
         return self._opened()[0].summary
 
     @property
@@ -69,23 +69,23 @@ class ProcessHost:
         return self._process.pid if self._process is not None else 0
 
     def timing(self) -> LoopTiming:
-        """How punctual the world has been since it was opened."""
+        """Timing statistics since the world was opened."""
         if self._timing is None:
             raise _not_open()
         return decode_timing(self._timing.read())
 
     def snapshot(self) -> SimSnapshot:
-        """The newest state, at most a few steps old; the last one when the process is gone."""
+        """The latest state, at most a few steps old; the last one after the process is lost."""
         layout, state = self._opened()
         return SimSnapshot(layout, state.read())
 
     def image(self) -> Array:
-        """Everything that the future depends on, at most a few steps ago; the last when the process is gone."""
+        """The latest complete state, at most a few steps old; the last one after the process is lost."""
         layout, state = self._opened()
         return state.read()[layout.size :]
 
     async def restore(self, image: Array) -> None:
-        """Go to where an image of this world was made; returns when the process has confirmed it."""
+        """Restore an image of this world; returns when the process has confirmed it."""
         self.send(RestoreWorld.of(image))
         assert self._wire is not None
         restored = self._wire.next_restored()
@@ -98,7 +98,7 @@ class ProcessHost:
             ) from error
 
     def send(self, command: AnyCommand) -> None:
-        """Give a command; raises RobotError when the process is gone."""
+        """Send a command; raises RobotError when the process is lost."""
         if self._wire is None or self._wire.lost_reason:
             raise RobotError(
                 self._wire.lost_reason if self._wire else "the world's process was ended", hint=CONNECT_AGAIN
@@ -108,7 +108,7 @@ class ProcessHost:
         self._wire.send(msgspec.msgpack.encode(command))
 
     async def open(self, listener: WorldListener) -> None:
-        """Start the process and wait until its world stands; again when the last one was lost."""
+        """Start the process and wait until its world is built; may be called again after a loss."""
         ours, theirs = socket.socketpair()
         state_fd, timing_fd, heartbeat_fd = (
             new_shared_file("flexcell-state"),
@@ -120,7 +120,7 @@ class ProcessHost:
         descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd, *stop_fds)
         try:
             self._process = start_child(_START, descriptors, what=_WHAT)
-            # Closed before the process can be gone, else its end would not be heard.
+            # Closed before the process can end, else its end would not be noticed.
             theirs.close()
             loop = asyncio.get_running_loop()
             _, wire = await loop.create_connection(lambda: _Wire(listener, self._how_it_ended), sock=ours)
@@ -129,13 +129,13 @@ class ProcessHost:
             ready = await self._answer(wire)
             self._layout = SnapshotLayout(ready.summary)
             self._state = SharedNumbers(state_fd, self._layout.size + ready.summary.image_size)
-            # Read once, so that there is something whole to go back to should the process die in mid-write.
+            # Read once, so that a consistent state exists if the process dies in mid-write.
             self._state.read()
             self._timing = SharedNumbers(timing_fd, SIZE)
             self.fifo = ready.fifo
             self._begin_heartbeat(Heartbeat(heartbeat_fd))
         except BaseException:
-            # Whatever went wrong, cancellation included, no process may be left behind.
+            # On any error, cancellation included, no process may be left behind.
             wire, self._wire = self._wire, None
             if wire is None:
                 ours.close()
@@ -158,11 +158,11 @@ class ProcessHost:
         self._heartbeat.begin()
 
     def _end_silent_process(self, silent_s: float) -> None:
-        """Kill a process that does not step, so that it is known to be over, and tell that it is lost."""
+        """Kill a process that does not step, so that its end is certain, and report its loss."""
         if self._process is not None:
             self._process.kill()
         if self._wire is not None and not self._wire.lost_reason:
-            self._wire.lose(f"{_WHAT} has not stepped for {silent_s:.1f} s: it is frozen or starved, and was ended")
+            self._wire.lose(f"{_WHAT} has not stepped for {silent_s:.1f} s: it is frozen or starved, and was killed")
             self._wire.close()
 
     async def _answer(self, wire: _Wire) -> WorldReady:
@@ -176,7 +176,7 @@ class ProcessHost:
         return answer
 
     async def close(self) -> None:
-        """Let everything come to rest and end the process; kill it when it does not end."""
+        """Bring everything to rest and end the process; kill it if it does not end."""
         wire, self._wire = self._wire, None
         try:
             if wire is not None:
@@ -185,11 +185,11 @@ class ProcessHost:
                     wire.send(msgspec.msgpack.encode(ShutDownWorld()))
                     await asyncio.wait((wire.gone,), timeout=_END_S)
         finally:
-            # Also when this is cancelled while it waits, no process may be left behind.
+            # Even if this is cancelled while it waits, no process may be left behind.
             self._kill(wire)
 
     def _kill(self, wire: _Wire | None) -> None:
-        """End the process, gently if it is about to end by itself."""
+        """End the process, gracefully if it is already shutting down."""
         if self._heartbeat is not None:
             self._heartbeat.end()
             self._heartbeat = None
@@ -243,7 +243,7 @@ class _Wire(asyncio.Protocol):
                     self._listener.happened(report)
 
     def next_restored(self) -> asyncio.Future[None]:
-        """Return what is done once the world has carried out one more restore."""
+        """Return a future that completes with the world's next restore."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._restores.append(future)
         return future
@@ -260,7 +260,7 @@ class _Wire(asyncio.Protocol):
             self.lose(self._how_it_ended() if not self.closing else "")
 
     def lose(self, reason: str) -> None:
-        """Tell everybody who waits that the world is gone; what is closed on purpose has its own reason."""
+        """Fail all waiters because the world is lost; a deliberate close has its own reason."""
         reason = "the world was closed" if self.closing else reason
         self.lost_reason = reason
         if not self.first.done():

@@ -1,4 +1,4 @@
-"""The log of the world's process: lines on stderr, none of which the control loop ever waits for."""
+"""The log of the world's process: lines on stderr that never block the control loop."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _LONGEST_BYTES = select.PIPE_BUF
 
 
 def log_nonblocking(line: str) -> None:
-    """Write a line to stderr, or drop it when whoever reads that does not keep up."""
+    """Write a line to stderr, or drop it if the reader does not keep up."""
     _, writable, _ = select.select([], [_STDERR], [], 0.0)
     if writable:
         # A pipe that is writable takes this much without waiting.

@@ -1,4 +1,4 @@
-"""The world's own process: steps in real time, takes commands from a socket, writes its state to shared memory."""
+"""The world's process: steps in real time, receives commands from a socket, writes its state to shared memory."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from robots.sim.scene.sim_scene import SimScene
 _FIFO_PRIORITY = 20
 _SNAPSHOT_EVERY = 2
 _TIMING_EVERY = 50
-# A loop this far behind gives the lost time up instead of racing after it.
+# A loop this far behind skips the lost time instead of catching up.
 _LONGEST_LAG_S = 0.05
 _SHUTDOWN_S = 4.0
 
 
 class CommandChannel:
-    """The child's end of the socket, never waiting but for the scene; raises PeerGone once the parent is gone."""
+    """The child's end of the socket; blocks only for the scene; raises PeerGone once the parent is gone."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
@@ -57,16 +57,16 @@ class CommandChannel:
         return [self._decode(message) for message in self._messages.receive()]
 
     def report(self, message: AnyReport) -> None:
-        """Send a message, or keep it until the socket takes it."""
+        """Send a message, or buffer it until the socket accepts it."""
         self._messages.post(self._encode(message))
 
     def flush(self) -> None:
-        """Send what waits, as far as the socket takes it."""
+        """Send buffered data, as far as the socket accepts it."""
         self._messages.flush()
 
 
 class ClosedChannel:
-    """What takes the channel's place once the parent is gone: nothing arrives, nobody hears."""
+    """Replaces the channel once the parent is gone: receives nothing, discards everything."""
 
     def commands(self) -> list[AnyCommand]:
         """Return nothing."""
@@ -76,11 +76,11 @@ class ClosedChannel:
         """Drop a message."""
 
     def flush(self) -> None:
-        """Nothing waits."""
+        """Nothing is buffered."""
 
 
 class WorldLoop:
-    """Steps a simulation at its own pace against the monotonic clock until told to stop."""
+    """Steps a simulation in real time on the monotonic clock until it is asked to stop."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class WorldLoop:
         self._channel: CommandChannel | ClosedChannel = channel
         self._engine = engine
         self._stop = stop
-        # What is measured, and behind it the image, so that both are of one instant.
+        # The measurement, followed by the image, so that both belong to one instant.
         self._values = np.zeros(simulation.layout.size + simulation.image_layout.size)
         self._image = self._values[simulation.layout.size :]
         self._shared = SharedNumbers(state_fd, len(self._values))
@@ -111,23 +111,23 @@ class WorldLoop:
             self._ending_at = time.monotonic() + _SHUTDOWN_S
 
     def publish(self) -> None:
-        """Write the present state where the parent reads it."""
+        """Write the present state to shared memory."""
         self._simulation.write_snapshot(self._values)
         self._simulation.write_image(self._image)
         self._shared.write(self._values)
 
     def run(self) -> None:
-        """Step until told to end, or until the parent is gone or talks nonsense, and everything is at rest."""
+        """Step until the end is requested or the parent is gone or sends invalid data, and everything is at rest."""
         try:
             self._step_on()
         except PeerGone:
             self._come_to_rest()
         except Exception:
-            # Whatever it is: nobody else brings to rest what this process controls.
+            # For any error: nothing else brings the devices of this process to rest.
             self._come_to_rest()
             raise
         finally:
-            # The last words to whoever reads the heartbeat: since when everything rests.
+            # The last heartbeat: since when everything is at rest.
             self._engine.look(time.monotonic())
 
     def _come_to_rest(self) -> None:
@@ -156,15 +156,15 @@ class WorldLoop:
     def _tick(self) -> None:
         for command in self._channel.commands():
             self._take(command)
-        # Before the engine's silence, so that what STOP ends says so.
+        # Before the check of the engine's silence, so that motions report STOP as their cause.
         self._stop.look()
         if self._stop.cut:
             self.request_end()
-        # After the commands: who sends one has given a pulse before.
+        # After the commands: their sender has pulsed before.
         self._engine.look(time.monotonic())
         events = self._simulation.step()
         if events or self._simulation.steps % _SNAPSHOT_EVERY == 0:
-            # The state is written before the event is told, so who hears of an end reads its state.
+            # The state is written before the event is sent, so a listener reads the state at the end.
             self.publish()
         for event in events:
             self._channel.report(event)
@@ -191,7 +191,7 @@ class WorldLoop:
 
 
 def take_real_time_schedule() -> bool:
-    """Ask for SCHED_FIFO; false, and the ordinary schedule, where the system does not permit it."""
+    """Request SCHED_FIFO; returns False, and keeps the default schedule, if the system does not permit it."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_FIFO_PRIORITY))
     except (AttributeError, OSError):
@@ -200,7 +200,7 @@ def take_real_time_schedule() -> bool:
 
 
 def main() -> None:
-    """Run the world on the descriptors of socket, state, timing, heartbeat and, where there is one, stop line."""
+    """Run the world on the descriptors of socket, state, timing, heartbeat and, optionally, stop line."""
     connection_fd, state_fd, timing_fd, heartbeat_fd, *stop_fd = (int(argument) for argument in sys.argv[1:])
     # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

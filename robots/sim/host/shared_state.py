@@ -1,8 +1,8 @@
-"""Numbers that one process writes and another reads at any time, without locks and without waiting.
+"""Numbers that one process writes and another reads at any time, lock-free and wait-free.
 
-One writer. There are two copies: the writer fills the one that is not the newest, then raises the count that
-names the newest. A writer that was killed or suspended in mid-write has spoiled only the copy that nobody
-reads. Plain aligned 8-byte stores in program order are enough on x86-64.
+One writer, two copies: the writer fills the older copy, then increments the count that
+selects the newer one. A writer killed or suspended in mid-write corrupts only the copy that nobody
+reads. Plain aligned 8-byte stores in program order suffice on x86-64.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from robots.port import Array
 
 _COUNT_BYTES = 8
-# A reader that is overtaken by two writes while it copies looks again; more often than this it never is.
+# A reader overtaken by two writes while it copies retries; it never needs more retries than this.
 _TRIES = 100
 
 
 class SharedNumbers:
-    """An array of float64 in a shared file, twice, and how often it was written."""
+    """A double-buffered float64 array in a shared file, with its write count."""
 
     def __init__(self, descriptor: int, size: int) -> None:
         length = _COUNT_BYTES + 2 * 8 * size
@@ -38,7 +38,7 @@ class SharedNumbers:
         self._count[0] = count
 
     def read(self) -> Array:
-        """Return a consistent copy of the newest numbers, without ever waiting for the writer."""
+        """Return a consistent copy of the latest numbers, without waiting for the writer."""
         for _ in range(_TRIES):
             count = int(self._count[0])
             copy = self._copies[count % 2].copy()
@@ -48,6 +48,6 @@ class SharedNumbers:
         return self._last.copy()
 
     def close(self) -> None:
-        """Let go of the memory."""
+        """Release the memory."""
         del self._count, self._copies
         self._memory.close()

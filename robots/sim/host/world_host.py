@@ -1,4 +1,4 @@
-"""Where a simulated world runs: in this process in lockstep, or in a process of its own in real time."""
+"""The host of a simulated world: this process in lockstep, or its own process in real time."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from robots.sim.loop.snapshot import CellSummary, SimSnapshot
 
 
 class WorldListener(Protocol):
-    """Who hears, on the event loop thread, what happens in the world."""
+    """Receives the events of the world on the event loop thread."""
 
     def happened(self, event: AnyMotionEvent) -> None:
-        """A motion ended, was held or goes on."""
+        """A motion ended, was held or resumed."""
         ...
 
     def lost(self, reason: str) -> None:
-        """The world is gone; nothing more will happen."""
+        """The world is lost; no more events follow."""
         ...
 
 
@@ -28,44 +28,44 @@ class WorldHost(Protocol):
 
     @property
     def summary(self) -> CellSummary:
-        """What the world consists of."""
+        """Summary of the world."""
         ...
 
     def snapshot(self) -> SimSnapshot:
-        """Its newest state."""
+        """The latest state."""
         ...
 
     def image(self) -> Array:
-        """Everything that its future depends on, now or a few steps ago, as `ImageLayout` has it."""
+        """The complete state, at most a few steps old, as in `ImageLayout`."""
         ...
 
     async def restore(self, image: Array) -> None:
-        """Go to where an image of this world was made, at rest; nothing moves, and nothing is started meanwhile.
+        """Restore an image of this world, at rest; nothing moves, and nothing may be started meanwhile.
 
         Raises:
-            RobotError: the world is gone.
+            RobotError: the world is lost.
         """
         ...
 
     def send(self, command: AnyCommand) -> None:
-        """Give a command, which acts from one of the next steps on.
+        """Send a command, which acts from one of the next steps on.
 
         Raises:
-            RobotError: the world is gone.
+            RobotError: the world is lost.
         """
         ...
 
     async def open(self, listener: WorldListener) -> None:
-        """Build the world and begin to tell `listener`.
+        """Build the world and start to notify `listener`.
 
         Raises:
-            CellError: it cannot be built.
+            CellError: the world cannot be built.
             RobotError: its process does not start.
         """
         ...
 
     async def close(self) -> None:
-        """End it; everything in it has come to rest before."""
+        """End the world; everything in it comes to rest first."""
         ...
 
 

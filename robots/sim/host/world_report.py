@@ -1,4 +1,4 @@
-"""What a world's process tells its parent besides what happens to motions."""
+"""Reports of a world's process to its parent, besides motion events."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robots.sim.loop.snapshot import CellSummary
 
 
 class WorldReady(msgspec.Struct, frozen=True, kw_only=True, tag_field="event", tag="ready"):
-    """The world stands and steps; `fifo` tells whether the system gave it a real-time schedule."""
+    """The world is built and steps; `fifo` is true under a real-time schedule."""
 
     summary: CellSummary
     fifo: bool
@@ -24,7 +24,7 @@ class WorldRefused(msgspec.Struct, frozen=True, kw_only=True, tag_field="event",
 
 
 class WorldRestored(msgspec.Struct, frozen=True, kw_only=True, tag_field="event", tag="restored"):
-    """The world is where the image was made, and its state can be read."""
+    """The world is restored to the image, and its state can be read."""
 
 
 AnyReport = WorldReady | WorldRefused | WorldRestored | MotionFinished | MotionHeld | MotionResumed | ReflexTripped

@@ -1,4 +1,4 @@
-"""One arm of a simulated world in its loop: physics on one side, what controls and moves it on the other."""
+"""One arm in the loop of a simulated world: connects the physics to its control loop."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
 
-# A restored arm stands where it was measured. Its set point may be this far off, as much as a
-# payload takes, so that nothing sags; one that pressed on something lets go.
+# A restored arm stands where it was measured. Its set point may be this far off, the sag of a
+# payload, so that nothing drops; an arm that pressed on something releases it.
 _NEAR_RAD = 0.01
 
 
@@ -66,11 +66,11 @@ class SimArmLoop:
 
     @property
     def busy(self) -> bool:
-        """True while a motion is under way, or its end is still to be told."""
+        """True while a motion is active, or its end is not reported yet."""
         return self.control.motion.number != 0 or self.control.has_unreported_end
 
     def take(self, command: ArmCommand) -> None:
-        """Take a command for this arm; it acts from the next step on. Other motions' numbers are ignored."""
+        """Apply a command to this arm from the next step on; numbers of other motions are ignored."""
         control = self.control
         match command:
             case FollowTrajectory():
@@ -97,7 +97,7 @@ class SimArmLoop:
                 control.recover()
 
     def move(self, step_s: float) -> list[AnyMotionEvent]:
-        """Read what is measured, move the set point on, and return what happened."""
+        """Read the measurements, advance the set point, and return the events."""
         physics, indices, control = self._physics, self.indices, self.control
         tool = physics.point_of(self._tool_link, control.tool_xyz_m)
         control.measure(
@@ -110,13 +110,13 @@ class SimArmLoop:
         return control.advance(step_s)
 
     def drive(self, inertia_torque: Array, *, step_s: float) -> None:
-        """Set the motors; `inertia_torque` (nv,) is what accelerates along the set points of all arms."""
+        """Set the motors; `inertia_torque` (nv,) accelerates all arms along their set points."""
         physics, dof = self._physics, self.indices.dof
         feedforward = physics.bias[dof] + inertia_torque[dof]
         physics.motors[self.indices.motor] = self.control.torque(feedforward, step_s=step_s)
 
     def rest_near(self, set_point: Array, *, reflex: bool) -> None:
-        """Hold from now on where the arm is measured, or a little off it where its set point was."""
+        """Hold `set_point`, clipped to the neighbourhood of the measured position."""
         measured = self._physics.positions[self.indices.qpos]
         near = np.clip(set_point, measured - _NEAR_RAD, measured + _NEAR_RAD)
         self.control.initialize(near, reflex=reflex)

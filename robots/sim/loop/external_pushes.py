@@ -1,4 +1,4 @@
-"""Hands from outside the cell that push at bodies of a simulated world, for a while."""
+"""Temporary external pushes on bodies of a simulated world."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robots.sim.physics.physics import Physics
 
 @dataclass(kw_only=True)
 class _Push:
-    """One push under way."""
+    """One active push."""
 
     force: Array
     at: Array
@@ -21,14 +21,14 @@ class _Push:
 
 
 class ExternalPushes:
-    """At most one push at a body; call `step` between the halves of a step of the physics."""
+    """At most one push per body; call `step` between the halves of a physics step."""
 
     def __init__(self, physics: Physics) -> None:
         self._physics = physics
         self._hands: dict[int, _Push] = {}
 
     def push(self, command: PushSimBody) -> None:
-        """Push from the next step on; an earlier push at the same body is over."""
+        """Push from the next step on; replaces an earlier push on the same body."""
         body = self._physics.body_number(command.body)
         force, at = np.array(command.force_n), np.array(command.at_m)
         self._hands[body] = _Push(force=force, at=at, left_s=command.duration_s)

@@ -1,20 +1,20 @@
-"""Everything that the future of a world depends on as one flat array of numbers: its image."""
+"""The image of a world: its complete state as one flat array of numbers."""
 
 from __future__ import annotations
 
 from robots.sim.loop.snapshot import ArmSummary
 
 TOOL_FIELDS = 4
-"""How many numbers say what a tool does; a kind that needs fewer leaves the others 0."""
+"""Numbers of a tool's command; unused ones are 0."""
 
 
 class ImageLayout:
     """Where each quantity lies in an image.
 
-    First the steps done, then the physics as MuJoCo hands it out, then for each arm its set point
-    and whether it has stopped by itself (1 or 0), and for each tool what it does, as
-    `robots.sim.grip.mechanics.ToolMechanics` says it; last what people do and have touched, as
-    `robots.sim.people.people_loop` writes it.
+    First the step count, then the physics state from MuJoCo, then for each arm its set point
+    and reflex (1 or 0), and for each tool its command, as in
+    `robots.sim.grip.mechanics.ToolMechanics`; last the motions and contacts of people, as in
+    `robots.sim.people.people_loop`.
     """
 
     def __init__(self, arms: tuple[ArmSummary, ...], *, state_size: int, people_size: int = 0) -> None:

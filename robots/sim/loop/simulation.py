@@ -1,4 +1,4 @@
-"""A world that steps: physics, the controllers of its arms and fingers, and what they report."""
+"""The simulation loop of a world: physics, the controllers of arms and tools, and their events."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ _REST_RAD_S = 0.01
 
 
 class Simulation:
-    """The one place where a simulated world changes.
+    """The only place where a simulated world changes.
 
-    A step reads the state (mj_step1), moves the set points on, computes torques from quantities of
-    this very state, and integrates (mj_step2): equal commands at equal steps give equal bits.
+    A step reads the state (mj_step1), advances the set points, computes torques from
+    this state, and integrates (mj_step2): equal commands at equal steps give equal bits.
     """
 
     def __init__(self, cell: CellModel) -> None:
@@ -81,36 +81,36 @@ class Simulation:
 
     @property
     def time_s(self) -> float:
-        """Time of the world: steps done times step."""
+        """Time of the world: step count times step."""
         return self.steps * self.step_s
 
     @property
     def busy(self) -> bool:
-        """True while a motion is under way."""
+        """True while a motion is active."""
         return any(a.busy for a in self._arms.values()) or any(t.drive.number for t in self._tools.values())
 
     @property
     def at_rest(self) -> bool:
-        """True when no motion is under way and no arm is measured to move."""
+        """True when no motion is active and all measured arm speeds are at rest."""
         return not self.busy and bool((np.abs(self._qvel[self._arm_dof]) < _REST_RAD_S).all())
 
     def brake(self, cause: str) -> None:
-        """Bring every motion to rest within its limits; each ends as failed with `cause` and its device's name."""
+        """Bring every motion to rest within its limits; each ends as FAILED with `cause` and its device's name."""
         for name, arm in self._arms.items():
             arm.control.motion.stop(f"{cause}; {name} came to rest by itself")
         for name, tool in self._tools.items():
             tool.drive.stop(f"{cause}; {self._tool_names[name]} came to rest by itself")
 
     def control(self, arm: str) -> ArmControlLoop:
-        """Return what controls an arm, for tests and measurements."""
+        """Return the control loop of an arm, for tests and measurements."""
         return self._arms[arm].control
 
     def touching(self, arm: str) -> str:
-        """Say in words what an arm touches after the last step, empty for nothing; for tests and measurements."""
+        """Describe what an arm touches after the last step, empty for nothing; for tests and measurements."""
         return self._contacts.describe(self._arms[arm].indices)
 
     def apply(self, command: AnyCommand) -> None:
-        """Take a command; it acts from the next step on. Unknown motion numbers are ignored."""
+        """Apply a command from the next step on; unknown motion numbers are ignored."""
         match command:
             case CommandToArm():
                 self._arms[command.arm].take(command)
@@ -139,7 +139,7 @@ class Simulation:
                     device.stop()
 
     def step(self) -> list[AnyMotionEvent]:
-        """Let one step pass and return what happened to the motions."""
+        """Simulate one step and return the motion events."""
         events: list[AnyMotionEvent] = []
         self._people.place()
         self._physics.start_step()
@@ -177,7 +177,7 @@ class Simulation:
         self._people.write_report(values[layout.people])
 
     def write_image(self, image: Array) -> None:
-        """Write everything that the future depends on into an array of `image_layout`'s size."""
+        """Write the complete state into an array of `image_layout`'s size."""
         layout = self.image_layout
         image[layout.steps] = self.steps
         self._physics.read_state(image[layout.physics])
@@ -190,7 +190,7 @@ class Simulation:
         self._people.write_image(image[layout.people])
 
     def _restore(self, image: Array) -> None:
-        """Stand still where an image was made; what was gripped stays gripped, and people go on with what they did."""
+        """Restore an image at rest; gripped objects stay gripped, and people continue their motions."""
         layout = self.image_layout
         self.steps = int(image[layout.steps])
         self._hands.let_go()

@@ -1,4 +1,4 @@
-"""The newest state of a world as one flat array of numbers, the same in process and in shared memory."""
+"""The latest measurements of a world as one flat array of numbers, the same in process and in shared memory."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from robots.port import ArmSample, Array, GripperSample, HandSample, MagnetSampl
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.people.person_report import PersonSample, person_sample, report_size
 
-# Motion number, progress, three measures of the device, then the contacts.
+# Motion number, progress, three measurements of the device, then the contacts.
 _TOOL_FIELDS = 5
 
 
 class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """What one needs to know of an arm to command it; `tool` is None for a bare flange."""
+    """The data required to command an arm; `tool` is None for a bare flange."""
 
     name: str
     joints: tuple[str, ...]
@@ -25,10 +25,10 @@ class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """What a built world consists of, as far as the outside needs it.
+    """Summary of a built world for its users.
 
-    `bodies` are all names that a contact can have; `parts` are the last of `frames`. `model` is the
-    fingerprint of the compiled world, `image_size` how many numbers an image of it has.
+    `bodies` are all names in contacts; `parts` are the last of `frames`. `model` is the
+    fingerprint of the compiled world, `image_size` the length of its image.
     """
 
     step_s: float
@@ -43,7 +43,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class ArmFields:
-    """Where one arm's numbers lie: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` are six."""
+    """Positions of one arm's numbers: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` has six."""
 
     number: int
     progress: int
@@ -55,12 +55,12 @@ class ArmFields:
 
 
 class SnapshotLayout:
-    """Where each quantity lies in the array; made alike on both sides from the summary.
+    """Where each quantity lies in the array; both sides derive it from the summary.
 
-    A tool has motion number, progress, three measures, and the body numbers that it touches (-1 for
-    none) at the places its summary counts. The measures of a gripper are width, velocity, force; of a
+    A tool has motion number, progress, three measurements, and the numbers of the touched bodies (-1 for
+    none), one per contact of its summary. The measurements of a gripper are width, velocity, force; of a
     hand closed share, pull and nothing; of a magnet on (1 or 0), pull and nothing. Frames have
-    x y z and quaternion w x y z as MuJoCo keeps them.
+    x y z and quaternion w x y z as in MuJoCo.
     """
 
     def __init__(self, summary: CellSummary) -> None:
@@ -118,7 +118,7 @@ class SimSnapshot:
         )
 
     def arm_progress(self, name: str, motion: int) -> float | None:
-        """The progress of an arm's motion, None when the arm does not carry out this one."""
+        """Progress of an arm's motion; None if the arm does not execute this motion."""
         fields = self._layout.arms[name]
         return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
 
@@ -141,12 +141,12 @@ class SimSnapshot:
         return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
 
     def person(self, name: str) -> PersonSample:
-        """What one of the people does and has touched."""
+        """Motion and contacts of one person."""
         summary = self._layout.summary
         return person_sample(self._values[self._layout.people], summary.people, name, bodies=summary.bodies)
 
     def tool_progress(self, name: str, motion: int) -> float | None:
-        """The progress of a tool's motion, None when the tool does not carry out this one."""
+        """Progress of a tool's motion; None if the tool does not execute this motion."""
         fields = self._values[self._layout.arms[name].tool]
         return float(fields[1]) if fields[0] == motion else None
 

@@ -1,1 +1,1 @@
-"""People of a simulated cell: arms that are moved, that robots and parts collide with, and the count of contacts."""
+"""People of a simulated cell: moving arms that collide with robots and parts, and their contact statistics."""

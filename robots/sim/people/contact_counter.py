@@ -1,4 +1,4 @@
-"""Counts what the bodies of people touch, from the physics' own contacts."""
+"""Counts the contacts of people's bodies in the physics."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _BEFORE, _NOW = 1.0, 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class ContactStatistics:
-    """How often bodies of a person began to touch others, for how long any did, the hardest of all, and which.
+    """Contacts of a person: their number, their total time, the maximum force, and the touching pairs.
 
-    `pairs` are numbers of bodies, the person's own first, by how `BODIES` counts them.
+    `pairs` are body numbers, the person's own first, numbered as in `BODIES`.
     """
 
     contacts: int
@@ -29,12 +29,12 @@ class ContactStatistics:
 
 
 def count_size(body_count: int, own: int) -> int:
-    """Return how many numbers a count has for a person of `own` bodies in a world of `body_count`."""
+    """Return the length of the statistics of a person with `own` bodies in a world of `body_count`."""
     return _PAIRS + own * body_count
 
 
 def read_contact_statistics(numbers: Array, body_count: int) -> ContactStatistics:
-    """Return what the numbers of a count say."""
+    """Decode the numbers of a count."""
     own, others = np.nonzero(numbers[_PAIRS:].reshape(-1, body_count))
     return ContactStatistics(
         contacts=int(numbers[_CONTACTS]),
@@ -45,7 +45,7 @@ def read_contact_statistics(numbers: Array, body_count: int) -> ContactStatistic
 
 
 class ContactCounter:
-    """The counts of all people of a world; `numbers` has a row for each person, (people, `count_size`).
+    """The contact statistics of all people; `numbers` has one row per person, (people, `count_size`).
 
     A contact begins when two bodies touch that did not in the step before. The force of a pair is the sum of
     the normal forces of its contact points.
@@ -80,7 +80,7 @@ class ContactCounter:
             self._touching = False
 
     def take_over(self, numbers: Array) -> None:
-        """Go on from a count, `numbers` as here."""
+        """Continue from stored `numbers`."""
         self.numbers[:] = numbers
         self._touching = bool((self._pairs == _NOW).any())
 

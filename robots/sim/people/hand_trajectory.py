@@ -1,4 +1,4 @@
-"""How a hand goes to a place: straight and with minimum jerk from rest, smoothly from any speed that it has."""
+"""The trajectory of a hand: straight with minimum jerk from rest, smooth from any initial velocity."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from robots.port import Array
 
-# Of a minimum-jerk motion: greatest speed times duration by way, greatest acceleration times its square by way.
+# Minimum-jerk motion: peak speed times duration over distance, peak acceleration times duration² over distance.
 _PEAK_SPEED = 1.875
 _PEAK_ACCELERATION = 10.0 / math.sqrt(3.0)
 GREATEST_ACCELERATION_M_S2 = 20.0
-"""What an arm does in a hurry; no faster than this does a hand pick up speed or lose it."""
+"""Acceleration of an arm in a hurry; the limit of a hand's acceleration and deceleration."""
 
 _SHARES = np.linspace(0.0, 1.0, 65)[:, None]
 _SMALL_S = 1e-9
@@ -24,7 +24,7 @@ _SLACK = 1.001
 
 @dataclass(frozen=True, kw_only=True)
 class HandMotion:
-    """Where a hand is and how fast it moves, both (3,), world."""
+    """Position and velocity of a hand, both (3,), world."""
 
     xyz: Array
     velocity: Array
@@ -32,7 +32,7 @@ class HandMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class HandTrajectory:
-    """A polynomial of the fifth degree from `start`, not accelerated, to rest at `goal` (3,) in `duration_s`."""
+    """A quintic polynomial from `start`, without acceleration, to rest at `goal` (3,) in `duration_s`."""
 
     start: HandMotion
     goal: Array
@@ -46,11 +46,11 @@ class HandTrajectory:
         return HandMotion(xyz=self._place(share), velocity=self._velocity(share))
 
     def places(self) -> Array:
-        """Return points along the way, (m, 3), both ends included."""
+        """Return points along the path, (m, 3), both ends included."""
         return self._place(_SHARES)
 
     def peaks(self) -> tuple[float, float]:
-        """Return the greatest speed and the greatest acceleration on the way."""
+        """Return peak speed and peak acceleration."""
         if self.duration_s < _SMALL_S:
             return 0.0, 0.0
         velocities = self._velocity(_SHARES)
@@ -61,7 +61,7 @@ class HandTrajectory:
         )
 
     def _place(self, s: float | Array) -> Array:
-        """Return the place after a share of the time, or after each of several in a column."""
+        """Return the position after a share of the time, or after each of several in a column."""
         way = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         run_on = s * (1.0 - s**2 * (6.0 - 8.0 * s + 3.0 * s**2)) * self.duration_s
         return self.start.xyz + way * (self.goal - self.start.xyz) + run_on * self.start.velocity
@@ -74,7 +74,7 @@ class HandTrajectory:
 
 
 def plan_hand_trajectory(start: HandMotion, goal: Array, *, speed_m_s: float) -> HandTrajectory:
-    """Return the quickest way that is nowhere faster than `speed_m_s`, or than the hand already is."""
+    """Return the fastest trajectory below `speed_m_s`, or below the hand's present speed if that is higher."""
     distance_m = math.dist(start.xyz.tolist(), goal.tolist())
     moving_m_s = math.hypot(*start.velocity.tolist())
     duration_s = max(
@@ -82,7 +82,7 @@ def plan_hand_trajectory(start: HandMotion, goal: Array, *, speed_m_s: float) ->
     )
     if moving_m_s == 0.0:
         return HandTrajectory(start=start, goal=goal, duration_s=duration_s)
-    # It must lose the speed that it has, too; what that takes has no short formula.
+    # It must also shed its initial speed; the required time has no short formula.
     duration_s = max(duration_s, moving_m_s / GREATEST_ACCELERATION_M_S2)
     limit_m_s = max(speed_m_s, moving_m_s) * _SLACK
     way = HandTrajectory(start=start, goal=goal, duration_s=duration_s)

@@ -1,4 +1,4 @@
-"""The people of a simulation: moves their bodies before each step, counts what they touched after it."""
+"""The people of a simulation: moves their bodies before each step and counts their contacts after it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robots.sim.physics.physics import Physics
 
 
 class PeopleLoop:
-    """Steps all people of a world. Their bodies have the speed at contacts that they are moved with."""
+    """Steps all people of a world. In contacts their bodies have the velocity of their motion."""
 
     def __init__(self, cell: CellModel, physics: Physics, *, step_s: float) -> None:
         self._physics = physics
@@ -33,11 +33,11 @@ class PeopleLoop:
         self.image_size = MOTION_FIELDS * len(cell.people) + count_size
 
     def send(self, command: MovePersonHand) -> None:
-        """Let a hand go to a place."""
+        """Send a hand to a point."""
         self._people[self._by_name[command.person]].send(command)
 
     def place(self) -> None:
-        """Put the bodies where they are at the start of a step, at the speed that they have in it."""
+        """Set poses and velocities of the bodies for the next step."""
         for person, indices, qpos, qvel in zip(self._people, self._indices, self._qpos, self._qvel, strict=True):
             before = person.pose
             if person.step():
@@ -51,7 +51,7 @@ class PeopleLoop:
             self._counter.step(self._step_s)
 
     def write_report(self, values: Array) -> None:
-        """Write what `robots.sim.people.person_report` reads, (`report_size`,)."""
+        """Write the report for `robots.sim.people.person_report`, (`report_size`,)."""
         if self._counter is None:
             return
         for person, row, numbers in zip(
@@ -62,7 +62,7 @@ class PeopleLoop:
             row[7:] = numbers
 
     def write_image(self, image: Array) -> None:
-        """Write all that the future of people and counts depends on, (`image_size`,)."""
+        """Write the complete state of people and contact statistics, (`image_size`,)."""
         if self._counter is None:
             return
         motions = image[: MOTION_FIELDS * len(self._people)].reshape(-1, MOTION_FIELDS)
@@ -71,7 +71,7 @@ class PeopleLoop:
         image[motions.size :] = self._counter.numbers.reshape(-1)
 
     def take_over(self, image: Array) -> None:
-        """Go on where an image was written."""
+        """Continue from an image."""
         if self._counter is None:
             return
         motions = image[: MOTION_FIELDS * len(self._people)].reshape(-1, MOTION_FIELDS)
@@ -91,9 +91,9 @@ def _positions(pose: LimbPose) -> Array:
 
 
 def _velocities(before: LimbPose, after: LimbPose, step_s: float) -> Array:
-    """Return the speeds, (18,), that lead from one pose to the other: of the origin in the world, turns in the body."""
+    """Return the velocities, (18,), between two poses: linear of the origin in the world, angular in the body frame."""
     b, a = before.wxyz, after.wxyz
-    # conjugate(b) * a, vector part; over one step a turn is twice that, shortest way round.
+    # conjugate(b) * a, vector part; over one step the rotation is twice that, along the shorter arc.
     scalar = (b * a).sum(axis=1)
     crossed = b[:, [2, 3, 1]] * a[:, [3, 1, 2]] - b[:, [3, 1, 2]] * a[:, [2, 3, 1]]
     turn = b[:, :1] * a[:, 1:] - a[:, :1] * b[:, 1:] - crossed

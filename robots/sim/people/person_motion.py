@@ -1,4 +1,4 @@
-"""What the arm of one person does from step to step: rest, reach, stay for a while, go back."""
+"""The motion of one person's arm: rest, reach, stay for a while, return."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from robots.sim.physics.limb import Limb, LimbPose
 from robots.sim.scene.sim_scene import PersonBody
 
 MOTION_FIELDS = 16
-"""How many numbers say all that the future of a person's motion depends on."""
+"""Length of the complete state of a person's motion."""
 
 _FOR_EVER = -1.0
 
 
 class PersonMotion:
-    """Its hand goes where it was sent last; the bodies follow. Nothing stops it."""
+    """The hand moves to its last goal and the bodies follow. Nothing stops it."""
 
     def __init__(self, person: PersonBody, *, step_s: float) -> None:
         self._rest = np.array(person.hand_rests)
@@ -33,21 +33,21 @@ class PersonMotion:
 
     @property
     def hand(self) -> HandMotion:
-        """Where the hand is, and how fast it moves."""
+        """Position and velocity of the hand."""
         return self._way.at(self._steps * self._step_s)
 
     @property
     def arrives_in_s(self) -> float:
-        """How long the hand is still on its way, 0 when it is there."""
+        """Remaining motion time of the hand, 0 at its goal."""
         return max(0.0, self._way.duration_s - self._steps * self._step_s)
 
     def send(self, command: MovePersonHand) -> None:
-        """Let the hand go to a place from now on, whatever it does."""
+        """Send the hand to a point; replaces its present motion."""
         self._go(np.array(command.hand_m), speed_m_s=command.speed_m_s)
         self._stay_s = _FOR_EVER if command.stay_s is None else command.stay_s
 
     def step(self) -> bool:
-        """Let one step pass; false when nothing has moved."""
+        """Simulate one step; returns False if nothing moved."""
         if self._still:
             return False
         self._steps += 1
@@ -63,14 +63,14 @@ class PersonMotion:
         return True
 
     def write(self, out: Array) -> None:
-        """Write all that the future of the motion depends on, shape (`MOTION_FIELDS`,)."""
+        """Write the complete state of the motion, shape (`MOTION_FIELDS`,)."""
         way = self._way
         out[0:3], out[3:6], out[6:9] = way.start.xyz, way.start.velocity, way.goal
         out[9:13] = way.duration_s, self._steps, self._stay_s, self._speed_m_s
         out[13:16] = self._side
 
     def take_over(self, numbers: Array) -> None:
-        """Go on where `write` was called."""
+        """Continue from the numbers of `write`."""
         start = HandMotion(xyz=numbers[0:3].copy(), velocity=numbers[3:6].copy())
         self._way = HandTrajectory(start=start, goal=numbers[6:9].copy(), duration_s=float(numbers[9]))
         self._steps = int(numbers[10])

@@ -1,4 +1,4 @@
-"""What a snapshot of a world says of its people."""
+"""The report on people in a snapshot of a world."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robots.sim.people.contact_counter import count_size, read_contact_statistic
 from robots.sim.people.hand_trajectory import HandMotion
 from robots.sim.physics.limb import BODIES
 
-# Place and velocity of the hand, and how long it is still on its way.
+# Position and velocity of the hand, and its remaining motion time.
 _HAND_FIELDS = 7
 
 
@@ -24,12 +24,12 @@ class PersonSample:
 
 
 def report_size(people: int, *, body_count: int) -> int:
-    """Return how many numbers a snapshot has for the people of a world."""
+    """Return the length of the report on the people of a world."""
     return people * (_HAND_FIELDS + count_size(body_count, len(BODIES)))
 
 
 def person_sample(values: Array, people: tuple[str, ...], person: str, *, bodies: tuple[str, ...]) -> PersonSample:
-    """Return what a snapshot's numbers for `people` say of one of them; `bodies` are all names of the world."""
+    """Return the sample of one person from the report on `people`; `bodies` are all names of the world."""
     row = values.reshape(len(people), -1)[people.index(person)]
     count = read_contact_statistics(row[_HAND_FIELDS:], len(bodies))
     return PersonSample(

@@ -1,4 +1,4 @@
-"""A robot model's URDF as a MuJoCo specification: primitive collision shapes, motors, own gripper pads.
+"""A robot model's URDF as a MuJoCo specification: primitive collision shapes, motors, added gripper pads.
 
 MuJoCo reads URDF but neither `package://` URIs nor DAE meshes, so visuals are dropped (the view
 draws them from the files) and mesh paths are made absolute before parsing.
@@ -43,7 +43,7 @@ def _collision_only_urdf(model: RobotModel) -> str:
         path = resolve_uri(mesh.attrib["filename"], package_dirs=model.package_dirs, relative_to=Path())
         mesh.attrib["filename"] = str(path)
     compiler = ET.SubElement(ET.SubElement(robot, "mujoco"), "compiler")
-    # Links without mass (flange, tool frame) get the smallest one that the solver accepts.
+    # Links without mass (flange, tool frame) get the smallest mass that the solver accepts.
     compiler.attrib.update(
         fusestatic="false", strippath="false", balanceinertia="true", boundmass="1e-9", boundinertia="1e-12"
     )

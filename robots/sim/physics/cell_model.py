@@ -1,4 +1,4 @@
-"""A scene as a compiled MuJoCo model, and where in its arrays each arm, finger and part lies."""
+"""A scene as a compiled MuJoCo model, and the array indices of each arm, finger and part."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ Indices = NDArray[np.intp]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
 _SPHERE = mujoco.mjtGeom.mjGEOM_SPHERE
-# The skin of what gives way is soft at first touch: where MuJoCo's default of 0.9 spreads a force over the
-# corners of flat pads, what slides on it loses contact again and again (`benchmarks/contact_sliding.py`).
+# The skin of compliant fixtures is soft at first touch: with MuJoCo's default of 0.9, which spreads a force over the
+# corners of flat pads, sliding objects repeatedly lose contact (`benchmarks/contact_sliding.py`).
 _SKIN_SOLIMP = (0.5, 0.95, 0.001, 0.5, 2.0)
-# Its contact counts, whatever touches it; pads have 1.
+# Its contact parameters take priority; pads have priority 1.
 _SKIN_PRIORITY = 2
 
 
 @dataclass(frozen=True, kw_only=True)
 class ArmIndices:
-    """Addresses of one arm's joints in the model's arrays, and the bodies it is made of."""
+    """Addresses of one arm's joints in the model's arrays, and its bodies."""
 
     name: str
     model: RobotModel
@@ -53,9 +53,9 @@ class CellModel:
     frame_bodies: Indices
     parts: tuple[str, ...]
     part_qpos: Indices
-    """Addresses of the parts' poses, seven a part, in the order of `parts`."""
+    """Addresses of the parts' poses, seven per part, in the order of `parts`."""
     part_dof: Indices
-    """Addresses of the parts' velocities, six a part."""
+    """Addresses of the parts' velocities, six per part."""
     body_names: tuple[str, ...]
     people: tuple[PersonIndices, ...] = ()
 
@@ -64,7 +64,7 @@ def build_cell(scene: SimScene) -> CellModel:
     """Compile a scene.
 
     Raises:
-        CellError: a robot model is unknown, a shape is wrong, or MuJoCo refuses the result.
+        CellError: a robot model is unknown, a shape is invalid, or MuJoCo rejects the result.
     """
     spec = _empty_world(scene)
     for fixture in scene.fixtures:
@@ -156,7 +156,7 @@ def tray_boxes(
 def _add_part(spec: Any, part: PartBody) -> None:
     body = spec.worldbody.add_body(name=part.name, pos=list(part.pose.xyz), quat=_wxyz(part.pose))
     body.add_freejoint(name=part.name)
-    # Rolling friction (condim 6) keeps round parts where they are put down.
+    # Rolling friction (condim 6) keeps round parts where they are placed.
     geom = _add_shape(body, part.name, part.shape, part.size_m, condim=3 if part.shape == "box" else 6)
     geom.mass = part.mass_kg
 
@@ -182,7 +182,7 @@ def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, c
 def _add_arm(spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[FixtureBody, ...]) -> None:
     frame = spec.worldbody.add_frame(pos=list(arm.base.xyz), quat=_wxyz(arm.base))
     spec.attach(arm_spec(model), frame=frame, prefix=f"{arm.name}/")
-    # The first moving link's shape reaches into whatever the base is bolted to.
+    # The shape of the first moving link overlaps the fixture under the base.
     shoulder = spec.joint(f"{arm.name}/{model.arm_joints[0]}").parent.name
     for fixture in fixtures:
         spec.add_exclude(bodyname1=shoulder, bodyname2=fixture.name)

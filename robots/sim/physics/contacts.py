@@ -1,4 +1,4 @@
-"""Who touches whom in a world, and how hard."""
+"""Contacts between bodies of a world, and their forces."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ _NOTHING = -1
 
 @dataclass(frozen=True, kw_only=True)
 class PadContact:
-    """What one pad touches: the body pressed hardest (-1 for none), and the force along the closing direction."""
+    """Contact of one pad: the body pressed hardest (-1 for none), and the force along the closing direction."""
 
     body: int = _NOTHING
     force_n: float = 0.0
 
 
 class ContactReader:
-    """Reads the contacts of the step just done."""
+    """Reads the contacts of the last step."""
 
     def __init__(self, cell: CellModel, physics: Physics) -> None:
         self._physics = physics
         self._names = cell.body_names
         self._parts = frozenset(cell.parts)
         self._geom_body = physics.geom_body
-        # What is not part of a robot or a free part stands for ever.
+        # Bodies that belong to no robot and are no free part are static.
         self._movable = frozenset(i for i, name in enumerate(cell.body_names) if name in self._parts or "/" in name)
 
     def pads(self, pad_geoms: tuple[int, int], *, axis: Array | None = None) -> tuple[PadContact, PadContact]:
-        """Return what the two pads touch; the fingers of the same hand do not count.
+        """Return the contacts of the two pads; the fingers of the same hand are excluded.
 
         `axis` is the closing direction in the world, the y axis of each pad by default.
         """
@@ -47,7 +47,7 @@ class ContactReader:
     ) -> tuple[int, ...]:
         """Return for each place, a set of bodies, the body that it presses hardest, -1 for none.
 
-        The bodies in `own` do not count, nor do fixtures unless `fixed`.
+        The bodies in `own` are excluded, as are fixtures unless `fixed`.
         """
         forces: list[dict[int, float]] = [{} for _ in places]
         for index, (a, b) in enumerate(self._physics.contact_pairs()):
@@ -63,7 +63,7 @@ class ContactReader:
 
     def _pad(self, pad: int, own: tuple[int, int], pairs: list[tuple[int, int]], axis: Array | None) -> PadContact:
         forces: dict[int, float] = {}
-        # A part held askew presses by normal and friction force together.
+        # A tilted part presses by normal and friction force together.
         closing = self._physics.geom_axes(pad)[:, 1] if axis is None else axis
         for index, (a, b) in enumerate(pairs):
             if pad not in (a, b):
@@ -76,7 +76,7 @@ class ContactReader:
         return PadContact(body=max(forces, key=lambda body: forces[body]), force_n=sum(forces.values()))
 
     def describe(self, arm: ArmIndices) -> str:
-        """Say in words what the arm touches, empty for nothing: `left hand touches part hca_north`."""
+        """Describe what the arm touches, empty for nothing: `left hand touches part hca_north`."""
         touched: dict[str, float] = {}
         for index, (a, b) in enumerate(self._physics.contact_pairs()):
             body_a, body_b = self._geom_body[a], self._geom_body[b]

@@ -1,4 +1,4 @@
-"""What tells one compiled world from another: a hash of all that its future depends on but its state."""
+"""The fingerprint of a compiled world: a hash of everything that determines its behavior, except its state."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-# The length of all arrays together, that of the paths included.
+# The total length of all arrays, including that of the paths.
 _COUNTS_PATHS = "nbuffer"
 
 
 def fingerprint(model: Any) -> str:
     """Return the SHA-256 of a compiled MuJoCo model: bodies, shapes, joints, motors, options.
 
-    Where its mesh files lie on the disk does not count, so a moved installation has the same worlds.
+    The paths of its mesh files are excluded, so a moved installation has the same fingerprints.
     """
     digest = hashlib.sha256(model.names)
     for owner in (model, model.opt):

@@ -1,4 +1,4 @@
-"""The arm of a person as geometry: two bones, from a shoulder that stays, and an elbow that hangs down."""
+"""The geometry of a person's arm: two bones, a fixed shoulder, and an elbow that hangs down."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BODIES = ("upper_arm", "forearm", "hand")
 
 _DOWN = np.array([0.0, 0.0, -1.0])
 _SMALL = 1e-9
-# How fast an elbow sinks back to where it hangs: nearly as fast as it would fall, and never in a jerk.
+# Rate at which an elbow returns to its hanging position: nearly as fast as it would fall, and smoothly.
 _SINKING_RAD_S = 3.0
 _SINKING_S = 0.15
 _SETTLED_RAD = 1e-6
@@ -24,9 +24,9 @@ _SETTLED_RAD = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class LimbPose:
-    """Where the bodies of an arm are, world: `xyz` (3, 3) and `wxyz` (3, 4), rows as in `BODIES`.
+    """Poses of the bodies of an arm, world: `xyz` (3, 3) and `wxyz` (3, 4), rows as in `BODIES`.
 
-    A body's origin is its middle; the z axis of a bone leads from the shoulder towards the hand.
+    A body's origin is its centre; the z axis of a bone points from the shoulder towards the hand.
     """
 
     xyz: Array
@@ -34,11 +34,11 @@ class LimbPose:
 
 
 class Limb:
-    """The lengths of one arm, and where elbow and hand are for a place of the hand.
+    """The lengths of one arm, and the poses of its bodies for a hand position.
 
-    `side` is the unit vector, across the line from shoulder to hand, on whose side of it the elbow is: it
-    turns with the arm and, as fast as an elbow sinks, down to where the elbow hangs. So nothing jumps
-    where the hand passes over the shoulder, from where each side is as low as the other.
+    `side` is the unit vector, perpendicular to the line from shoulder to hand, towards the elbow: it
+    turns with the arm and returns, at the rate of a sinking elbow, to the hanging position. So nothing jumps
+    where the hand passes over the shoulder and both sides are equally low.
     """
 
     def __init__(self, person: PersonBody) -> None:
@@ -47,11 +47,11 @@ class Limb:
         self._least_m, self._greatest_m = person.reach_m
 
     def away_m(self, hand: Array) -> float:
-        """Return how far a place of the hand (3,) is from the shoulder."""
+        """Return the distance of a hand position (3,) from the shoulder."""
         return math.dist(hand.tolist(), self._shoulder.tolist())
 
     def within_reach(self, hand: Array) -> Array:
-        """Return the place of the hand, (3,), that is reached where `hand` is wished: nearest in its direction."""
+        """Return the reachable hand position, (3,), nearest to `hand` in its direction."""
         axis, length = self._axis(hand)
         return hand if length == self.away_m(hand) else self._shoulder + axis * length
 
@@ -62,7 +62,7 @@ class Limb:
         return down if down is not None else _any_across(axis)
 
     def carried_on(self, side: Array, hand: Array, *, step_s: float) -> Array:
-        """Return the side after a step in which the hand came to `hand`, from what it was before."""
+        """Return the side after a step in which the hand moved to `hand`, from the previous side."""
         axis, _ = self._axis(hand)
         turned = _across(side, axis)
         if turned is None:
@@ -74,13 +74,13 @@ class Limb:
         angle = math.atan2(float(normal @ down), float(turned @ down))
         if abs(angle) < _SETTLED_RAD:
             return down
-        # Near the vertical there is hardly a lower side, and nothing pulls the elbow to it.
+        # Near the vertical the lower side is ill-defined, and nothing pulls the elbow to it.
         fastest = _SINKING_RAD_S * math.hypot(float(axis[0]), float(axis[1])) * step_s
         turn = math.copysign(min(abs(angle) * min(1.0, step_s / _SINKING_S), fastest), angle)
         return turned * math.cos(turn) + normal * math.sin(turn)
 
     def pose(self, hand: Array, side: Array) -> LimbPose:
-        """Return where the bodies are with the hand at, or nearest to, `hand` and the elbow on a `side` of it."""
+        """Return the poses of the bodies with the hand at, or nearest to, `hand` and the elbow towards `side`."""
         axis, length = self._axis(hand)
         along = (self._upper_m**2 - self._fore_m**2 + length**2) / (2.0 * length)
         out = math.sqrt(max(self._upper_m**2 - along**2, 0.0))
@@ -93,7 +93,7 @@ class Limb:
         return LimbPose(xyz=xyz, wxyz=np.array([upper, fore, fore]))
 
     def _axis(self, hand: Array) -> tuple[Array, float]:
-        """Return the direction from the shoulder to the hand, and how far the hand is out in it."""
+        """Return the direction from the shoulder to the hand, and the hand's distance."""
         way = hand - self._shoulder
         length = self.away_m(hand)
         if length < _SMALL:
@@ -102,7 +102,7 @@ class Limb:
 
 
 def _across(vector: Array, axis: Array) -> Array | None:
-    """Return the unit vector along the part of `vector` across `axis`; None where there is none."""
+    """Return the unit vector along the component of `vector` perpendicular to `axis`; None if there is none."""
     part = vector - axis * float(vector @ axis)
     length = math.hypot(*part.tolist())
     return part / length if length > 1e-6 else None
@@ -115,10 +115,10 @@ def _any_across(axis: Array) -> Array:
 
 
 def _wxyz(y: Array, z: Array) -> tuple[float, float, float, float]:
-    """Return the quaternion, w first, of the frame with these y and z axes, unit and across each other."""
+    """Return the quaternion, w first, of the frame with these orthonormal y and z axes."""
     (m00, m10, m20), (m01, m11, m21), (m02, m12, m22) = cross(y, z).tolist(), y.tolist(), z.tolist()
     squares = (1.0 + m00 + m11 + m22, 1.0 + m00 - m11 - m22, 1.0 - m00 + m11 - m22, 1.0 - m00 - m11 + m22)
-    # From the largest component, so that no small number divides.
+    # From the largest component, to avoid division by a small number.
     largest = max(range(4), key=lambda i: squares[i])
     double = 2.0 * math.sqrt(squares[largest])
     match largest:

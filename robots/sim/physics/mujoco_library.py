@@ -1,7 +1,7 @@
 """Loads MuJoCo without the window library that it imports for its own viewer.
 
-`glfw` starts a Python process to learn the version of its shared library, which is a fifth of what loading
-MuJoCo takes. It is loaded when somebody first uses it, as `mujoco.Renderer` and `mujoco.viewer` do.
+`glfw` starts a Python process to determine the version of its shared library, a fifth of MuJoCo's
+load time. It is loaded on first use, by `mujoco.Renderer` or `mujoco.viewer`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _WINDOWS = "glfw"
 
 
 class _WindowsOnDemand(MetaPathFinder):
-    """Finds the window library where Python does, with a loader that waits for its first use."""
+    """Finds the window library where Python does, with a loader that defers loading to its first use."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None

@@ -1,4 +1,4 @@
-"""How far apart the pads of a turning linkage are at each angle of its motor, read off the compiled model."""
+"""The pad opening of a turning linkage at each motor angle, measured on the compiled model."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _SAMPLES = 257
 
 @dataclass(frozen=True, kw_only=True)
 class OpeningTable:
-    """Widths at evenly spaced angles from `first_rad`; between and beyond them by straight lines."""
+    """Widths at evenly spaced angles from `first_rad`, with linear interpolation and extrapolation."""
 
     first_rad: float
     pitch_rad: float
     width_m: tuple[float, ...]
 
     def at(self, angle_rad: float) -> tuple[float, float]:
-        """Return the width and how fast it changes with the angle, metres per radian."""
+        """Return the width and its derivative, metres per radian."""
         place = (angle_rad - self.first_rad) / self.pitch_rad
         index = min(max(int(place), 0), len(self.width_m) - 2)
         low, high = self.width_m[index], self.width_m[index + 1]
@@ -38,7 +38,7 @@ def read_openings(
     Args:
         model: The compiled model.
         qpos: Addresses of the motor's joint and its followers.
-        factors: How far each of them turns with the motor's joint, 1 for itself.
+        factors: Ratio of each joint to the motor's joint, 1 for itself.
         pads: The geometries of the pads.
         first_rad: Angle at one end of the stroke.
         last_rad: Angle at the other end, where the pads touch.
@@ -53,7 +53,7 @@ def read_openings(
     left, right = pads
     across = data.geom_xpos[right] - data.geom_xpos[left]
     across = across / np.linalg.norm(across)
-    # The face of a pad is the side of its box that looks at the other pad when they touch.
+    # The face of a pad is the side of its box that faces the other pad when they touch.
     inward = [_face(model, data, left, across), _face(model, data, right, -across)]
     angles = np.linspace(first_rad, last_rad, _SAMPLES)
     widths: list[float] = []
@@ -68,7 +68,7 @@ def read_openings(
 
 
 def _face(model: Any, data: Any, pad: int, towards: Array) -> Array:
-    """Return where the face that looks `towards` (world) is in the pad's frame."""
+    """Return the position, in the pad's frame, of the face in direction `towards` (world)."""
     local = data.geom_xmat[pad].reshape(3, 3).T @ towards
     axis = int(np.argmax(np.abs(local)))
     offset = np.zeros(3)

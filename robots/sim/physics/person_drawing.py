@@ -1,4 +1,4 @@
-"""What a person's arm looks like: rods and balls, fixed to the frames of its bodies."""
+"""The drawing of a person's arm: rods and balls, fixed to the frames of its bodies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A person's arm in a MuJoCo specification: moved bodies that meet robots and parts, and pass through the rest."""
+"""A person's arm in a MuJoCo specification: moved bodies that collide with robots and parts, and nothing else."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from robots.sim.physics.physics import mujoco
 from robots.sim.scene.sim_scene import FixtureBody, PersonBody
 
 FOREARM_SHARE = 0.8
-"""How thick a forearm is, of the upper arm and the hand; so what a hand touches it touches with the ball."""
+"""Thickness of a forearm relative to upper arm and hand; a hand therefore touches with its ball."""
 
-# Touches what says that it may be touched by people, and nothing else; models use low bits.
+# Collides only with geometries marked for contact with people; models use low bits.
 _PEOPLE = 1 << 20
-# In each step a contact meets bodies of this weight at the speed that they have. More would only make MuJoCo's
-# solver stop earlier, as it measures its progress by the mean inertia of all there is.
+# Bodies have this mass in contacts, at their velocity. A larger mass would only make MuJoCo's
+# solver stop earlier, as it measures its progress by the mean inertia.
 _MASS_KG = 20.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class PersonIndices:
-    """Where a person's bodies lie in the model's arrays: `qpos` (21,), `dof` (18,), `bodies` as in `BODIES`."""
+    """Indices of a person's bodies in the model's arrays: `qpos` (21,), `dof` (18,), `bodies` as in `BODIES`."""
 
     name: str
     qpos: NDArray[np.intp]
@@ -39,7 +39,7 @@ def body_names(person: str) -> tuple[str, ...]:
 
 
 def add_person(spec: Any, person: PersonBody) -> None:
-    """Add the bodies of an arm where it rests; they are moved by who steps the world."""
+    """Add the bodies of an arm at its rest pose; the simulation loop moves them."""
     limb, hand = Limb(person), np.array(person.hand_rests)
     pose = limb.pose(hand, limb.hanging(hand))
     forearm_m = FOREARM_SHARE * person.radius_m
@@ -57,7 +57,7 @@ def add_person(spec: Any, person: PersonBody) -> None:
 
 
 def let_people_touch(spec: Any, fixtures: tuple[FixtureBody, ...]) -> None:
-    """Let what is no fixture and no person be touched by people; call it when all is in the specification."""
+    """Enable contact of people with everything but fixtures and people; call it on the complete specification."""
     fixed = {"world", *(fixture.name for fixture in fixtures)}
     for geom in spec.geoms:
         touches_something = bool(geom.contype or geom.conaffinity)
@@ -66,7 +66,7 @@ def let_people_touch(spec: Any, fixtures: tuple[FixtureBody, ...]) -> None:
 
 
 def person_indices(model: Any, person: PersonBody) -> PersonIndices:
-    """Return where a person's bodies lie in a compiled model."""
+    """Return the indices of a person's bodies in a compiled model."""
     names = body_names(person.name)
     return PersonIndices(
         name=person.name,

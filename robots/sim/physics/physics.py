@@ -1,7 +1,7 @@
-"""The edge to MuJoCo: a compiled model and its state behind typed arrays and calls.
+"""The interface to MuJoCo: a compiled model and its state behind typed arrays and calls.
 
-MuJoCo's Python bindings carry no types, so its objects are `Any` in here and in the two modules
-that build specifications, and nowhere else.
+MuJoCo's Python bindings have no types, so its objects are `Any`, only here and in the two modules
+that build specifications.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
 
     Shapes: `positions` (nq,), `velocities`, `bias`, `pull` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
-    `bias` is gravity and Coriolis force at the state that `start_step` has read. `pull` is what else
-    than motors, bias and the joints' own dampers has accelerated them in the last step: the torque that
-    the rest of the world exerts, as torque sensors in the joints and a model of the arm would tell it.
+    `bias` is gravity and Coriolis force at the state read by `start_step`. `pull` is the torque in the last
+    step besides motors, bias and joint dampers: the external torque,
+    as measured by joint torque sensors and a model of the arm.
     """
 
     def __init__(self, model: Any) -> None:
@@ -66,7 +66,7 @@ class Physics:
         self._attractions.clear()
 
     def finish_step(self) -> None:
-        """Apply the motors and what pushes, integrate over one step, and work out `pull` and the wrenches."""
+        """Apply motors and external pushes, integrate over one step, and compute `pull` and the wrenches."""
         np.negative(self.velocities, out=self._change)
         pushes = self._pushes
         before = {body: pushes[body].copy() for body in self._attractions}
@@ -88,7 +88,7 @@ class Physics:
         return int(self._model.body(name).id)
 
     def members(self, body: int) -> NDArray[np.intp]:
-        """Return the numbers of a body and of all that hang on it."""
+        """Return the numbers of a body and of all its descendants."""
         found = {body}
         # A body's parent has a lower number.
         for child, parent in enumerate(self._model.body_parentid.tolist()):
@@ -97,14 +97,14 @@ class Physics:
         return np.array(sorted(found), dtype=np.intp)
 
     def point_of(self, body: int, offset: Array) -> Array:
-        """Return a point of a body, given in its frame, in the world at the start of the last step, both (3,)."""
+        """Return a point given in a body's frame in the world at the start of the last step, both (3,)."""
         return self._xpos[body] + self._rotations[body] @ offset
 
     def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
-        """Return force and torque about `point` (6,), world axes, that contacts and pushes exerted on bodies.
+        """Return force and torque about `point` (6,), world axes, exerted by contacts and pushes on bodies.
 
-        It is of the last step; the bodies belong to one tree. A force sensor before the first of them
-        would tell the same, once their own weight and inertia are taken out.
+        It refers to the last step; the bodies belong to one tree. A force sensor before the first body
+        would measure the same, after subtraction of their own weight and inertia.
         """
         sums = np.add.reduce(self._body_wrenches[bodies])
         centre = self._tree_centres[self._roots[bodies[0]]]
@@ -126,11 +126,11 @@ class Physics:
         return [(a, b) for a, b in self._data.contact.geom.tolist()] if self._data.ncon else []
 
     def contact_geoms(self) -> NDArray[np.int32]:
-        """Return the same as an array, (m, 2), valid until the next step."""
+        """Return the contact pairs as an array, (m, 2), valid until the next step."""
         return self._data.contact.geom
 
     def contact_depth_m(self, contact: int) -> float:
-        """Return how deep two geometries were in one another at a contact of the last step, negative for a gap."""
+        """Return the penetration depth of a contact of the last step, negative for a gap."""
         return -float(self._data.contact.dist[contact])
 
     def normal_force_n(self, contact: int) -> float:
@@ -139,7 +139,7 @@ class Physics:
         return float(self._wrench[0])
 
     def pressing_force_n(self, contact: int, axis: Array) -> float:
-        """Return how hard a contact of the last step presses along a unit `axis` (world), friction included."""
+        """Return the force of a contact of the last step along a unit `axis` (world), friction included."""
         mujoco.mj_contactForce(self._model, self._data, contact, self._wrench)
         frame: Array = self._data.contact.frame[contact].reshape(3, 3)
         return abs(float(axis @ (self._wrench[:3] @ frame)))
@@ -153,26 +153,26 @@ class Physics:
         return self._data.geom_xpos[geom]
 
     def geom_distance(self, geom: int, point: Array) -> float:
-        """Return a lower bound of the distance from a point (world) to a geometry: to the sphere about it."""
+        """Return a lower bound of the distance from a point (world) to a geometry: to its bounding sphere."""
         return float(np.linalg.norm(self._data.geom_xpos[geom] - point)) - float(self._model.geom_rbound[geom])
 
     def ray(self, geom: int, start: Array, direction: Array) -> float:
-        """Return how far from `start` a ray (world, unit direction) meets a primitive geometry, -1 if it does not."""
+        """Return the distance along a ray (world, unit direction) to a primitive geometry, -1 for no hit."""
         data, model = self._data, self._model
         matrix, size, kind = data.geom_xmat[geom], model.geom_size[geom], model.geom_type[geom]
         return float(mujoco.mju_rayGeom(data.geom_xpos[geom], matrix, size, start, direction, int(kind)))
 
     def tendon(self, tendon: int) -> tuple[float, float]:
-        """Return the length of a tendon and how fast it grows."""
+        """Return the length of a tendon and its rate."""
         return float(self._data.ten_length[tendon]), float(self._data.ten_velocity[tendon])
 
     def speed(self, body: int) -> float:
-        """Return how fast the origin of a free body moves, m/s."""
+        """Return the speed of the origin of a free body, m/s."""
         dof = int(self._model.body_dofadr[body])
         return float(np.linalg.norm(self.velocities[dof : dof + 3]))
 
     def attract(self, body: int, *, force: Array, point: Array) -> None:
-        """Add a field's or hand's force (3,) at a point, both in the world, to the step begun by `start_step` alone."""
+        """Add an external force (3,) at a point, both in the world, to the step begun by `start_step` only."""
         attraction = self._attractions.setdefault(body, np.zeros(6))
         attraction[:3] += force
         attraction[3:] += cross(point - self._data.xipos[body], force)
@@ -182,12 +182,12 @@ class Physics:
         return self._xpos[bodies], self._xquat[bodies]
 
     def read_state(self, out: Array) -> None:
-        """Write everything that the future depends on, shape (`state_size`,)."""
+        """Write the complete state, shape (`state_size`,)."""
         mujoco.mj_getState(self._model, self._data, out, self._state_kind)
 
     def rest_at(self, state: Array) -> None:
-        """Go to where a state was read, and stand still there."""
-        # What is no part of the state but left over from before must not reach the future either.
+        """Restore a state, at rest."""
+        # Leftovers outside the state must not affect later steps either.
         mujoco.mj_resetData(self._model, self._data)
         mujoco.mj_setState(self._model, self._data, state, self._state_kind)
         self.velocities[:] = 0.0
@@ -196,7 +196,7 @@ class Physics:
         self.refresh()
 
     def state_hash(self) -> str:
-        """Return the SHA-256 of everything that the future depends on."""
+        """Return the SHA-256 of the complete state."""
         state = np.zeros(self.state_size)
         self.read_state(state)
         return hashlib.sha256(state.tobytes()).hexdigest()

@@ -1,4 +1,4 @@
-"""What a cell looks like: the drawable bodies of its arms, fixtures, parts and people."""
+"""The drawing of a cell: the drawable bodies of its arms, fixtures, parts and people."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
 
 
 def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescription:
-    """Return everything that can be drawn; meshes come from `cache` (the user's folder by default) when there.
+    """Return everything drawable; meshes come from `cache` (the user's folder by default) if present.
 
     Frames are those of `FramePoses`: `<arm>/<link>`, `<person>/<body>` and part names; fixtures are fixed to `world`.
     """

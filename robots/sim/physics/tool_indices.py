@@ -1,4 +1,4 @@
-"""Where in the arrays of a compiled world the joints, motors, pads and fingers of a tool lie."""
+"""Array indices of a tool's joints, motors, pads and fingers in a compiled world."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class HandIndices:
 
 @dataclass(frozen=True, kw_only=True)
 class MagnetIndices:
-    """Addresses of a magnet: its body, the geometry of its face, and those of the parts that it pulls."""
+    """Addresses of a magnet: its body, the geometry of its face, and those of the parts that it attracts."""
 
     model: MagnetModel
     qpos: Indices
@@ -71,7 +71,7 @@ ToolIndices = FingerIndices | LinkageIndices | HandIndices | MagnetIndices
 
 
 def tool_indices(model: Any, arm: str, tool: ToolModel, *, ferrous: Iterable[str]) -> ToolIndices:
-    """Return where the tool on an arm lies in a compiled model; `ferrous` are the parts that magnets pull."""
+    """Return the indices of an arm's tool in a compiled model; `ferrous` are the parts that magnets attract."""
 
     def qpos(joints: Iterable[str]) -> Indices:
         return _ints(model.joint(f"{arm}/{joint}").qposadr[0] for joint in joints)

@@ -1,4 +1,4 @@
-"""Finishes the specification of a tool: pads, motors, tendon, magnet face; the rest is in its URDF."""
+"""Completes the specification of a tool: pads, motors, tendon, magnet face; the rest is in its URDF."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from robots.model.tool_model import ClawModel, GripperModel, LinkageModel, MagnetModel, PadBox, SynergyModel, ToolModel
 from robots.sim.physics.physics import mujoco
 
-# Pad contact as measured best for holding without slip: stiff, elliptic, torsional friction (condim 4).
+# Pad contact that measured best for holding without slip: stiff, elliptic, torsional friction (condim 4).
 _PAD_FRICTION = (0.8, 0.005, 0.0001)
 _PAD_SOLREF = (0.004, 1.0)
 _PAD_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
@@ -17,7 +17,7 @@ _PAD_SOLIMP = (0.95, 0.99, 0.001, 0.5, 2.0)
 _SKIN_FRICTION = (1.0, 0.01, 0.0005)
 # Ground steel on steel.
 _FACE_FRICTION = (0.4, 0.003, 0.0001)
-# A linkage's rods are stiff; half a step more than the solver needs to stay stable.
+# The rods of a linkage are stiff; half a step more than the solver needs for stability.
 _ROD_SOLREF = (0.005, 1.0)
 _ROD_SOLIMP = (0.99, 0.999, 0.0005, 0.5, 2.0)
 _PHALANX_ARMATURE_KG_M2 = 2e-5
@@ -40,7 +40,7 @@ def add_motor(spec: Any, joint: str, limit: float) -> None:
 
 
 def finish_tool(spec: Any, tool: ToolModel) -> None:
-    """Add to the specification of an arm what makes its tool grip."""
+    """Add the gripping elements of the tool to the specification of an arm."""
     match tool.mechanism:
         case GripperModel() as gripper:
             for name in gripper.finger_joints:
@@ -60,13 +60,13 @@ def finish_tool(spec: Any, tool: ToolModel) -> None:
 
 def _finish_linkage(spec: Any, linkage: LinkageModel | ClawModel) -> None:
     factors = {linkage.driver: 1.0, **dict(linkage.followers)}
-    # The motor's inertia is spread over all joints that it turns: light joints make soft contacts.
+    # The motor's inertia is spread over all joints that it turns: light joints cause soft contacts.
     share = linkage.armature_kg_m2 / sum(factor**2 for factor in factors.values())
     for name in factors:
         joint = spec.joint(name)
         joint.armature = share
         joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE
-    # The servo limits the force at the pads; what the joint needs for it depends on its angle.
+    # The servo limits the pad force; the joint torque for it depends on the angle.
     stroke = abs(linkage.closed_rad - linkage.open_rad)
     if isinstance(linkage, ClawModel):
         add_motor(spec, linkage.driver, linkage.max_effort_nm)

@@ -1,1 +1,1 @@
-"""Implementations of `robots.port` on a running world, alike over both hosts. For robots.sim.world."""
+"""Implementations of `robots.port` on a running world, the same for both hosts. For robots.sim.world."""

@@ -1,4 +1,4 @@
-"""Keeps the port of a simulated device to one motion at a time."""
+"""Limits the port of a simulated device to one motion at a time."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ class ExclusiveMotion:
         self._motion: SimMotion | None = None
 
     def number(self) -> int:
-        """Return the number for the next motion; raises RobotError while one is under way."""
+        """Return the number for the next motion; raises RobotError while one is active."""
         if self._motion is not None and not self._motion.ended:
             raise RobotError(
-                "another motion is under way", where=self._device, hint="wait for its report, or cancel it first"
+                "another motion is active", where=self._device, hint="wait for its report, or cancel it first"
             )
         return self._board.next_number()
 
     def start(self, motion: SimMotion, host: WorldHost, command: AnyCommand) -> SimMotion:
-        """Give the command and keep the motion; what could not be sent is not under way."""
+        """Send the command and keep the motion; a motion that could not be sent is not active."""
         host.send(command)
         self._board.add(motion)
         self._motion = motion

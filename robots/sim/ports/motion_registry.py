@@ -1,4 +1,4 @@
-"""The motions under way in a world, by number: the side that states' skills wait on."""
+"""The active motions of a world, by number: the side on which skills wait."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SimMotion:
 
     @property
     def progress(self) -> float:
-        """Share of the trajectory's time passed, 0 to 1; frozen at the end."""
+        """Elapsed share of the trajectory's time, 0 to 1; frozen at the end."""
         if not self._end.done():
             measured = self._measure()
             if measured is not None:
@@ -41,21 +41,21 @@ class SimMotion:
         return self._last_progress
 
     async def report(self) -> MotionReport:
-        """Wait for the end; cancelling one waiter leaves the motion and the others alone."""
+        """Wait for the end; cancelling one waiter affects neither the motion nor other waiters."""
         return await asyncio.shield(self._end)
 
     async def hold(self) -> None:
-        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
+        """Decelerate on the path and return when at rest, or when the motion has ended or been resumed meanwhile."""
         self._asked += 1
         await self._ask(HoldMotion(motion=self.number, request=self._asked))
 
     async def resume(self) -> None:
-        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
+        """Resume along the path and return when moving, or when the motion has ended or been held meanwhile."""
         self._asked += 1
         await self._ask(ResumeMotion(motion=self.number, request=self._asked))
 
     def cancel(self) -> None:
-        """Ask to decelerate on the path; `report` then returns CANCELED once at rest."""
+        """Request deceleration on the path; `report` then returns CANCELED once at rest."""
         if not self._end.done():
             self._send(CancelMotion(motion=self.number))
 
@@ -68,11 +68,11 @@ class SimMotion:
         await answer
 
     def take(self, event: AnyMotionEvent) -> None:
-        """Record what happened in the world."""
+        """Apply an event of the world."""
         match event:
             case MotionHeld() | MotionResumed():
-                # Of a hold and a resume close together only the last is told; it answers both. What was
-                # asked since then is not answered: it is still on its way to the world.
+                # Of a hold and a resume in quick succession only the last is reported; it answers both. Later
+                # requests are not answered by it: they are still in transit to the world.
                 self._answer(event.request)
             case ReflexTripped():
                 # Its end follows, with the reason.
@@ -87,7 +87,7 @@ class SimMotion:
                 )
 
     def end_with(self, report: MotionReport) -> None:
-        """End it; a second end is ignored."""
+        """End the motion; a second end is ignored."""
         if not self._end.done():
             self._end.set_result(report)
         self._answer(self._asked)
@@ -100,7 +100,7 @@ class SimMotion:
 
 
 class MotionRegistry:
-    """Numbers motions and passes what happens in the world on to them; a `HostListener`."""
+    """Numbers motions and forwards the events of the world to them; a `WorldListener`."""
 
     def __init__(self, *, on_lost: Callable[[str], None]) -> None:
         self._on_lost = on_lost
@@ -108,16 +108,16 @@ class MotionRegistry:
         self._last_number = 0
         self.lost_reason = ""
         self.closed_reason = ""
-        """Why no motion may start for now, empty when they may."""
+        """Why no motion may start at present; empty if motions may start."""
         self.reflexes: dict[str, str] = {}
-        """Why the arms that have stopped by themselves last did."""
+        """Latest reflex reason of each arm."""
         self._reflex_listeners: dict[str, list[Callable[[str], None]]] = {}
 
     def next_number(self) -> int:
-        """Return a number that no motion has had.
+        """Return an unused motion number.
 
         Raises:
-            RobotError: the world is gone, or no motion may start for now.
+            RobotError: the world is lost, or no motion may start at present.
         """
         if self.lost_reason:
             raise RobotError(self.lost_reason, hint=CONNECT_AGAIN)
@@ -127,7 +127,7 @@ class MotionRegistry:
         return self._last_number
 
     def add(self, motion: SimMotion) -> None:
-        """Pass on to `motion` what happens to it."""
+        """Forward events to `motion`."""
         self._motions[motion.number] = motion
 
     def under_way(self) -> tuple[SimMotion, ...]:
@@ -135,11 +135,11 @@ class MotionRegistry:
         return tuple(self._motions.values())
 
     def when_reflex(self, arm: str, tell: Callable[[str], None]) -> None:
-        """Call `tell` with the reason whenever an arm stops by itself."""
+        """Call `tell` with the reason at every reflex stop of an arm."""
         self._reflex_listeners.setdefault(arm, []).append(tell)
 
     def happened(self, event: AnyMotionEvent) -> None:
-        """Pass an event on to its motion; tell of a reflex also where none is under way."""
+        """Forward an event to its motion; report a reflex also without an active motion."""
         if isinstance(event, ReflexTripped):
             self.reflexes[event.arm] = event.reason
             for tell in self._reflex_listeners.get(event.arm, ()):
@@ -152,11 +152,11 @@ class MotionRegistry:
             del self._motions[event.motion]
 
     def found(self) -> None:
-        """Take motions again: the world is back."""
+        """Accept motions again: the world is restored."""
         self.lost_reason = ""
 
     def lost(self, reason: str) -> None:
-        """Fail all motions: the world is gone."""
+        """Fail all motions; no motion may start until `found`."""
         self.lost_reason = reason
         motions, self._motions = self._motions, {}
         for motion in motions.values():

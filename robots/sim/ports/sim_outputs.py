@@ -1,4 +1,4 @@
-"""Simulated digital outputs: they keep their values and tell whoever hangs on them."""
+"""Simulated digital outputs: they keep their values and notify the devices wired to them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from engine.errors import RobotError
 
 
 class SimOutputPort:
-    """Implements `robots.port.OutputPort`; all outputs are off at first.
+    """Implements `robots.port.OutputPort`; all outputs start off.
 
     Args:
-        arm: Whose they are.
-        count: How many there are.
+        arm: Name of the arm.
+        count: Number of outputs.
     """
 
     def __init__(self, arm: str, *, count: int) -> None:
@@ -22,7 +22,7 @@ class SimOutputPort:
 
     @property
     def values(self) -> tuple[bool, ...]:
-        """What they are now."""
+        """Present values."""
         return tuple(self._values)
 
     def wire(self, output: int, device: Callable[[bool], None]) -> None:
@@ -32,7 +32,7 @@ class SimOutputPort:
         device(self._values[output])
 
     def set(self, output: int, *, on: bool) -> None:
-        """Turn an output on or off; raises RobotError where there is none of this number."""
+        """Turn an output on or off; raises RobotError for an unknown number."""
         self._check(output)
         if self._values[output] == on:
             return
@@ -42,16 +42,16 @@ class SimOutputPort:
                 device(on)
 
     def begin(self) -> None:
-        """Turn all of them off: the world is a new one."""
+        """Turn all outputs off, for a new world."""
         self.recall((False,) * len(self._values))
 
     def recall(self, values: tuple[bool, ...]) -> None:
-        """Set all of them, as they were."""
+        """Restore the values of all outputs."""
         for output, value in enumerate(values):
             self.set(output, on=value)
 
     def _check(self, output: int) -> None:
         if not 0 <= output < len(self._values):
             raise RobotError(
-                f"there is no output {output}", where=self._arm, hint=f"it has the outputs 0 to {len(self._values) - 1}"
+                f"there is no output {output}", where=self._arm, hint=f"its outputs are 0 to {len(self._values) - 1}"
             )

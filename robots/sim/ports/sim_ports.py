@@ -1,4 +1,4 @@
-"""The ports of simulated arms, alike over both hosts."""
+"""The ports of simulated arms, the same for both hosts."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ _REFLEX_REASON = "external force or torque limit exceeded"
 class SimArmPort:
     """Implements `robots.port.ArmPort` for one arm of a simulated world.
 
-    What starts a motion raises RobotError while another one is under way, while a reflex is not
-    recovered from, and when the world is gone.
+    Methods that start a motion raise RobotError while another motion is active, after a reflex
+    until `recover`, and when the world is lost.
     """
 
     def __init__(self, host: WorldHost, board: MotionRegistry, arm: ArmSummary, limits: JointLimits) -> None:
@@ -57,38 +57,38 @@ class SimArmPort:
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Names in order."""
+        """Joint names in order."""
         return self._arm.joints
 
     @property
     def settings(self) -> ArmSettings:
-        """What is in force."""
+        """The active settings."""
         return self._settings
 
     @property
     def reflex_reason(self) -> str:
-        """Why the arm has stopped by itself; empty where it has not.
+        """Reason of the reflex stop; empty without one.
 
-        That it has is seen in its state, the reason is told a moment later: until then it is said in general.
+        The arm's state shows the reflex before the reason arrives: until then a general reason is returned.
         """
         return self._board.reflexes.get(self._arm.name, _REFLEX_REASON) if self.sample().reflex else ""
 
     def when_reflex(self, tell: Callable[[str], None]) -> None:
-        """Call `tell` with the reason whenever the arm stops by itself."""
+        """Call `tell` with the reason at every reflex stop."""
         self._board.when_reflex(self._arm.name, tell)
 
     def sample(self) -> ArmSample:
-        """The newest measurement."""
+        """The latest measurement."""
         return self._host.snapshot().arm(self._arm.name)
 
     def follow(
         self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: ContactCondition | None = None
     ) -> SimMotion:
-        """Start following; with `until` a contact on the way ends the motion.
+        """Start following; with `until` a contact ends the motion early.
 
         Raises:
             RobotError: as for all motions; the trajectory does not start at the set point at rest, or the
-                contact is none.
+                contact condition is invalid.
         """
         number = self._next_number()
         if until is not None:
@@ -100,10 +100,10 @@ class SimArmPort:
         )
 
     def track_force(self, task: ForceTask, *, tolerance: Tolerance) -> SimMotion:
-        """Start following a tool path while pressing as wanted; the report carries a `ForceRecord`.
+        """Start following a tool path under force control; the report contains a `ForceRecord`.
 
         Raises:
-            RobotError: as for all motions, or the task cannot be done from the present set point.
+            RobotError: as for all motions, or the task is invalid at the present set point.
         """
         number = self._next_number()
         checked = validate_force_task(task, start_rad=self._set_point(), joints=self._arm.joints)
@@ -111,10 +111,10 @@ class SimArmPort:
         return self._one.start(motion, self._host, TrackForce.of(self._arm.name, number, checked, tolerance))
 
     def stream(self, kind: StreamKind, *, watchdog_s: float) -> SimStream:
-        """Start doing what is sent.
+        """Start following streamed values.
 
         Raises:
-            RobotError: as for all motions, or the watchdog is no time.
+            RobotError: as for all motions, or the watchdog time is invalid.
         """
         number = self._next_number()
         if not (math.isfinite(watchdog_s) and watchdog_s > 0.0):
@@ -126,7 +126,7 @@ class SimArmPort:
         """Float in gravity compensation.
 
         Raises:
-            RobotError: as for all motions, or the damping is no share.
+            RobotError: as for all motions, or the damping is not a share.
         """
         number = self._next_number()
         if not 0.0 <= damping <= 1.0:
@@ -134,23 +134,23 @@ class SimArmPort:
         return self._start_stream(StartGuiding(arm=self._arm.name, motion=number, damping=damping), width=0)
 
     def configure(self, settings: ArmSettings) -> None:
-        """Put settings into force from the next control period on.
+        """Apply settings from the next control period on.
 
         Raises:
-            RobotError: a value is out of its range for this arm, or the world is gone.
+            RobotError: a value is out of range for this arm, or the world is lost.
         """
         checked = validate_settings(settings, arm=self._arm.name, joints=self._arm.joints, limits=self._limits)
         self._host.send(ConfigureArm(arm=self._arm.name, settings=checked))
         self._settings = checked
 
     def recover(self) -> None:
-        """End a reflex; the arm holds itself where it stands."""
+        """End a reflex stop; the arm holds its position."""
         self._host.send(RecoverArm(arm=self._arm.name))
-        # Should it stop once more, the old reason is not the new one.
+        # The old reason must not be reported for the next reflex.
         self._board.reflexes.pop(self._arm.name, None)
 
     def begin(self) -> None:
-        """Know that the world is a new one, with settings as they are at first."""
+        """Reset to the initial settings, for a new world."""
         self._settings = ArmSettings()
 
     def _next_number(self) -> int:
@@ -160,7 +160,7 @@ class SimArmPort:
             raise RobotError(
                 f"the arm has stopped by itself: {why}",
                 where=self._arm.name,
-                hint="see that its way is free, then recover it",
+                hint="make sure that its path is clear, then recover it",
             )
         return number
 
@@ -182,9 +182,11 @@ class SimArmPort:
         length = math.hypot(*contact.direction)
         if not (math.isfinite(contact.force_n) and contact.force_n > 0.0):
             raise RobotError(
-                f"a contact cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
+                f"the contact force cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
             )
         if length != 0.0 and not abs(length - 1.0) < 1e-3:
             raise RobotError(
-                f"{contact.direction} is no direction", where=self._arm.name, hint="give a unit vector, or zero for any"
+                f"{contact.direction} is not a direction",
+                where=self._arm.name,
+                hint="give a unit vector, or zero for any",
             )

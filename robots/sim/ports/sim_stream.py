@@ -1,4 +1,4 @@
-"""A stream in a simulated world: a motion that is told what to do at every instant."""
+"""A stream in a simulated world: a motion that follows streamed values."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ class SimStream(SimMotion):
     """Implements `robots.port.MotionStream`.
 
     Args:
-        number: Of the motion.
-        arm: Who carries it out.
-        width: How many numbers it is told at a time.
-        send: Gives a command to the world.
-        progress: Measures its progress.
+        number: Number of the motion.
+        arm: Name of the executing arm.
+        width: Number of values per message.
+        send: Sends a command to the world.
+        progress: Returns the progress of the motion.
     """
 
     def __init__(
@@ -37,10 +37,10 @@ class SimStream(SimMotion):
         self._tell = send
 
     def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
-        """Say where to, or how fast, to go from now on, as told `age_s` ago; says nothing once it has ended.
+        """Send target positions or velocities that are `age_s` old; does nothing after the end.
 
         Raises:
-            RobotError: wrong number of values, one that is not finite, or the world is gone.
+            RobotError: wrong number of values, a value that is not finite, or the world is lost.
         """
         if len(values) != self._width or not all(map(math.isfinite, values)):
             raise RobotError(
@@ -49,10 +49,10 @@ class SimStream(SimMotion):
                 hint=f"send {self._width} finite numbers" if self._width else "this stream takes none",
             )
         if not self.ended:
-            told = tuple(map(float, values))
-            self._tell(Setpoint(arm=self._arm, motion=self.number, values=told, age_s=age_s))
+            numbers = tuple(map(float, values))
+            self._tell(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
 
     def finish(self) -> None:
-        """Ask to come to rest and end as REACHED."""
+        """Request to come to rest and end as REACHED."""
         if not self.ended:
             self._tell(FinishStream(arm=self._arm, motion=self.number))

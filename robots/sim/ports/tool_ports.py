@@ -1,4 +1,4 @@
-"""The ports of simulated tools: gripper, hand, magnet, alike over both hosts."""
+"""The ports of simulated tools: gripper, hand, magnet, the same for both hosts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Port = TypeVar("Port")
 
 
 class _ToolPort:
-    """What the ports of all tools share: where to send, and one motion at a time."""
+    """Base of all tool ports: command channel and exclusive motion."""
 
     def __init__(self, host: WorldHost, board: MotionRegistry, arm: str, tool: ToolSummary) -> None:
         self.host = host
@@ -33,13 +33,13 @@ class _ToolPort:
         return self._one.number()
 
     def start(self, command: ToolCommand) -> SimMotion:
-        """Give a command that starts a motion."""
+        """Send a command that starts a motion."""
         host, arm, number = self.host, self.arm, command.motion
         motion = SimMotion(number, send=host.send, progress=lambda: host.snapshot().tool_progress(arm, number))
         return self._one.start(motion, host, command)
 
     def require(self, what: str, value: float, *, above_zero: bool) -> None:
-        """Raise RobotError when `value` is not a finite number from 0 up, or above 0."""
+        """Raise RobotError unless `value` is finite and at least 0, or above 0 with `above_zero`."""
         if not math.isfinite(value) or value < 0.0 or (above_zero and value == 0.0):
             raise RobotError(f"{what} cannot be {value}", where=self.address)
 
@@ -57,18 +57,18 @@ class SimGripperPort:
 
     @property
     def max_force_n(self) -> float:
-        """Greatest force that it can press with."""
+        """Maximum grip force."""
         return self._line.tool.max_force_n
 
     def sample(self) -> GripperSample:
-        """The newest measurement."""
+        """The latest measurement."""
         return self._line.host.snapshot().gripper(self._line.arm)
 
     def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> SimMotion:
         """Move the fingers towards `width_m`, pressing with at most `force_n`.
 
         Raises:
-            RobotError: another motion is under way, a number is senseless, or the world is gone.
+            RobotError: another motion is active, a value is invalid, or the world is lost.
         """
         line = self._line
         number = line.number()
@@ -87,18 +87,18 @@ class SimHandPort:
 
     @property
     def max_force_n(self) -> float:
-        """The motor's greatest pull."""
+        """Maximum pull of the motor."""
         return self._line.tool.max_force_n
 
     def sample(self) -> HandSample:
-        """The newest measurement."""
+        """The latest measurement."""
         return self._line.host.snapshot().hand(self._line.arm)
 
     def close_to(self, *, share: float, time_s: float) -> SimMotion:
         """Close or open to `share`, 0 to 1, in `time_s` or as fast as the motor can.
 
         Raises:
-            RobotError: another motion is under way, a number is senseless, or the world is gone.
+            RobotError: another motion is active, a value is invalid, or the world is lost.
         """
         line = self._line
         number = line.number()
@@ -115,18 +115,18 @@ class SimMagnetPort:
 
     @property
     def max_force_n(self) -> float:
-        """How hard it pulls at a plate that covers its face."""
+        """Pull on a plate that covers its face."""
         return self._line.tool.max_force_n
 
     def sample(self) -> MagnetSample:
-        """The newest measurement."""
+        """The latest measurement."""
         return self._line.host.snapshot().magnet(self._line.arm)
 
     def switch(self, *, on: bool) -> SimMotion:
         """Switch the field.
 
         Raises:
-            RobotError: another switch is under way, or the world is gone.
+            RobotError: another switch is active, or the world is lost.
         """
         line = self._line
         return line.start(SwitchMagnet(arm=line.arm, motion=line.number(), on=on))

@@ -1,4 +1,4 @@
-"""What a simulated cell consists of, as plain data, and how it is built from a cell document.
+"""The scene of a simulated cell as plain data, and its construction from a cell document.
 
 Imports no MuJoCo; planning, vision and workspace may use it.
 """

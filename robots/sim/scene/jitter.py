@@ -13,7 +13,7 @@ from engine.messages import Pose
 def jitter_pose(pose: Pose, *, name: str, seed: int, xy_m: float, yaw_rad: float) -> Pose:
     """Return `pose` moved by up to ±`xy_m` in x and y and turned by up to ±`yaw_rad` about world z.
 
-    The draw depends on `seed` and the part's `name` only, so adding a part moves no other.
+    The draw depends on `seed` and the part's `name` only, so adding a part does not move the others.
     """
     stream = np.random.default_rng([seed, zlib.crc32(name.encode())])
     dx, dy, turn = (float(share) for share in stream.uniform(-1.0, 1.0, size=3))

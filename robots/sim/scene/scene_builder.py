@@ -1,4 +1,4 @@
-"""From a cell document to the scene that a world is built from."""
+"""Builds the scene of a world from a cell document."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Resolve = Callable[[str], Path]
 
 
 def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Resolve = Path) -> SimScene:
-    """Return the scene of a cell; with a `seed`, parts lie off by their jitter.
+    """Return the scene of a cell; with a `seed`, parts are displaced by their jitter.
 
-    Robots with another driver than `sim` are left out. `resolve` opens the document's paths
+    Robots with another driver than `sim` are omitted. `resolve` resolves the document's paths
     (`Cell.resolve`).
 
     Raises:
         CellError: a robot or gripper model is unknown, or the cell has no world.
-        DocumentError: a model folder or a calibration file is wrong.
+        DocumentError: a model folder or a calibration file is invalid.
     """
     world = document.world
     if world is None:

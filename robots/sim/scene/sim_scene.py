@@ -1,4 +1,4 @@
-"""What a simulated cell consists of, as plain data that can cross a process border.
+"""The scene of a simulated cell as plain data that can be sent to another process.
 
 All poses are in the world frame; sizes are metres. `box` has full edge lengths, `cylinder`
 (diameter, length along z), `sphere` its diameter; a `tray` has outer edge lengths and
@@ -22,7 +22,7 @@ GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 
 
 class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
-    """One arm: its name in the cell, what it is made of, where its base stands.
+    """One arm: its name in the cell, its models and its base pose.
 
     `model` and `gripper` are names or folders of models; `gripper` is None for a bare flange.
     `calibration` is the path of the arm's factory calibration file.
@@ -40,7 +40,7 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises:
             CellError: a model is unknown, or the arm has no such option.
-            DocumentError: a document of a model folder is wrong.
+            DocumentError: a document of a model folder is invalid.
         """
         return robot_model(
             self.model,
@@ -51,11 +51,11 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body that stays where it is; `wall_m` is the thickness of a tray's floor and walls.
+    """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
-    With `spring_n_m` above 0 it rests on a spring and a damper and gives way along its z axis, as foam
-    or a workpiece on a compliant table does; it then weighs `sprung_kg`, and its soft skin has
-    `skin_friction` whatever touches it.
+    With `spring_n_m` above 0 it rests on a spring and a damper and yields along its z axis, like foam
+    or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
+    `skin_friction` with any other body.
     """
 
     name: str
@@ -71,7 +71,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A free body with uniform density; a magnet pulls at those that are `magnetic`."""
+    """A free body with uniform density; magnets attract `magnetic` ones."""
 
     name: str
     shape: str
@@ -83,10 +83,10 @@ class PartBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A person's arm: `shoulder` stays, the middle of the hand, a ball, begins at `hand_rests`.
+    """A person's arm: `shoulder` is fixed; the centre of the hand, a ball, starts at `hand_rests`.
 
-    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the middle of the hand. It is moved,
-    whatever is in its way, passes through fixtures and other people, and collides with robots and parts.
+    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the centre of the hand. Its motion is
+    prescribed: it passes through fixtures and other people, and collides with robots and parts.
     """
 
     name: str
@@ -99,15 +99,15 @@ class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def reach_m(self) -> tuple[float, float]:
-        """Least and greatest distance of the hand from the shoulder."""
+        """Minimum and maximum distance of the hand from the shoulder."""
         return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)
 
 
 class SimScene(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that a simulated world is built from; equal scenes give equal worlds, bit for bit.
+    """The complete description of a simulated world; equal scenes give equal worlds, bit for bit.
 
-    In real time, `engine_silence_s` and `world_silence_s` are how long engine and world may each be silent before the
-    other acts, see `robots.port.control_process`.
+    In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
+    other side reacts, see `robots.port.control_process`.
     """
 
     step_s: float = 0.001

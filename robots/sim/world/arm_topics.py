@@ -1,4 +1,4 @@
-"""What a world tells on the bus of one arm: joints, as the robot's own controller counts them too, and forces."""
+"""The topics of one arm of a world: joints, also in the convention of the robot's controller, and forces."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from robots.sim.world.tool_topics import StateTopic, ToolTopic
 def arm_topics(bus: SkillBus, host: WorldHost, arm: ArmSummary, joint_map: JointMap) -> tuple[ToolTopic, ...]:
     """Return the topics of an arm: `<arm>/joint_state`, `<arm>/wrench`, `<arm>/external`, `<arm>/device_joints`.
 
-    The wrench is that of the environment on the tool at the tool centre point, along the world's axes. The
-    last one, what the robot's own controller would show, is only there where that is not the same.
+    The wrench is that of the environment on the tool at the tool centre point, in world axes. The
+    last topic, the joints as the robot's controller shows them, exists only where they differ.
     """
 
     def wrench(snapshot: SimSnapshot) -> Wrench:

@@ -1,4 +1,4 @@
-"""Answers what can be asked of the people of a simulated cell: reach, withdraw, count contacts."""
+"""The services of the people of a simulated cell: reach, withdraw, count contacts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robots.sim.scene.sim_scene import PersonBody
 
 
 class PersonServices:
-    """Refuses what an arm cannot do; what it can the world is told to do."""
+    """Rejects requests that an arm cannot execute, and sends the others to the world."""
 
     def __init__(self, world: str, people: tuple[PersonBody, ...], host: WorldHost) -> None:
         self._world = world
@@ -27,7 +27,7 @@ class PersonServices:
         self._host = host
 
     def register(self, bus: SkillBus) -> None:
-        """Answer on the bus, where there are people."""
+        """Advertise the services if there are people."""
         if not self._people:
             return
         bus.advertise_service(Reach, self.reach, namespace=self._world)
@@ -35,19 +35,19 @@ class PersonServices:
         bus.advertise_service(CountContacts, self.count_contacts, namespace=self._world)
 
     async def reach(self, request: Reach) -> ReachResult:
-        """Send a hand to a place; raises SkillFailed where it cannot get there, RobotError when the world is gone."""
+        """Send a hand to a point; raises SkillFailed if it is unreachable, RobotError when the world is lost."""
         person = self._person(request.person)
         arrives_in_s = self._look(person, request.hand_m, request.speed_m_s, and_back=request.stay_s is not None)
         return self._send(person, request.hand_m, request.speed_m_s, request.stay_s, arrives_in_s)
 
     async def withdraw(self, request: Withdraw) -> ReachResult:
-        """Send a hand back; raises as `reach` does."""
+        """Send a hand back to rest; raises as `reach` does."""
         person = self._person(request.person)
         arrives_in_s = self._look(person, person.hand_rests, request.speed_m_s, and_back=False)
         return self._send(person, person.hand_rests, request.speed_m_s, None, arrives_in_s)
 
     async def count_contacts(self, request: CountContacts) -> ContactCount:
-        """Return the count of the physics."""
+        """Return the contact count of the physics."""
         return self._sample(self._person(request.person)).count
 
     def _send(
@@ -57,14 +57,14 @@ class PersonServices:
         return ReachResult(person=person.name, hand_m=goal, arrives_in_s=arrives_in_s)
 
     def _look(self, person: PersonBody, goal: Vector3, speed_m_s: float, *, and_back: bool) -> float:
-        """Return how long the way takes; raises SkillFailed where it cannot be gone."""
+        """Return the duration of the motion; raises SkillFailed if it is impossible."""
         limb, place = Limb(person), np.array(goal)
         least_m, greatest_m = person.reach_m
         away_m = limb.away_m(place)
         if not least_m <= away_m <= greatest_m:
             raise SkillFailed(
                 f"{person.name} cannot reach {_written(goal)}: it is {away_m:.3f} m from the shoulder, "
-                f"{least_m:.3f} to {greatest_m:.3f} m can be reached",
+                f"reachable are {least_m:.3f} to {greatest_m:.3f} m",
                 where=self._world,
                 hint=f"the shoulder is at {_written(person.shoulder)}",
             )
@@ -75,9 +75,9 @@ class PersonServices:
             ways.append(plan_hand_trajectory(there, np.array(person.hand_rests), speed_m_s=speed_m_s).places())
         if any(_through(places, person, limb) for places in ways):
             raise SkillFailed(
-                f"the hand of {person.name} would go through the shoulder on its way to {_written(goal)}",
+                f"the path of the hand of {person.name} to {_written(goal)} passes through the shoulder",
                 where=self._world,
-                hint="let it reach to a place beside the shoulder first",
+                hint="let it reach a point beside the shoulder first",
             )
         return way.duration_s
 

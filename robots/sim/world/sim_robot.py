@@ -1,4 +1,4 @@
-"""What a simulated world asks of its robots and devices beyond being robots."""
+"""Additional interfaces of robots and devices in a simulated world."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ from robots.gripper.grasp_check import GraspCommand
 
 
 class SimRobot(Robot, Protocol):
-    """A robot of a simulated world, which tells what it must know again after a restore."""
+    """A robot of a simulated world that provides its memory for a restore."""
 
     def grips(self) -> dict[str, GraspCommand]:
-        """What its grippers were told to grasp and hold, by their names."""
+        """The active grasp commands of its grippers, by their names."""
         ...
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
-        """Know from now on what `grips` of an earlier life told, other robots' included."""
+        """Restore `grips` of an earlier instance; entries of other robots are ignored."""
         ...
 
 
 @runtime_checkable
 class StatefulDevice(Protocol):
-    """A robot or device that knows more than that, in words of its own."""
+    """A robot or device with additional state, in its own encoding."""
 
     def memo(self) -> bytes:
-        """What it must know again after a restore; empty for nothing."""
+        """The state to save for a restore; empty for none."""
         ...
 
     def remember(self, memo: bytes) -> None:
-        """Know again what `memo` of an earlier life says; raises RobotError where it cannot be read."""
+        """Restore the state from `memo`; raises RobotError if it cannot be decoded."""
         ...
 
 
 @runtime_checkable
 class WorldDependentDevice(Protocol):
-    """A robot or device that cannot work while the world is lost, and says so."""
+    """A robot or device that is unavailable, and reports so, while the world is lost."""
 
     def world_lost(self, reason: str) -> None:
-        """Take nothing more, and tell why."""
+        """Reject further requests with the reason."""
         ...
 
     def world_restored(self) -> None:
-        """Work again; the world is restored and its ports work."""
+        """Resume service; the world is restored and its ports work."""
         ...

@@ -1,4 +1,4 @@
-"""The simulated world of a cell as a device: opens its host, gives ports to its robots, publishes on the bus."""
+"""The simulated world of a cell as a device: opens its host, provides ports to its robots, publishes on the bus."""
 
 from __future__ import annotations
 
@@ -39,17 +39,17 @@ RobotMaker = Callable[["SimWorld"], tuple[SimRobot, ...]]
 
 
 def no_robots(_world: SimWorld) -> tuple[SimRobot, ...]:
-    """Make no skill servers: for who uses the ports directly."""
+    """Create no skill servers, for direct use of the ports."""
     return ()
 
 
 class SimWorld:
     """Implements `engine.robot.World`; with a lockstep host also `engine.clock.LockstepSimulation`:
-    it attaches itself to a `VirtualLoop` while it is open.
+    it is attached to a `VirtualLoop` while open.
 
-    `make_robots` puts the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
-    before the world is opened and work while it is open. Those of the made that are on no arm are devices of
-    the world itself, such as what watches it: they are entered, registered and left along with the world.
+    `make_robots` creates the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
+    before the world is opened and work while it is open. Servers without an arm are devices of
+    the world itself, such as cameras: they are entered, registered and exited with the world.
     """
 
     def __init__(
@@ -107,11 +107,11 @@ class SimWorld:
         return tuple(robot for robot in self._robots if robot.name in self._arms)
 
     def devices(self) -> tuple[Robot, ...]:
-        """The devices of the world itself, entered, registered and left along with it."""
+        """The devices of the world itself, entered, registered and exited with it."""
         return self._devices
 
     def each_step(self, hook: StepHook, *, busy: Callable[[], bool]) -> None:
-        """Call `hook` after every step in lockstep, from now on; time passes while `busy` says so."""
+        """Call `hook` after every lockstep step; time advances while `busy` returns true."""
         self._hooks.append((hook, busy))
 
     def arm_names(self) -> tuple[str, ...]:
@@ -139,11 +139,11 @@ class SimWorld:
         return self._outputs.get(name)
 
     def measured(self) -> SimSnapshot:
-        """The newest measurement of everything."""
+        """The latest measurements."""
         return self._host.snapshot()
 
     def snapshot(self) -> bytes:
-        """Everything needed to go on from here later, in this process or another: see `restore`."""
+        """Return a snapshot from which `restore` continues later, in this process or another."""
         grips = {name: grip for robot in self._robots for name, grip in robot.grips().items()}
         settings = {name: port.settings for name, port in self._arm_ports.items()}
         reflexes = {name: reason for name, port in self._arm_ports.items() if (reason := port.reflex_reason)}
@@ -155,12 +155,12 @@ class SimWorld:
         return encode_snapshot(image, model=self._host.summary.model)
 
     async def restore(self, snapshot: bytes) -> None:
-        """Bring everything to where a snapshot was made, at rest: set points are held, grippers keep their grip.
+        """Restore a snapshot, at rest: set points are held, grippers keep their grip.
 
-        The arms have the settings and digital outputs that they had.
+        Settings and digital outputs of the arms are restored too.
 
         Raises:
-            RobotError: something moves, the world is gone, or the snapshot is none of this very world.
+            RobotError: something moves, the world is lost, or the snapshot is of another world.
         """
         if self._board.under_way():
             raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
@@ -188,15 +188,15 @@ class SimWorld:
 
     @property
     def lost_reason(self) -> str:
-        """Why the world is gone; empty while it is there."""
+        """Why the world is lost; empty while it is connected."""
         return self._board.lost_reason if self._status is DeviceStatus.FAULT else ""
 
     def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell` when the world is lost and when it is back."""
+        """Call `tell` when the world is lost and when it is restored."""
         self._tell_connection = tell
 
     async def reconnect(self) -> str:
-        """Start a new process for a world that was lost, and bring it to the last instant of the old one, at rest.
+        """Start a new process for a lost world, and restore the last state of the old one, at rest.
 
         Raises:
             RobotError: the process does not start, or is lost again at once.
@@ -223,7 +223,7 @@ class SimWorld:
             self._board.reflexes = {}
             for robot in self._robots:
                 robot.recall({})
-            return f"the world has begun anew, with everything where the cell document has it: {error.message}"
+            return f"the world was restarted in the initial state of the cell document: {error.message}"
         await self._take_over(image)
         return ""
 
@@ -237,17 +237,17 @@ class SimWorld:
             port.begin()
 
     def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
-        """Let a hand push at a body from now on, in world axes, at a point of its frame; replaces its last push.
+        """Push a body, in world axes, at a point of its frame; replaces its last push.
 
         `body` is one of `host.summary.bodies`: `left/panda_hand`, the name of a part.
 
         Raises:
-            RobotError: there is no such body, a number is not finite, or the world is gone.
+            RobotError: there is no such body, a value is not finite, or the world is lost.
         """
         if body not in self._host.summary.bodies:
             raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
         if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
-            raise RobotError("a push has numbers that are not finite", where=self.name)
+            raise RobotError("a push has values that are not finite", where=self.name)
         self._host.send(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
 
     def register(self, bus: SkillBus) -> None:
@@ -267,7 +267,7 @@ class SimWorld:
         self._publish_on()
 
     def _publish_on(self) -> None:
-        """Publish in real time; in lockstep every step does."""
+        """Start publishing in real time; in lockstep every step publishes."""
         if self._publisher is not None and not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
 
@@ -276,7 +276,7 @@ class SimWorld:
         return PushBodyResult(body=request.body)
 
     async def _reset_parts(self, request: ResetParts) -> ResetPartsResult:
-        """Put the parts back; raises SkillFailed while a run holds an arm or something moves."""
+        """Reset the parts; raises SkillFailed while a run leases an arm or something moves."""
         leases = self._bus.leases if self._bus is not None else LeaseTable()
         owners = {arm: owner for arm in self._arms if (owner := leases.owner(arm)) is not None}
         for arm, owner in owners.items():
@@ -290,7 +290,7 @@ class SimWorld:
         """Cancel every motion and return when all have ended at rest.
 
         Raises:
-            RobotError: an arm did not come to rest, or the world is gone.
+            RobotError: an arm did not come to rest, or the world is lost.
         """
         motions = self._board.under_way()
         self._host.send(StopAll())
@@ -310,7 +310,7 @@ class SimWorld:
             for device in self._devices:
                 await self._opened_devices.enter_async_context(device)
         except BaseException:
-            # Whatever stopped a device from opening, cancellation included, the world must not be left open.
+            # If a device fails to open, cancellation included, the world must not stay open.
             await self.__aexit__(None, None, None)
             raise
         return self
@@ -324,7 +324,7 @@ class SimWorld:
             if self._status is DeviceStatus.READY:
                 await self.stop()
         finally:
-            # Also when this is cancelled while it waits, the world ends.
+            # Even if this is cancelled while it waits, the world ends.
             loop = asyncio.get_running_loop()
             if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
                 loop.detach(self)
@@ -339,13 +339,13 @@ class SimWorld:
 
     @property
     def busy(self) -> bool:
-        """True while a motion is under way or a topic is read (lockstep)."""
+        """True while a motion is active or a topic has subscribers (lockstep)."""
         if self._lockstep().busy or (self._publisher is not None and self._publisher.read):
             return True
         return any(busy() for _, busy in self._hooks)
 
     def advance(self, until_s: float) -> float:
-        """Step towards `until_s`; returns early, with the time reached, once somebody was told something."""
+        """Step towards `until_s`; returns early, with the time reached, after any callback into the event loop."""
         return self._lockstep().advance(until_s, after_step=self._after_step)
 
     def _lockstep(self) -> LockstepHost:
@@ -355,15 +355,15 @@ class SimWorld:
 
     def _after_step(self) -> bool:
         self._hooked_steps += 1
-        publisher, told = self._publisher, False
+        publisher, notified = self._publisher, False
         if publisher is not None:
             if self._hooked_steps % self._joint_steps == 0:
-                told = publisher.publish_joints()
+                notified = publisher.publish_joints()
             if self._hooked_steps % self._frame_steps == 0:
-                told = publisher.publish_frames() or told
+                notified = publisher.publish_frames() or notified
         for hook, _ in self._hooks:
-            told = hook() or told
-        return told
+            notified = hook() or notified
+        return notified
 
     async def _publish_in_real_time(self) -> None:
         assert self._publisher is not None
@@ -389,7 +389,7 @@ class SimWorld:
 
 
 def _nothing() -> None:
-    """Tell nobody."""
+    """Do nothing."""
 
 
 def new_world(

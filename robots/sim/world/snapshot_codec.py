@@ -1,4 +1,4 @@
-"""A snapshot of a world as bytes: what it holds, and the marks by which damage and mix-ups are noticed."""
+"""The snapshot of a world as bytes: its contents, and the checks that detect damage and mix-ups."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _NUMBER = np.dtype("<f8")
 
 
 class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
-    """A world at one instant: its numbers as an `ImageLayout` has them, what each gripper was told to grasp,
-    the settings of each arm, why those that have stopped by themselves did, and the digital outputs of those
-    that have some. `memos` are what devices of the world have to know again, by their names, in their own words.
+    """A world at one instant: its numbers as in `ImageLayout`, the grasp command of each gripper,
+    the settings of each arm, the reasons of active reflexes, and the digital outputs of arms
+    that have some. `memos` are the saved states of devices, by their names, in their own encoding.
     """
 
     numbers: bytes
@@ -54,7 +54,7 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _FormatHeader(msgspec.Struct, frozen=True, kw_only=True):
-    """What every format begins with."""
+    """The header common to all formats."""
 
     flexcell_world: int
 
@@ -81,10 +81,10 @@ def encode_snapshot(image: WorldImage, *, model: str) -> bytes:
 
 
 def decode_snapshot(snapshot: bytes, *, model: str, size: int) -> WorldImage:
-    """Return the image in a snapshot of this very world; it has `size` numbers.
+    """Return the image in a snapshot of this world; it has `size` numbers.
 
     Raises:
-        RobotError: it is no snapshot, is damaged, or was made by another version or of another world.
+        RobotError: not a snapshot, damaged, from another version, or of another world.
     """
     label = _decoded(snapshot, _FormatHeader)
     if label.flexcell_world != FORMAT:
@@ -111,7 +111,7 @@ def _decoded(data: bytes, kind: type[S]) -> S:
     try:
         return msgspec.msgpack.decode(data, type=kind)
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
-        raise RobotError("these bytes are no snapshot of a simulated world") from error
+        raise RobotError("these bytes are not a snapshot of a simulated world") from error
 
 
 def _simulator() -> str:
@@ -120,5 +120,5 @@ def _simulator() -> str:
 
 def _sound(image: WorldImage, size: int) -> WorldImage:
     if len(image.numbers) != size * _NUMBER.itemsize or not np.isfinite(image.array()).all():
-        raise RobotError("the snapshot holds a world that cannot be", hint="start again from the beginning")
+        raise RobotError("the snapshot contains an invalid world state", hint="start again from the beginning")
     return image

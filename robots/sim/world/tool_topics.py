@@ -1,4 +1,4 @@
-"""What a world tells on the bus of the tool on an arm: `<arm>/gripper/state`, or `hand`, or `magnet` there."""
+"""The topic of an arm's tool: `<arm>/gripper/state`, `<arm>/hand/state` or `<arm>/magnet/state`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ToolTopic(Protocol):
 
     @property
     def read(self) -> bool:
-        """True while somebody subscribes to it."""
+        """True while it has subscribers."""
         ...
 
     def publish(self, snapshot: SimSnapshot) -> None:
@@ -32,7 +32,7 @@ class ToolTopic(Protocol):
 
 
 class StateTopic(Generic[State]):
-    """A tool's state as a topic: made on demand for the latest value, streamed to who subscribes."""
+    """A tool's state as a topic: computed on demand for the latest value, streamed to subscribers."""
 
     def __init__(self, topic: Topic[State], host: WorldHost, state: Callable[[SimSnapshot], State]) -> None:
         self._topic = topic
@@ -41,7 +41,7 @@ class StateTopic(Generic[State]):
 
     @property
     def read(self) -> bool:
-        """True while somebody subscribes to it."""
+        """True while it has subscribers."""
         return self._topic.subscriber_count > 0
 
     def publish(self, snapshot: SimSnapshot) -> None:

@@ -1,6 +1,6 @@
-"""What a world tells on the bus, at which rate: scene, frames, parts, joints, forces, tools.
+"""The topics of a world and their rates: scene, frames, parts, joints, forces, tools.
 
-Latest values are made on demand, streams only while somebody subscribes.
+Latest values are computed on demand, streams only while they have subscribers.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class WorldPublisher:
 
     @property
     def read(self) -> bool:
-        """True while somebody subscribes to anything that changes."""
+        """True while any changing topic has subscribers."""
         slow = self._frame_topic.subscriber_count + self._part_topic.subscriber_count
         return slow > 0 or self._fast_read()
 
     def publish_joints(self) -> bool:
-        """Publish joints, forces and tools to who subscribes; true if anybody did."""
+        """Publish joints, forces and tools to subscribers; true if there are any."""
         if not self._fast_read():
             return False
         snapshot = self._host.snapshot()
@@ -61,7 +61,7 @@ class WorldPublisher:
         return True
 
     def publish_frames(self) -> bool:
-        """Publish frames and parts to who subscribes; true if anybody did."""
+        """Publish frames and parts to subscribers; true if there are any."""
         frames, parts = self._frame_topic.subscriber_count > 0, self._part_topic.subscriber_count > 0
         if not (frames or parts):
             return False

@@ -89,8 +89,8 @@ async def test_an_idle_arm_that_is_pushed_tells_at_once_what_tripped_it() -> Non
         rejected = await cell.perform(HOME)
     assert at_s == pytest.approx(after_s, abs=0.0025)
     assert (status.mode, status.activity) == ("reflex", "")
-    assert re.match(r"the arm has stopped by itself: the tool feels \d+\.\d N from outside", status.error)
-    assert "its threshold is 20 N" in status.error
+    assert re.match(r"the arm has stopped by itself: external force limit exceeded: \d+\.\d N > 20 N", status.error)
+    assert "> 20 N at the tool" in status.error
     assert rejected.cause is not None
     assert rejected.cause.message.startswith(status.error)
 

@@ -118,7 +118,7 @@ async def test_a_primitive_that_cannot_be_carried_out_is_rejected_with_the_reaso
     reasons = [end.cause.message if end.cause is not None else "" for end in ends]
     for reason, words in zip(
         reasons,
-        ("starts with panda_joint1 at", "would need", "its goal has 1 joints", "frame 'moon'", "frame 'moon'"),
+        ("panda_joint1 is at", "would need", "its goal has 1 joints", "frame 'moon'", "frame 'moon'"),
         strict=True,
     ):
         assert words in reason

@@ -177,8 +177,8 @@ async def driven_through(arm: Driven, bench: Bench) -> dict[str, str]:
 
 
 NO_LINE = (
-    "rejected: an arm of 2 joints cannot keep its tool on this line, in place and orientation, past 0% of the way"
-    " (go there in joint space, or to its end by the position only (`match`))"
+    "rejected: an arm of 2 joints cannot keep position and orientation of its tool on this line beyond 0% of it"
+    " (move in joint space, or to the end by position only (`match`))"
 )
 
 

@@ -254,7 +254,7 @@ async def test_cameras_that_are_still_starting_are_waited_for(sees: bool) -> Non
         await cell.bus.clock.sleep(30.0)
         assert cell.port.followed == []
         cell.cameras.starting = False
-        cell.cameras.go_blind("the cameras have not seen anything yet")
+        cell.cameras.go_blind("no camera image yet")
         await cell.bus.clock.sleep(1.0)
         if sees:
             cell.cameras.see()
@@ -262,7 +262,7 @@ async def test_cameras_that_are_still_starting_are_waited_for(sees: bool) -> Non
         else:
             began_s = cell.bus.clock.now_s()
             end = await handle.result()
-            assert (end.status, "not seen anything yet" in str(end.cause)) == (GoalStatus.REJECTED, True), end.cause
+            assert (end.status, "no camera image yet" in str(end.cause)) == (GoalStatus.REJECTED, True), end.cause
             assert cell.bus.clock.now_s() - began_s == pytest.approx(2.0)
 
 

@@ -63,8 +63,8 @@ async def test_a_whole_pose_is_refused_by_an_arm_of_two_joints_that_says_what_to
         end = await moved(cell, Pose(xyz=tuple(np.add(base.xyz, CYLINDER.xyz).tolist())), "pose")
         assert (end.status, cell.port.followed) == (GoalStatus.REJECTED, [])
     assert end.cause is not None
-    assert "is reached, but not in this orientation" in end.cause.message
-    assert "an arm of 2 joints cannot choose its orientation: ask for the position only (`match`)" in end.cause.message
+    assert "is reachable, but not in this orientation" in end.cause.message
+    assert "an arm of 2 joints cannot choose its orientation: request the position only (`match`)" in end.cause.message
 
 
 @pytest.mark.virtual

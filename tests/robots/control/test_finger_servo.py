@@ -117,7 +117,7 @@ def test_fingers_that_never_rest_fail_in_words() -> None:
             (end,) = told
             assert isinstance(end, MotionFinished)
             assert end.end == "failed"
-            assert "neither at 0.0 mm nor at rest against something" in end.reason
+            assert "neither reached 0.0 mm nor stopped against an object" in end.reason
             return
     raise AssertionError("it waited for ever")
 

@@ -28,11 +28,14 @@ def test_a_sensible_task_is_passed_on() -> None:
     [
         (replace(GOOD, offset=np.zeros((4, 6))), r"the offset has shape \(4, 6\)"),
         (replace(GOOD, wrench=np.full((5, 6), np.nan)), "the wrench has .* not finite"),
-        (replace(GOOD, offset=np.full((5, 6), 0.06)), "the offset goes 0.0600 along axis 0, its reach is 0.05"),
+        (replace(GOOD, offset=np.full((5, 6), 0.06)), "the offset of 0.0600 along axis 0 exceeds the reach of 0.05"),
         (replace(GOOD, record_s=0.0), "record_s must be positive"),
         (replace(GOOD, slow_per_n=-1.0), "slow_per_n"),
-        (replace(GOOD, task_xyzw=(0.0, 0.0, 0.0, 2.0)), "no unit quaternion"),
-        (replace(GOOD, admittance=Admittance(damping=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))), "no admittance on axis 2"),
+        (replace(GOOD, task_xyzw=(0.0, 0.0, 0.0, 2.0)), "is not a unit quaternion"),
+        (
+            replace(GOOD, admittance=Admittance(damping=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))),
+            "not a valid admittance on axis 2",
+        ),
         (replace(GOOD, admittance=Admittance(active=(0.0, 2.0, 0.0, 0.0, 0.0, 0.0))), "active must be from 0 to 1"),
         (replace(GOOD, admittance=Admittance(reach_m=0.0)), "must be positive"),
     ],

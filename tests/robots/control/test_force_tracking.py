@@ -266,8 +266,8 @@ def test_a_joint_at_its_limit_ends_it_with_its_name() -> None:
         watch.look()
         assert len(bench.forces) < 4000
     assert generator.failure == (
-        "the tool cannot go where the force leads it, 20 mm and 0.00 rad are missing: "
-        "shoulder is at its limit 2.000 rad"
+        "the tool cannot follow the force-controlled path, error 20 mm and 0.00 rad: "
+        "shoulder is at its position limit 2.000 rad"
     )
 
 

@@ -140,7 +140,7 @@ def test_an_angle_beyond_a_limit_is_taken_as_the_limit_and_remembered() -> None:
         streaming.step(STEP_S, target_pace=1.0, state=STATE)
         watch.look()
     assert np.allclose(streaming.position, [0.1, -2.0], atol=1e-6)
-    assert streaming.warning == "elbow was told -2.500 rad and kept at -2.000 rad"
+    assert streaming.warning == "set point of elbow beyond its limit: -2.500 rad, clipped to -2.000 rad"
     assert streaming.data() == streaming.warning.encode()
 
 

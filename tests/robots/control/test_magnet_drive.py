@@ -64,7 +64,7 @@ def test_what_pulls_at_a_part_that_never_rests_fails_in_words() -> None:
     switch.switch(1, on=True)
     (event,) = run(switch, 3000, still=False)
     assert isinstance(event, MotionFinished)
-    assert (event.end, "does not come to rest" in event.reason) == ("failed", True)
+    assert (event.end, "did not come to rest" in event.reason) == ("failed", True)
 
 
 def test_another_life_of_the_switch_goes_on_as_it_was() -> None:

@@ -129,6 +129,6 @@ def test_fingers_that_never_rest_fail_in_words() -> None:
     for step in range(5000):
         for event in servo.step(STEP_S, pulled_m=0.05, velocity_m_s=0.5 if step % 2 else -0.5):
             assert finished(event)[0] == "failed"
-            assert "of closing to 70 %" in finished(event)[1]
+            assert "while closing to 70 %" in finished(event)[1]
             return
     raise AssertionError("it waited for ever")

@@ -133,8 +133,8 @@ def test_a_stop_takes_at_least_a_tenth_of_a_second_even_when_slow() -> None:
 @pytest.mark.parametrize(
     ("position", "velocity", "message"),
     [
-        (np.zeros((5, 3)), np.zeros((5, 3)), "no trajectory for 2 joints"),
-        (np.zeros((1, 2)), np.zeros((1, 2)), "no trajectory"),
+        (np.zeros((5, 3)), np.zeros((5, 3)), "not a trajectory for 2 joints"),
+        (np.zeros((1, 2)), np.zeros((1, 2)), "not a trajectory"),
         (np.full((5, 2), np.nan), np.zeros((5, 2)), "not finite"),
         (np.full((5, 2), 0.2), np.zeros((5, 2)), r"0\.200 rad from the set point of shoulder"),
         (np.zeros((5, 2)), np.ones((5, 2)), "at rest"),

@@ -53,11 +53,11 @@ async def test_percent_and_time_reach_the_motor() -> None:
         (FakeHandPort(contacts=("", "", "", "", "", "part")), "only the palm touches part, at 70 %"),
         (
             FakeHandPort(contacts=("", "part", "part", "", "", "")),
-            "the fingers touch part at 70 %, thumb and palm do not hold against",
+            "the fingers touch part at 70 %, but neither thumb nor palm opposes them",
         ),
         (
             FakeHandPort(contacts=("lid", "part", "part", "", "", "")),
-            "the fingers touch lid and part at 70 %, thumb and palm do not hold against",
+            "the fingers touch lid and part at 70 %, but neither thumb nor palm opposes them",
         ),
     ],
 )

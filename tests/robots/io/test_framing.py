@@ -22,5 +22,5 @@ def test_messages_arrive_whole_and_in_order_however_the_stream_is_cut(messages: 
 
 
 def test_an_impossible_length_is_refused() -> None:
-    with pytest.raises(RobotError, match="damaged"):
+    with pytest.raises(RobotError, match="corrupt"):
         FrameReader().feed(b"\xff\xff\xff\xff")

@@ -147,7 +147,7 @@ def test_a_calibration_of_another_urdf_is_refused(tmp_path: Path) -> None:
     for file in (ARMS_DIR / "ur10").iterdir():
         (tmp_path / file.name).write_text(file.read_text())
     written(tmp_path / "ur10_calibration.yaml", NUMBERS | {"forearm": (-0.425, 0.0, 0.0, 0.0, 0.0, 0.0)})
-    with pytest.raises(CellError, match=r"elbow_joint is off by 187\.000 mm"):
+    with pytest.raises(CellError, match=r"elbow_joint differs by 187\.000 mm"):
         robot_model(str(tmp_path), gripper=None, calibration=PRINTED)
 
 

@@ -82,7 +82,7 @@ def test_where_the_tool_stands_counts() -> None:
         if abs(opened.clearance(q)[0] - closed.clearance(q)[0]) > 1e-6
     ]
     assert differ
-    with pytest.raises(CellError, match="panda_joint1 is no joint of the tool"):
+    with pytest.raises(CellError, match="panda_joint1 is not a joint of the tool"):
         CollisionModel(model, tool_joints={"panda_joint1": 0.1})
 
 

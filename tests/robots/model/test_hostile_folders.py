@@ -33,32 +33,32 @@ def stl(triangles: int, *, said: int | None = None) -> bytes:
     [
         (BOMB + URDF.replace('name="two"', 'name="&l11;"'), "document type"),
         (SECRET + URDF.replace('name="two"', 'name="&s;"'), "document type"),
-        (URDF.replace("</robot>", "<a>" * 100 + "</a>" * 100 + "</robot>"), "more than 64 deep"),
+        (URDF.replace("</robot>", "<a>" * 100 + "</a>" * 100 + "</robot>"), "more than 64 levels"),
         (URDF.replace("</robot>", "<a/>" * 50_001 + "</robot>"), "more than 50000 elements"),
         (URDF.replace("</robot>", " " * 9_000_000 + "</robot>"), "more than 8388608 bytes"),
         (URDF.replace("</robot>", "".join(f'<link name="l{n}"/>' for n in range(MAX_LINKS)) + "</robot>"), "links"),
         (URDF.replace('name="arm"', 'name="base"', 1), "two links base"),
         (URDF.replace('<link name="arm">', "<link>"), "a link has no name"),
-        (URDF.replace("continuous", "floating"), "the joint turn is none of fixed"),
-        (URDF.replace('<child link="arm"/>', ""), "does not lead from one link to one other"),
-        (URDF.replace('<child link="arm"/>', '<child link="base"/>'), "hangs on itself"),
-        (URDF.replace("</robot>", '<link name="alone"/></robot>'), "not one tree"),
+        (URDF.replace("continuous", "floating"), "the type of the joint turn is not one of fixed"),
+        (URDF.replace('<child link="arm"/>', ""), "does not connect one parent link to another child link"),
+        (URDF.replace('<child link="arm"/>', '<child link="base"/>'), "its own ancestor"),
+        (URDF.replace("</robot>", '<link name="alone"/></robot>'), "do not form one tree"),
         (URDF.replace("</robot>", "".join(f"<p{n}:a/>" for n in range(99)) + "</robot>"), "99 prefixes"),
         (URDF.replace('value="1"', 'value="nan"', 1), "is not a number"),
         (URDF.replace('value="1"', 'value="1e400"', 1), "is not a number"),
         (URDF.replace('value="1"', 'value="-1"', 1), "is negative"),
         (URDF.replace('value="1"', "", 1), "a `mass` has no `value`"),
         (URDF.replace('xyz="0 0 1"', 'xyz="0 0"'), "is not 3 numbers"),
-        (with_mesh("/etc/hostname"), "lies outside"),
-        (with_mesh("file:///etc/hostname"), "lies outside"),
-        (with_mesh("../outside.stl"), "lies outside"),
-        (with_mesh("package://../outside.stl"), "lies outside|no mesh file"),
-        (with_mesh("package://m/../outside.stl"), "lies outside"),
-        (with_mesh("link.stl"), "lies outside"),
+        (with_mesh("/etc/hostname"), "is outside"),
+        (with_mesh("file:///etc/hostname"), "is outside"),
+        (with_mesh("../outside.stl"), "is outside"),
+        (with_mesh("package://../outside.stl"), "is outside|no mesh file"),
+        (with_mesh("package://m/../outside.stl"), "is outside"),
+        (with_mesh("link.stl"), "is outside"),
         (with_mesh("pipe.stl"), "no mesh file"),
         (with_mesh("a\x01.stl"), "cannot be read"),
         (with_mesh("nowhere.stl"), "no mesh file"),
-        (with_mesh("two.urdf"), r"it is none of \.stl"),
+        (with_mesh("two.urdf"), r"file type is not one of \.stl"),
     ],
 )  # fmt: skip
 def test_a_urdf_that_cannot_be_relied_on_is_refused(tmp_path: Path, urdf: str, said: str) -> None:
@@ -74,12 +74,12 @@ def test_a_urdf_that_cannot_be_relied_on_is_refused(tmp_path: Path, urdf: str, s
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("urdf: {file: ../outside.urdf}", r"\.\./outside\.urdf lies outside the model folder"),
-        ("urdf: {file: /etc/hostname}", "/etc/hostname lies outside the model folder"),
-        ("urdf: {file: link.urdf}", r"link\.urdf lies outside the model folder"),
-        ("urdf: {file: two.urdf, collision_file: ../outside.urdf}", "lies outside the model folder"),
-        ("urdf: {file: two.urdf}\ncollisions: {srdf: {file: ../outside.urdf}}", "lies outside the model folder"),
-        ("urdf: {file: two.urdf}\ncollisions: {srdf: {file: bad.srdf}}", "lacks `link1` or `link2`"),
+        ("urdf: {file: ../outside.urdf}", r"\.\./outside\.urdf is outside the model folder"),
+        ("urdf: {file: /etc/hostname}", "/etc/hostname is outside the model folder"),
+        ("urdf: {file: link.urdf}", r"link\.urdf is outside the model folder"),
+        ("urdf: {file: two.urdf, collision_file: ../outside.urdf}", "is outside the model folder"),
+        ("urdf: {file: two.urdf}\ncollisions: {srdf: {file: ../outside.urdf}}", "is outside the model folder"),
+        ("urdf: {file: two.urdf}\ncollisions: {srdf: {file: bad.srdf}}", "no `link1` or no `link2`"),
         ("urdf: {file: two.urdf}\ncollisions: {srdf: {file: bomb.srdf}}", "the SRDF cannot be read: .*document type"),
     ],
 )
@@ -96,21 +96,21 @@ def test_a_document_names_only_files_of_its_folder(tmp_path: Path, line: str, sa
 
 def test_the_licence_is_a_file_of_the_folder(tmp_path: Path) -> None:
     name = written(tmp_path / "m", robot=ROBOT.replace("CC0-1.0, file: two.urdf", "CC0-1.0, file: /etc/hostname"))
-    with pytest.raises(CellError, match="/etc/hostname lies outside the model folder"):
+    with pytest.raises(CellError, match="/etc/hostname is outside the model folder"):
         robot_model(name, gripper=None)
 
 
 MESHES: dict[str, tuple[str, Callable[[], bytes], str]] = {
-    "short": ("a.stl", lambda: b"x" * 20, "no STL file"),
-    "says more": ("a.stl", lambda: stl(2, said=2**31), "says that it has 2147483648 triangles"),
-    "says less": ("a.stl", lambda: stl(2, said=1), "says that it has 1 triangles"),
+    "short": ("a.stl", lambda: b"x" * 20, "not an STL file"),
+    "says more": ("a.stl", lambda: stl(2, said=2**31), "states 2147483648 triangles"),
+    "says less": ("a.stl", lambda: stl(2, said=1), "states 1 triangles"),
     "too many": ("a.stl", lambda: stl(MAX_TRIANGLES + 1), "more than 1000000"),
     "polygons": ("a.obj", lambda: b"f" + b" 1" * (3 * MAX_TRIANGLES + 1), "more than 1000000 triangles"),
     "materials": ("a.obj", lambda: b"mtllib ../../secret.mtl\n", "materials outside"),
     "laughs": ("a.dae", lambda: (BOMB + "<COLLADA/>").encode(), "document type"),
     "hidden": ("a.dae", lambda: (BOMB + "<COLLADA/>").encode("utf-16"), "document type"),
     "no text": ("a.dae", lambda: b"<a>\xff\xfe</a>", "utf-8"),
-    "blend": ("a.blend", lambda: b"", "is none of"),
+    "blend": ("a.blend", lambda: b"", "is not one of"),
 }
 
 

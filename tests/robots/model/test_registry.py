@@ -71,8 +71,8 @@ def test_without_a_tool_the_tool_centre_point_is_the_flange() -> None:
 @pytest.mark.parametrize(
     ("name", "gripper", "words"),
     [
-        ("ur01", None, "no robot model is called ur01 .did you mean ur10"),
-        ("panda", "robotiq_2f_85", "no gripper model is called robotiq_2f_85 .did you mean robotiq_2f85"),
+        ("ur01", None, "there is no robot model ur01 .did you mean ur10"),
+        ("panda", "robotiq_2f_85", "there is no gripper model robotiq_2f_85 .did you mean robotiq_2f85"),
         ("./nowhere", None, "there is no robot.yaml in nowhere"),
     ],
 )

@@ -98,7 +98,7 @@ def test_a_line_that_is_too_fast_names_joint_time_and_limit_and_the_time_it_asks
     ("move", "words"),
     [
         ((0.5, 0.0, 0.0), "singularity"),
-        ((-0.4, 0.0, 0.0), "panda_joint2 would have to go to"),
+        ((-0.4, 0.0, 0.0), "panda_joint2 would leave its range"),
     ],
 )
 def test_a_line_that_cannot_be_followed_says_why(move: tuple[float, float, float], words: str) -> None:

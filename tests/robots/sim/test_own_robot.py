@@ -72,5 +72,5 @@ def test_what_is_wrong_with_it_is_said_when_the_cell_is_opened(
 def test_a_calibration_beside_the_cell_is_applied(cell_file: Path) -> None:
     """And one for an arm that knows none is refused."""
     cell_file.write_text(cell_file.read_text().replace("driver: sim", "driver: sim\n    calibration: ./mine.yaml"))
-    with pytest.raises(CellError, match="lifter knows no calibration files"):
+    with pytest.raises(CellError, match="lifter does not support calibration files"):
         run_virtual(story(cell_file))

@@ -218,7 +218,7 @@ def test_a_reflex_at_any_instant_keeps_the_limits_and_ends_at_rest(cell: CellMod
                 break
             arm.step()
         assert (arm.ends[-1].end, arm.control.reflex) == ("failed", True)
-        assert arm.ends[-1].reason.startswith("the tool feels")
+        assert arm.ends[-1].reason.startswith("external force limit exceeded")
         assert np.abs(arm.control.state.velocity).max() < REST_RAD_S
         arm.simulation.apply(RecoverArm(arm="left"))
         arm.step()

@@ -96,7 +96,7 @@ def test_a_smaller_image_looks_along_the_middle_of_the_pixels_that_it_stands_for
 
 
 def test_a_camera_cannot_look_at_itself_nor_have_an_empty_range() -> None:
-    with pytest.raises(CellError, match="camera top: a camera cannot look at where it stands"):
+    with pytest.raises(CellError, match="camera top: `look_at` is the position of the camera itself"):
         camera_of("top", DepthCamera(at=(1.0, 0.0, 0.0), look_at=(1.0, 0.0, 0.0)))
     with pytest.raises(CellError, match="camera top: the range from 2 to 1 m is empty"):
         camera_of("top", DepthCamera(at=(1.0, 0.0, 0.0), look_at=(0.0, 0.0, 0.0), range_m=(2.0, 1.0)))
@@ -106,5 +106,5 @@ def test_an_image_with_too_few_bytes_is_none() -> None:
     lens = CameraIntrinsics(width_px=4, height_px=2, fx_px=1.0, fy_px=1.0, cx_px=0.0, cy_px=0.0)
     pose = optical_frame_pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
     image = DepthImage(time_s=0.0, camera="top", intrinsics=lens, pose=pose, depth_m=b"1234")
-    with pytest.raises(CellError, match="4 bytes are no image of 4 x 2 pixels"):
+    with pytest.raises(CellError, match="4 bytes are not an image of 4 x 2 pixels"):
         depths(image)

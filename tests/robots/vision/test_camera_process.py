@@ -78,7 +78,7 @@ def test_what_the_process_sees_is_what_is_there() -> None:
             process.end()
 
     words, empty, full = asyncio.run(main())
-    assert words == "by rays, in smaller images"
+    assert words == "by ray casting, at reduced resolution"
     assert empty == 0
     assert full > 100
 
@@ -150,7 +150,7 @@ def test_garbage_from_the_process_loses_it_in_words(garbage: bytes) -> None:
         loop = asyncio.get_running_loop()
         _, wire = await loop.create_connection(lambda: CameraConnection(lambda: "it is gone"), sock=ours)
         theirs.sendall(garbage)
-        with pytest.raises(RobotError, match="cannot be read"):
+        with pytest.raises(RobotError, match="sent an invalid message"):
             await wire.opened
         theirs.close()
 

@@ -30,8 +30,8 @@ BLOCK = block((0.5, 0.0, 0.2), (0.4, 0.3, 0.4))
 def seen_by(camera: DepthCamera, *blocks: object) -> DepthImage:
     """Return the image of a camera above the block."""
     what = scene(BLOCK)
-    eye = CameraRig(sight(what, *cameras(front=camera)), repeatable=True)
-    return eye.look(look(what)).images[0]
+    rig = CameraRig(sight(what, *cameras(front=camera)), repeatable=True)
+    return rig.look(look(what)).images[0]
 
 
 def test_a_block_at_a_known_place_is_measured_to_a_millimetre() -> None:
@@ -80,8 +80,8 @@ def test_an_unknown_way_to_make_images_is_refused(monkeypatch: pytest.MonkeyPatc
 
 def test_an_arm_is_seen_where_the_physics_has_it() -> None:
     what = scene(arms=(PANDA,))
-    eye = CameraRig(sight(what, *cameras(front=FRONT)), repeatable=True)
-    points = points_seen(eye.look(look(what)).images[0])
+    rig = CameraRig(sight(what, *cameras(front=FRONT)), repeatable=True)
+    points = points_seen(rig.look(look(what)).images[0])
     arm = points[points[:, 2] > 0.02]
     # The Panda at home reaches 0.31 m ahead with its flange, and its elbow is below 0.9 m.
     assert len(arm) > 100
@@ -106,9 +106,9 @@ what = scene(BLOCK, arms=(PANDA,))
 seen = []
 for kind in ("egl", "rays"):
     os.environ["FLEXCELL_DEPTH"] = kind
-    eye = CameraRig(sight(what, *cameras(front=ABOVE)), repeatable=True)
-    seen.append(depths(eye.look(look(what)).images[0]))
-    eye.close()
+    rig = CameraRig(sight(what, *cameras(front=ABOVE)), repeatable=True)
+    seen.append(depths(rig.look(look(what)).images[0]))
+    rig.close()
 both = np.isfinite(seen[0]) & np.isfinite(seen[1])
 error = np.abs(seen[0] - seen[1])[both]
 print(json.dumps([float(both.mean()), float(np.quantile(error, 0.95)), float((error > 0.01).mean())]))

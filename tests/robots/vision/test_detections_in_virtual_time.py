@@ -209,7 +209,7 @@ def test_labels_of_parts_that_are_not_there_are_refused_with_the_nearest_name(tm
         async with OpenCell(cell_with(tmp_path, detect="{labels: {cub: front}}")):
             pass
 
-    with pytest.raises(CellError, match=r"label for cub, which is no part of the cell.*did you mean cube"):
+    with pytest.raises(CellError, match=r"label for cub, which is not a part of the cell.*did you mean cube"):
         run_virtual(main())
 
 

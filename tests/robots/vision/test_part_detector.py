@@ -133,5 +133,5 @@ def test_noise_has_its_size_and_depends_on_camera_part_frame_and_seed_alone() ->
 
 
 def test_a_camera_without_a_detector_says_so() -> None:
-    with pytest.raises(CellError, match="top detects nothing"):
+    with pytest.raises(CellError, match="top has no detector"):
         found(scene(parts=(PART,)), camera(detect=None))

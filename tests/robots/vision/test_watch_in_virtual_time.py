@@ -183,7 +183,7 @@ def test_the_map_is_stale_before_the_first_image_and_long_after_the_last(tmp_pat
         return reasons
 
     first, seeing, later, again = run_virtual(main())
-    assert first == "the cameras have not seen anything yet"
+    assert first == "no camera image yet"
     assert later.startswith("the newest image is 3")
     assert (seeing, again) == ("", "")
 
@@ -224,7 +224,7 @@ def test_an_earlier_state_of_the_world_makes_the_map_stale(tmp_path: Path) -> No
             return restored, cameras.stale_reason
 
     restored, later = run_virtual(main())
-    assert "brought back to an earlier state" in restored
+    assert "restored to an earlier state" in restored
     assert later == ""
 
 

@@ -34,7 +34,7 @@ def test_a_singular_posture_is_named(name: str, joints: Array, kind: str) -> Non
     """By the geometry of its family."""
     posture = InverseKinematicsSolver(arm(name)).posture(joints)
     assert (posture.singular, posture.kind) == (True, kind)
-    assert posture.words.startswith(f"next to its {kind} singularity (dexterity 0.0")
+    assert posture.words.startswith(f"near its {kind} singularity (dexterity 0.0")
 
 
 @pytest.mark.parametrize(("name", "third"), [("ur10", 1.5), ("irb4600", -0.8)])
@@ -68,7 +68,7 @@ def test_a_singular_panda_says_what_its_tool_can_hardly_do() -> None:
     """Its family has no names for its singularities."""
     posture = InverseKinematicsSolver(arm("panda")).posture(np.array([0.0, 0.0, np.pi / 2, -1.5, 0.3, 1.0, 0.0]))
     assert (posture.singular, posture.kind) == (True, "")
-    assert posture.words.startswith("next to a singularity (dexterity 0.003)")
+    assert posture.words.startswith("near a singularity (dexterity 0.003)")
     assert "the tool can hardly move along (" in posture.words
 
 

@@ -132,7 +132,7 @@ def test_uneven_samples_with_a_gap_are_learned() -> None:
 
 def test_a_whole_turn_of_the_tool_is_refused() -> None:
     """There the way to the goal is not defined."""
-    with pytest.raises(RobotError, match="in the recording, which one primitive cannot say"):
+    with pytest.raises(RobotError, match="in the recording, which one primitive cannot represent"):
         learn_cart_dmp(led_tool(1, turn_rad=7.0).recorded)
 
 

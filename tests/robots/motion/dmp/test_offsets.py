@@ -76,8 +76,8 @@ def test_a_constant_force_is_the_same_at_every_phase() -> None:
 @pytest.mark.parametrize(
     ("phase", "added", "words"),
     [
-        (PHASE, np.zeros((3, 6)), "are no record"),
-        (np.zeros(0), np.zeros((0, 6)), "are no record"),
+        (PHASE, np.zeros((3, 6)), "are not a record"),
+        (np.zeros(0), np.zeros((0, 6)), "are not a record"),
         (PHASE, np.full((len(PHASE), 6), np.nan), "not finite"),
     ],
 )

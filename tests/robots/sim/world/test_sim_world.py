@@ -101,7 +101,7 @@ async def test_a_second_motion_is_refused_while_one_runs(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
         arm.follow(smooth(HOME, HOME + 0.2, 1.0), tolerance=Tolerance())
-        with pytest.raises(RobotError, match="another motion is under way"):
+        with pytest.raises(RobotError, match="another motion is active"):
             arm.follow(smooth(HOME, HOME + 0.2, 1.0), tolerance=Tolerance())
 
 

@@ -16,7 +16,7 @@ from robots.sim.world.snapshot_codec import FORMAT, WorldImage, decode_snapshot,
 NUMBERS = np.arange(40.0) / 3.0
 GRIPS = {"left/gripper": GraspCommand(least_m=0.02, most_m=0.04, force_n=20.0)}
 SETTINGS = {"left": ArmSettings(controller="cartesian_impedance", load_kg=2.0, collision_force_n=20.0)}
-REFLEXES = {"left": "the tool feels 31.0 N from outside, its threshold is 20 N"}
+REFLEXES = {"left": "external force limit exceeded: 31.0 N > 20 N at the tool"}
 OUTPUTS = {"left": (True, False)}
 IMAGE = WorldImage.of(NUMBERS, GRIPS, SETTINGS, REFLEXES, OUTPUTS)
 SNAPSHOT = encode_snapshot(IMAGE, model="m")
@@ -56,7 +56,7 @@ def test_another_simulator_is_refused() -> None:
 
 @pytest.mark.parametrize("numbers", [np.zeros(39), np.full(40, np.nan)])
 def test_a_world_that_cannot_be_is_refused(numbers: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
-    assert "a world that cannot be" in refusal(encode_snapshot(WorldImage.of(numbers, {}, {}, {}, {}), model="m"))
+    assert "an invalid world state" in refusal(encode_snapshot(WorldImage.of(numbers, {}, {}, {}, {}), model="m"))
 
 
 @given(st.binary(max_size=400))
