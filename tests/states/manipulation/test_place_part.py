@@ -66,7 +66,7 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
         ({"move_free": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
-        ({"check_collision": AT_CRATE}, "blocked", "there, arm/finger with crate would touch"),
+        ({"check_collision": AT_CRATE}, "blocked", "at the target, arm/finger with crate would touch"),
         (
             {"check_collision": touching("crate", "block", 0.015)},
             "blocked",
@@ -98,5 +98,5 @@ async def test_a_part_that_is_lost_on_the_way_is_not_put_down() -> None:
 
 def test_a_direction_of_no_length_is_refused_with_the_document() -> None:
     given = {"robot": "arm", "part": "block", "target": {"entry": "place"}, "approach": [0, 0, 0]}
-    with pytest.raises(msgspec.ValidationError, match="`approach` is no direction"):
+    with pytest.raises(msgspec.ValidationError, match="`approach` must not be a zero vector"):
         msgspec.convert(given, PlacePart)

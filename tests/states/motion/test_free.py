@@ -124,7 +124,7 @@ async def test_a_planner_that_finds_nothing_is_no_planner_that_is_gone(end: Acti
     assert told.name == outcome
     assert list(told.outputs) == ["reason"]
     assert told.cause is not None
-    assert told.cause.message.startswith("no way of arm to pose (1.000, 0.000, 0.000) m was planned: plan_motion was")
+    assert told.cause.message.startswith("no path of arm to pose (1.000, 0.000, 0.000) m was planned: plan_motion was")
 
 
 async def test_a_plan_is_executed_as_it_is_and_with_its_speed() -> None:

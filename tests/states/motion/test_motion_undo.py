@@ -102,5 +102,5 @@ async def test_a_way_back_that_fails_says_why() -> None:
     ctx = FakeContext(
         {"left/joint_trap_vel": broken_off("aborted", Cause(message="it touched the tray", where="left"))}
     )
-    with pytest.raises(StateError, match=r"left did not get back to where its motion began.*it touched the tray"):
+    with pytest.raises(StateError, match=r"left did not return to the start of its motion.*it touched the tray"):
         await JOINTS.undo(ctx, JOINTS_DONE)
