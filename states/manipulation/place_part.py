@@ -31,7 +31,7 @@ class PlacePart(State, frozen=True, kw_only=True):
     """Move collision-free to the pre-approach pose and straight to the target, open the tool, and retreat straight.
 
     With `target_of: part` the part itself ends at the target, however the tool holds it. Over the last 5 mm of the
-    line the part may touch what it is placed on; a deeper or earlier contact is `blocked` before it happens, and the
+    line the part may touch what it is placed on; a deeper or earlier contact is `blocked` in advance, and the
     `reason` names both bodies. `missed` when the part is lost on the path; `unreachable` and `blocked` as in
     `manipulation.PickPart`, with the part still held. Afterwards the load of the arm is 0 kg.
     """
