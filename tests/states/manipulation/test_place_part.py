@@ -1,4 +1,4 @@
-"""Putting a part down: the order of things, where the tool goes, and how every way of not getting there ends."""
+"""Placing a part: the order of the steps, the poses of the tool, and each failure outcome."""
 
 from __future__ import annotations
 
@@ -82,11 +82,11 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
 async def test_every_way_of_not_getting_there_has_its_outcome_and_reason(
     changed: dict[str, object], outcome: str, reason: str
 ) -> None:
-    told = await PLACE.run(cell(**changed))
-    assert told.name == outcome
-    assert reason in str(told.outputs["reason"])
-    assert told.cause is not None
-    assert told.cause.message == "arm did not place part block"
+    result = await PLACE.run(cell(**changed))
+    assert result.name == outcome
+    assert reason in str(result.outputs["reason"])
+    assert result.cause is not None
+    assert result.cause.message == "arm did not place part block"
 
 
 async def test_a_part_that_is_lost_on_the_way_is_not_put_down() -> None:
