@@ -56,26 +56,26 @@ class _Truncation:
     def _object(self, pairs: Iterable[tuple[str, object]], count: int, depth: int) -> object:
         if depth >= MAX_DEPTH:
             return f"… {count} fields"
-        made: dict[str, object] = {}
+        kept: dict[str, object] = {}
         for key, each in islice(pairs, MAX_ITEMS):
             if self._left <= 0:
                 break
-            made[key] = self.of(each, depth + 1)
-        if len(made) < count:
-            made["…"] = f"{count - len(made)} more"
-        return made
+            kept[key] = self.of(each, depth + 1)
+        if len(kept) < count:
+            kept["…"] = f"{count - len(kept)} more"
+        return kept
 
     def _list(self, items: Iterable[object], count: int, depth: int) -> object:
         if depth >= MAX_DEPTH:
             return f"… {count} items"
-        made: list[object] = []
+        kept: list[object] = []
         for each in islice(items, MAX_ITEMS):
             if self._left <= 0:
                 break
-            made.append(self.of(each, depth + 1))
-        if len(made) < count:
-            made.append(f"… {count - len(made)} more")
-        return made
+            kept.append(self.of(each, depth + 1))
+        if len(kept) < count:
+            kept.append(f"… {count - len(kept)} more")
+        return kept
 
 
 def _plain(value: object) -> object:

@@ -61,11 +61,11 @@ class DetectionLayer:
     def draw(self, newest: LatestMessages) -> None:
         """Draw the changes."""
         several = len(newest.detections) > 1
-        for row, (name, found) in enumerate(newest.detections.items()):
+        for row, (name, detections) in enumerate(newest.detections.items()):
             if name not in self._cameras:
                 self._cameras[name] = _Boxes(self._server, f"{self._root}/{name}", row=row)
             by = f" · {name}" if several else ""
-            self._cameras[name].draw(found if is_fresh(found, newest.frames) else None, by=by)
+            self._cameras[name].draw(detections if is_fresh(detections, newest.frames) else None, by=by)
 
 
 @dataclass(frozen=True)
@@ -90,28 +90,28 @@ class _Boxes:
         self._drawn: tuple[Detections | None, str] = (None, "")
         self._boxes: dict[str, _Box] = {}
 
-    def draw(self, found: Detections | None, *, by: str) -> None:
+    def draw(self, detections: Detections | None, *, by: str) -> None:
         """Draw exactly these detections; `by` is appended to each label."""
-        if found is self._drawn[0] and by == self._drawn[1]:
+        if detections is self._drawn[0] and by == self._drawn[1]:
             return
-        self._drawn = (found, by)
+        self._drawn = (detections, by)
         with self._server.atomic():
             drawn: set[str] = set()
-            for detection in found.detections if found is not None else ():
+            for detection in detections.detections if detections is not None else ():
                 name = _free_name(detection.label, drawn)
                 drawn.add(name)
-                assert found is not None
-                self._place(name, found, detection, by=by)
+                assert detections is not None
+                self._place(name, detections, detection, by=by)
             for name in self._boxes.keys() - drawn:
                 self._boxes.pop(name).remove()
 
-    def _place(self, name: str, found: Detections, detection: Detection, *, by: str) -> None:
+    def _place(self, name: str, detections: Detections, detection: Detection, *, by: str) -> None:
         box = self._boxes.get(name)
         if box is None or box.size_m != detection.size_m:
             if box is not None:
                 box.remove()
             box = self._boxes[name] = self._new(name, detection)
-        pose = found.in_world(detection)
+        pose = detections.in_world(detection)
         box.frame.position, box.frame.wxyz = pose.xyz, wxyz(pose.xyzw)
         x, y, _ = pose.xyz
         top_m = max(z for _, _, z in msgspec.structs.replace(detection, pose=pose).vertices_m)

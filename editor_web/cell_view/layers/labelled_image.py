@@ -27,7 +27,7 @@ def label_text(label: str, score: float) -> str:
     return f"{label} {score:.2f}"
 
 
-def draw_labels(shades: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
+def draw_labels(shades: NDArray[np.uint8], detections: Detections) -> NDArray[np.uint8]:
     """Return the image (rows x columns x 3), enlarged if small, with a rectangle around each detection.
 
     Detections without a rectangle are omitted.
@@ -36,10 +36,10 @@ def draw_labels(shades: NDArray[np.uint8], found: Detections) -> NDArray[np.uint
     picture = Image.fromarray(np.repeat(np.repeat(shades, scale, axis=0), scale, axis=1))
     draw, font = ImageDraw.Draw(picture), ImageFont.load_default(_FONT_PX)
     # The best detections are first in the list and drawn on top.
-    for detection in reversed(found.detections):
+    for detection in reversed(detections.detections):
         if detection.rectangle_px is None:
             continue
-        box = _scaled(detection.rectangle_px, found.image_px, picture.size)
+        box = _scaled(detection.rectangle_px, detections.image_px, picture.size)
         colour = colour_of_name(detection.label)
         draw.rectangle(box, outline=colour, width=_LINE_PX)
         text = label_text(detection.label, detection.score)
