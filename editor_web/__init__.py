@@ -1,7 +1,7 @@
-"""The browser side: a FastAPI application that shows behaviors, runs them and draws the cell.
+"""The dashboard: a FastAPI application that shows and runs behaviors and draws the cell.
 
-It stands on `engine` alone: `backend` names what it asks for, `app` serves it, `live` streams it,
-`cell_view` draws it, and `frontend/` is the page (built into `static/`).
+It depends on `engine` alone: `contracts.backend` declares the interface to the engine, `app` serves it, `live` streams
+it, `cell_view` draws it, and `frontend/` is the page (built into `static/`).
 """
 
 from editor_web.app import new_app

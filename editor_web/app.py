@@ -1,4 +1,4 @@
-"""The FastAPI application: routes, error answers and the lifetime of hub and cell view, behind the gate."""
+"""The FastAPI application: routes, error responses, lifetime of hub and cell view, behind the security middleware."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ from engine.stop import StopEndpoint
 _TITLE = "flexcell"
 STATIC = Path(__file__).parent / "static"
 _ERROR = {"content": {"application/json": {"schema": {"$ref": f"#/components/schemas/{ErrorBody.__name__}"}}}}
-# Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none. By reference,
-# as a model would be built for each status of each route.
+# Error responses of every route: refusals of the security middleware, and malformed requests. By reference, because a
+# model would be built for each status of each route.
 _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
     (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
 )
@@ -85,14 +85,14 @@ def new_app(
 
     Args:
         backend: The engine.
-        access: The tokens that open it.
-        hosts: Values of the Host header to answer to, with port, in lower case.
-        port: Our own port.
+        access: The access tokens.
+        hosts: Accepted values of the Host header, with port, in lower case.
+        port: Port of this server.
         cell_view: The 3D view; opened and closed with the application.
         static: Folder of the built page.
-        stop: Where an operator's page sends STOP, beside here.
-        sessions: The sessions of browsers; without it, sessions in memory only.
-        capacity: Requests and websockets served at once; an operator's commands are served beyond it.
+        stop: Additional endpoint to which an operator's page sends STOP.
+        sessions: Login sessions of browsers; None keeps them in memory only.
+        capacity: Maximum number of concurrent requests and websockets; an operator's commands are exempt.
         view_port: Port of the 3D view's own origin, under the same host names; None without a 3D view.
     """
     if sessions is None:
@@ -129,7 +129,7 @@ def new_app(
 
 
 def api() -> FastAPI:
-    """Return the application without its parts; enough to describe the HTTP interface."""
+    """Return the application without its services; sufficient to describe the HTTP interface."""
     app = FastAPI(
         title=_TITLE,
         version=_version(),
@@ -148,15 +148,15 @@ def api() -> FastAPI:
 
 @cache
 def openapi() -> dict[str, Any]:
-    """Return the description of the HTTP interface, to be read only. The first call builds all routes."""
+    """Return the OpenAPI description of the HTTP interface; read-only. The first call builds all routes."""
     return get_openapi(title=_TITLE, version=_version(), routes=_routes())
 
 
 @cache
 def _routes() -> list[BaseRoute]:
-    """Return all routes; what is built of them at their first use is built once in a process."""
+    """Return all routes; they are built on first use, once per process."""
     router = APIRouter(responses=_REFUSALS)
-    # `relations` before `documents`, whose ids take any address.
+    # `relations` before `documents`, whose ids match any address.
     for module in (
         session,
         breakpoints,
@@ -194,7 +194,7 @@ def _version() -> str:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     services: Services = app.state.services
-    # Routes are built at first use, which would hold the event loop for a second while arms move.
+    # Routes are built on first use, which would block the event loop for a second while arms move.
     await asyncio.to_thread(openapi)
     services.hub.open()
     await services.hub.robots.open()
@@ -224,7 +224,7 @@ async def _refused(request: Request, error: Exception) -> JSONResponse:
     if not isinstance(error, FlexcellError):
         raise error
     where = "" if error.where is None else str(error.where)
-    # A command that the run does not allow now is no mistake in the request.
+    # The request is valid, but the run does not allow the command now.
     status = 409 if isinstance(error, ControlError) else 422
     hint = error.hint or ""
     if isinstance(error, ResumeDecisionRequired):

@@ -1,8 +1,8 @@
-"""Writes what crosses the border to the browser: `openapi.json`, and the page's TypeScript types.
+"""Generates the interface to the browser: `openapi.json`, and the page's TypeScript types.
 
     python -m editor_web.schema
 
-Both files are committed; a test compares them with what this module makes.
+Both files are committed; a test compares them with the output of this module.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ OPENAPI = HERE / "openapi.json"
 TYPES = HERE / "frontend" / "src" / "api" / "types.ts"
 Schema = dict[str, Any]
 _SIMPLE = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
-# Of the framework, or for the command line only.
+# Schemas of the framework, or for the command line only.
 _SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody", "BusMessageBody"}
 
 
 def openapi() -> str:
-    """Return the description of the HTTP interface, version left out as it changes with each release."""
+    """Return the OpenAPI description of the HTTP interface, without the version, which changes with each release."""
     described = app.openapi()
     document = {**described, "info": {**described["info"], "version": "1"}}
     return json.dumps(document, indent=2, sort_keys=True) + "\n"
@@ -99,7 +99,7 @@ def _interface(name: str, schema: Schema) -> str:
         lines.append(f"/** {text} */")
     lines.append(f"export interface {name} {{")
     for key, value in schema.get("properties", {}).items():
-        # What the server sends is always complete; what the page sends may leave defaults out.
+        # The server always sends complete bodies; the page may omit defaults.
         optional = "?" if key not in required and name in _SENT else ""
         lines.append(f"  readonly {key}{optional}: {_type(value)}")
     lines.append("}\n")

@@ -1,4 +1,4 @@
-"""The dashboard as a running server: binds loopback, prints nothing, tells its log-in address."""
+"""The dashboard as a running server: binds loopback, prints nothing, provides its login address."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from engine.stop import StopRelay
 STOP_LIMIT_S = 3
 PING_S = 5.0
 SILENCE_S = 12.0
-"""A websocket that answers no ping of the protocol for longer is closed, whatever it is for."""
+"""A websocket that does not answer protocol pings for longer is closed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Dashboard:
-    """A running server: `url` is the page, `token` the operator's; `view_port` is the 3D view's, where there is one."""
+    """A running server: `url` is the page, `token` the operator token, `view_port` the 3D view's port if it has one."""
 
     url: str
     token: str = field(repr=False)
@@ -41,12 +41,12 @@ class Dashboard:
     sessions: LoginSessions = field(repr=False)
 
     def new_login_url(self, role: Role = OPERATOR) -> str:
-        """Return an address that logs a browser in, once."""
+        """Return a single-use login address for a browser."""
         return f"{self.url}login?t={self.sessions.new_link(role)}"
 
 
 class _Server(uvicorn.Server):
-    """uvicorn without its signal handlers, as Ctrl-C belongs to whoever runs the cell, and with our own acceptor."""
+    """uvicorn without signal handlers, as the owner of the cell handles Ctrl-C, and with a custom acceptor."""
 
     def __init__(self, config: uvicorn.Config, listeners: Sequence[socket.socket], *, limit: int) -> None:
         super().__init__(config)
@@ -55,7 +55,7 @@ class _Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Generator[None, None, None]:
-        """Leave the process's signal handlers alone."""
+        """Keep the process's signal handlers."""
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -100,18 +100,18 @@ async def dashboard(
 
     Args:
         backend: The engine.
-        token_file: Where the log-in tokens are kept; made when missing. Sessions are kept beside it.
+        token_file: File of the access tokens; created if missing. Sessions are stored beside it.
         host: A loopback address or name.
-        port: TCP port; 0 takes a free one.
-        view_port: TCP port of the 3D view's own origin; 0 takes a free one.
+        port: TCP port; 0 chooses a free one.
+        view_port: TCP port of the 3D view's own origin; 0 chooses a free one.
         cell_view: Whether to draw the cell in 3D.
         shadows: Whether the 3D view casts shadows.
         static: Folder of the built page.
-        relay: Takes STOP from the page where this server does not answer.
-        max_connections: Connections at once; as many as the open files allow by default.
+        relay: Receives STOP from the page if this server does not respond.
+        max_connections: Maximum number of connections; by default as many as the open-file limit allows.
 
     Raises:
-        FlexcellError: The host is not loopback, the port is taken, or the token file cannot be used.
+        FlexcellError: the host is not loopback, the port is in use, or the token file cannot be used.
     """
     access = load_access_tokens(token_file)
     sessions = LoginSessions(file=token_file.with_name("sessions"), tokens=access.fingerprint())
@@ -183,7 +183,7 @@ async def serve(
     relay: StopRelay | None = None,
     on_ready: Callable[[Dashboard], None],
 ) -> None:
-    """Serve the page until cancelled; `on_ready` is told the address once it answers."""
+    """Serve the page until cancelled; `on_ready` is called with the dashboard when it is ready."""
     raise_descriptor_limit()
     async with dashboard(
         backend, token_file=token_file, host=host, port=port, view_port=view_port, relay=relay
@@ -193,7 +193,7 @@ async def serve(
 
 
 async def _started(server: uvicorn.Server, serving: asyncio.Task[None]) -> None:
-    # uvicorn offers no event for this; its own flag is all there is.
+    # uvicorn provides no event for this, only a flag.
     while not server.started:
         if serving.done():
             await serving

@@ -1,6 +1,6 @@
-"""What a behavior can do: the standard states by name. A state sees the engine only.
+"""The standard states by name. A state depends on the engine only.
 
-`CATALOGUE` is what the entry point `flexcell.states` offers; a new state is added to the list here.
+The entry point `flexcell.states` exports `CATALOGUE`; add a new state to the list here.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Asks a service of a device and turns its refusal into an outcome that a behavior can handle."""
+"""Calls a service of a device and turns its refusal into an outcome that a behavior can handle."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from engine.state import Context, Outcome
 
 
 async def call_or_fail(ctx: Context, request: Service[Any], *, to: str, done: str, what: str, kind: str) -> Outcome:
-    """Return the outcome `done`, or `failed` with the reason where the device refuses or cannot do it.
+    """Return the outcome `done`, or `failed` with the reason if the device refuses or fails.
 
     Args:
         ctx: The state's context.
-        request: What is asked.
-        to: The bus namespace that it is asked at.
-        done: The outcome when it was done.
-        what: What was not achieved if not, `left did not take a load of 1 kg`.
+        request: The service request.
+        to: The bus namespace of the service.
+        done: The outcome on success.
+        what: The message on failure, `left does not compensate a load of 1.00 kg`.
         kind: The name of the state.
 
     Raises:
-        NoSuchSkill: nothing answers there: a mistake of the behavior or the cell.
+        NoSuchSkill: no such service: a mistake of the behavior or the cell.
     """
     address = f"{to}/{request.skill_name()}"
     try:

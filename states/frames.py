@@ -1,4 +1,4 @@
-"""Where parts and frames of a cell stand in the world."""
+"""Poses of the parts and frames of a cell in the world frame."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FRAMES_TOPIC = "cell/frames"
 
 
 async def part_in_world(ctx: Context, part: str) -> Pose | Cause:
-    """Return where a part of the cell lies now, by its newest measured pose, or why that is not known."""
+    """Return the latest measured pose of a part in the world, or the cause if it is unknown."""
     poses = (await ctx.latest(PARTS_TOPIC, PartPoses)).poses
     if part in poses:
         return poses[part]
@@ -22,10 +22,10 @@ async def part_in_world(ctx: Context, part: str) -> Pose | Cause:
 
 
 async def frame_in_world(ctx: Context, frame: str) -> Pose:
-    """Return where the frame of a body of the cell is now; that of the world is at its own origin.
+    """Return the current pose of a frame of the cell in the world; `world` gives the identity.
 
     Raises:
-        StateError: the cell shows no such frame.
+        StateError: the cell has no such frame.
     """
     if frame == WORLD:
         return Pose(xyz=(0.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Words the cause of a goal that did not succeed: who, which skill, how it ended, and why below it."""
+"""Builds the cause of a goal that did not succeed: who, which skill, its end status, and the device's cause."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: st
     """Return the cause chain of a failed goal.
 
     Args:
-        what: What was not achieved and by whom, `left did not reach joints entry home`.
+        what: The message, `left did not reach joints entry home`.
         goal: The goal that was sent.
-        end: How it ended; its cause goes below.
-        to: The bus namespace it was sent to.
+        end: The end of the goal; its cause is the inner cause of the chain.
+        to: The bus namespace that the goal was sent to.
         where: The path of the state.
         kind: The name of the state.
     """
@@ -34,5 +34,5 @@ def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: st
 
 
 def is_path_blocked(end: ActionEnd[Any]) -> bool:
-    """Tell whether a goal was refused because something of the planning scene is in its way."""
+    """Tell whether a goal was refused because the planning scene blocks its path."""
     return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

@@ -1,4 +1,4 @@
-"""How a device was before the goals of a state, as their results tell: where the undo of the state takes it back to."""
+"""Goals of an activation with their results, which hold the start state of the device that an undo restores."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ R = TypeVar("R")
 
 
 def accepted_goals(done: ActivationRecord, goal: type[Action[R, Any]]) -> Sequence[tuple[RequestRecord, R | None]]:
-    """Return the goals of one kind that a device took, the newest first, each with its result, None where unknown."""
+    """Return the accepted goals of one kind, newest first, each with its result; None if the result is unknown."""
     name = f"/{goal.skill_name()}"
     sent = (each for each in reversed(done.requests) if each.address.endswith(name) and each.status != "rejected")
     return [(each, _result(each, goal)) for each in sent]

@@ -1,4 +1,4 @@
-"""How states that hold something name the part that it is about."""
+"""The part name in the messages of states that grasp, hold or release."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Annotated
 
 from msgspec import Meta
 
-PartLabel = Annotated[str, Meta(description="The part it is about, as messages shall name it")]
+PartLabel = Annotated[str, Meta(description="Name of the part in messages")]
 
 
 def part_label(part: str) -> str:
-    """Name the part in a message, whether or not the behavior says which it is."""
+    """Return the part's name for a message, or `a part` if the behavior gives none."""
     return f"part {part}" if part else "a part"

@@ -1,8 +1,9 @@
-"""The 3D view of the cell: the only package that knows viser.
+"""The 3D view of the cell: the only package that depends on viser.
 
-`lock` starts viser behind a secret header, `view` is the open view, `follow` and `newest` hand it the messages
-of the bus. Each kind of thing is drawn by a module of its own; `groups` says what each page shows, `past_pages` draws
-for single pages what was at another time, `handles` are what somebody pulls at with the mouse.
+`rendering.viser_gateway` starts viser behind a secret header, `view` is the open view, `topic_subscriptions` and
+`rendering.latest_messages` provide the messages of the bus. `layers` has one module for each kind of object;
+`rendering.layer_groups` selects what each page shows, `past_view` draws past states for single pages, `handles` are
+drag handles for the mouse.
 """
 
 from editor_web.cell_view.handles import DragHandle, HandlePull

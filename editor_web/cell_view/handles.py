@@ -1,6 +1,6 @@
-"""Handles to pull at in the 3D view, each for one page whose person may operate.
+"""Drag handles in the 3D view, each for one page of an operator.
 
-A handle moves nothing by itself: it stands where its frame is, and tells how it is pulled.
+A handle does not move anything itself: it is drawn at its frame and reports how it is dragged.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _COLOUR = (37, 99, 235)
 
 @dataclass(frozen=True, kw_only=True)
 class HandlePull:
-    """How a handle is pulled: `pose` is where the mouse has it, in the world."""
+    """A drag of a handle: `pose` is the pose under the mouse, in the world."""
 
     phase: Literal["start", "update", "end"]
     pose: WorldPose
@@ -34,7 +34,7 @@ class HandlePull:
 
 @dataclass(frozen=True, kw_only=True)
 class DragHandle:
-    """A handle at a frame; `turns` where it can be turned too. `pulled` is called on viser's thread."""
+    """A handle at a frame; `turns` allows rotation. `pulled` is called on viser's thread."""
 
     frame: str
     turns: bool
@@ -56,8 +56,8 @@ class DragHandles:
     """The handles of all pages.
 
     Args:
-        server: Of the pages.
-        changed: Called, on any thread, when handles are to be placed.
+        server: The viser server of the pages.
+        changed: Called, on any thread, when handles need to be drawn.
     """
 
     def __init__(self, server: viser.ViserServer, *, changed: Callable[[], None]) -> None:
@@ -71,14 +71,14 @@ class DragHandles:
         server.on_client_disconnect(self._disconnected)
 
     def give(self, page: str, handle: DragHandle) -> None:
-        """Give a page this handle, instead of the one that it has."""
+        """Give a page this handle, instead of its previous one."""
         with self._lock:
             self._given[page] = handle
             self._frames = None
         self._changed()
 
     def take(self, page: str, handle: DragHandle) -> None:
-        """Take this handle away from a page, which may have got another one since."""
+        """Remove this handle from a page, unless the page has another one by now."""
         with self._lock:
             if self._given.get(page) is not handle:
                 return
@@ -87,7 +87,7 @@ class DragHandles:
         self._changed()
 
     def draw(self, newest: LatestMessages) -> None:
-        """Place the handles that nobody holds where their frames are."""
+        """Draw the handles that are not dragged at their frames."""
         with self._lock:
             if newest.frames is None or newest.frames is self._frames:
                 return
@@ -106,7 +106,7 @@ class DragHandles:
         if given is None or pose is None:
             return
         if client.control is None:
-            # Sent as one: viser sends a node as seen first, and a press before somebody listens to it is lost.
+            # Sent atomically: viser sends a node as visible first, and a press before the callback is set is lost.
             with client.handle.atomic():
                 client.control = _new_control(client, given, pose, self._pulled)
         elif not client.is_held and pose != client.placed:
@@ -114,12 +114,12 @@ class DragHandles:
         client.placed = pose
 
     def _pulled(self, client: _Client, given: DragHandle, pull: HandlePull) -> None:
-        """On viser's thread."""
+        """Handle a drag, on viser's thread."""
         with self._lock:
             if client.given is not given:
                 return
             client.is_held = pull.phase != "end"
-            # Let go, it stands at its frame again.
+            # After the release, it is drawn at its frame again.
             client.placed = None
             self._frames = None
         given.pulled(pull)
@@ -154,13 +154,13 @@ def _new_control(
     )
     scene.add_icosphere(f"{_NODE}/ball", radius=_BALL_M, color=_COLOUR, cast_shadow=False)
 
-    # A coroutine, because those are called in the order of what happened.
+    # A coroutine, because coroutines are called in the order of the events.
     async def on_update(event: viser.TransformControlsEvent) -> None:
         x, y, z = (float(value) for value in event.target.position)
         w, a, b, c = (float(value) for value in event.target.wxyz)
         pulled(client, given, HandlePull(phase=event.phase, pose=WorldPose(xyz=(x, y, z), xyzw=(a, b, c, w))))
 
     control.on_update(on_update)
-    # Whoever can see it can pull at it.
+    # A visible handle can be dragged.
     control.visible = True
     return control

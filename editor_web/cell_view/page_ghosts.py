@@ -1,4 +1,4 @@
-"""What single pages look at before an arm goes there: ghosts that no other page sees."""
+"""Ghosts of single pages, which preview a motion and are visible to no other page."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _NOTHING: GhostPreviews = {}
 
 @dataclass(frozen=True, kw_only=True)
 class _Client:
-    """One connected page, with a drawing of its own."""
+    """One connected page, with its own layer."""
 
     page: str
     ghosts: GhostLayer
 
 
 class PageGhosts:
-    """The ghosts of all pages; they are put on the event loop's thread and drawn on the one that draws.
+    """The ghosts of all pages; set on the event loop's thread and drawn on the drawing thread.
 
     Args:
-        server: Of the pages.
+        server: The viser server of the pages.
         changed: Called, on any thread, when there is something to draw.
     """
 
@@ -42,22 +42,22 @@ class PageGhosts:
         server.on_client_disconnect(self._disconnected)
 
     def put(self, page: str, preview: PathPreview, *, place: int) -> None:
-        """Let a page see where an arm would be; several of an arm each have their place."""
+        """Show a preview of an arm to a page; several previews of an arm have different places."""
         with self._lock:
             self._shown[page] = {**self._shown.get(page, _NOTHING), (preview.robot, place): preview}
             self._forget(page)
         self._changed()
 
     def draw(self, newest: LatestMessages, now_s: float) -> float | None:
-        """Draw what has changed; returns when to call again where a ghost moves."""
+        """Draw the changes; return the time of the next call if a ghost moves."""
         with self._lock:
             due = [(client.ghosts, self._shown.get(client.page, _NOTHING)) for client in self._clients.values()]
-        # Without the lock: whoever puts a ghost waits for no meshes.
+        # Without the lock, so that `put` does not wait for meshes.
         next_s = (ghosts.draw(shown, newest, now_s) for ghosts, shown in due)
         return min((each for each in next_s if each is not None), default=None)
 
     def _forget(self, page: str) -> None:
-        """Keep nothing of a page that has gone and looks at nothing."""
+        """Remove the state of a disconnected page without previews."""
         if any(client.page == page for client in self._clients.values()):
             return
         if all(preview.state == "none" for preview in self._shown.get(page, _NOTHING).values()):

@@ -1,4 +1,4 @@
-"""The pages that see a past moment of a run while all others see the cell as it is."""
+"""Past states of runs in the 3D view of single pages, while all other pages show the live cell."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _log = logging.getLogger("flexcell.cell_view")
 
 
 class PastViewState(msgspec.Struct, frozen=True, kw_only=True):
-    """What a page sees: a run at a time of it, of those that were recorded; or `problem`, and so the present."""
+    """What a page shows: a run at a time of its recording; or a `problem`, and the live cell."""
 
     run: str
     time_s: float
@@ -42,7 +42,7 @@ Tell = Callable[[PastViewState], None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Wish:
+class _ViewRequest:
     run: str
     time_s: float
     tell: Tell
@@ -50,22 +50,22 @@ class _Wish:
 
 @dataclass(kw_only=True)
 class _Client:
-    """One connected page; it has a drawing of its own from its first past moment on."""
+    """One connected page; its own drawing exists from its first past view on."""
 
     handle: viser.ClientHandle
     page: str
     newest: LatestMessages = field(default_factory=LatestMessages)
     drawing: SceneLayers | None = None
-    wish: _Wish | None = None
+    wish: _ViewRequest | None = None
     due_s: float | None = None
 
 
 class PastViews:
-    """Draws past moments, each for its page only, on a thread of its own; of many moments in a row the newest wins.
+    """Draws past states, each for its page only, on a separate thread; the latest of several requests wins.
 
     Args:
-        server: Of the pages.
-        groups: What each page shows.
+        server: The viser server of the pages.
+        groups: The layer groups of each page.
         find: Returns the recordings of a run, oldest first; called on any thread.
     """
 
@@ -73,7 +73,7 @@ class PastViews:
         self._groups = groups
         self._find = find
         self._lock = threading.Lock()
-        self._wishes: OrderedDict[str, _Wish] = OrderedDict()
+        self._wishes: OrderedDict[str, _ViewRequest] = OrderedDict()
         self._clients: dict[int, _Client] = {}
         self._runs: OrderedDict[str, RecordedScene] = OrderedDict()
         self._wake = threading.Event()
@@ -85,22 +85,22 @@ class PastViews:
         self._thread.start()
 
     def show(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
-        """Let a page see a run as it was at a time of it; `tell` is called, on another thread, when it does."""
+        """Show a run at a time of its clock to a page; `tell` is called, on another thread, when it is drawn."""
         with self._lock:
             self._wishes.pop(page, None)
-            self._wishes[page] = _Wish(run=run, time_s=time_s, tell=tell)
+            self._wishes[page] = _ViewRequest(run=run, time_s=time_s, tell=tell)
             while len(self._wishes) > _KEPT_PAGES:
                 self._wishes.popitem(last=False)
         self._wake.set()
 
     def leave(self, page: str) -> None:
-        """Let a page see the present again."""
+        """Show the live cell to a page again."""
         with self._lock:
             self._wishes.pop(page, None)
             self._groups.show_past(self._groups.past - {page})
 
     def close(self) -> None:
-        """End the thread and close the recordings; may take a moment, call it off the event loop."""
+        """End the thread and close the recordings; blocks, so call it off the event loop."""
         self._ending.set()
         self._wake.set()
         self._thread.join()
@@ -126,7 +126,7 @@ class PastViews:
             run.close()
 
     def _draw_all(self) -> float | None:
-        """Draw what is wished for; returns when, on the steady clock, to draw again without a new wish."""
+        """Draw the requests; return the monotonic time at which to draw again without a new request."""
         with self._lock:
             wishes = dict(self._wishes)
             clients = [client for client in self._clients.values() if client.page in wishes]
@@ -136,10 +136,10 @@ class PastViews:
             try:
                 self._draw(client, wish)
             except Exception as error:
-                # Whatever is in a file: this page sees the present again, the others what they wish for.
+                # Whatever the file contains: this page shows the live cell again, the others keep their view.
                 expected = isinstance(error, FlexcellError)
                 level = logging.INFO if expected else logging.ERROR
-                _log.log(level, "a moment of %s cannot be shown: %s", wish.run, error, exc_info=not expected)
+                _log.log(level, "cannot show a past state of %s: %s", wish.run, error, exc_info=not expected)
                 problem = error.message if expected else "its recording cannot be shown"
                 self._end(client.page, wish)
                 wish.tell(PastViewState(run=wish.run, time_s=wish.time_s, problem=problem))
@@ -148,13 +148,13 @@ class PastViews:
                 due.append(client.due_s)
         return min(due, default=None)
 
-    def _end(self, page: str, wish: _Wish) -> None:
+    def _end(self, page: str, wish: _ViewRequest) -> None:
         with self._lock:
             if self._wishes.get(page) is wish:
                 del self._wishes[page]
             self._groups.show_past(self._groups.past - {page})
 
-    def _draw(self, client: _Client, wish: _Wish) -> None:
+    def _draw(self, client: _Client, wish: _ViewRequest) -> None:
         before, is_new = client.wish, client.wish is not wish
         if is_new:
             is_another_run = before is None or before.run != wish.run
@@ -167,11 +167,11 @@ class PastViews:
         elif client.due_s is None:
             return
         if client.drawing is not None:
-            # Nothing moves by itself: the way of a ghost is not gone over and over, as in the live view.
+            # No animation: unlike in the live view, ghosts do not move in a loop.
             client.due_s = client.drawing.all(client.newest, frozenset())
         if is_new:
             with self._lock:
-                # Only now: until it was drawn there was nothing to see, and meanwhile the page may have left.
+                # Only after drawing; meanwhile the page may have returned to the live view.
                 if client.page in self._wishes:
                     self._groups.show_past(self._groups.past | {client.page})
             from_s, until_s = self._runs[wish.run].span_s
@@ -179,7 +179,7 @@ class PastViews:
 
     def _opened(self, run: str, *, is_another: bool) -> RecordedScene:
         known = self._runs.pop(run, None)
-        # A run that was resumed has one file more; one that is over lies elsewhere, and the open file is as good.
+        # A resumed run has one more file; an ended run has been moved, but the open file remains valid.
         if known is None or (is_another and len(self._find(run)) != len(known.files)):
             if known is not None:
                 known.close()

@@ -1,4 +1,4 @@
-"""What there was to draw at a moment of a recorded run."""
+"""The scene of a recorded run at a point in time."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ _EMPTY_SCENE = PlanningSceneState(revision=0, obstacles=(), held=(), allowed=())
 
 
 class RecordedScene:
-    """The recordings of one run, open; on one thread. A run that was resumed has several, oldest first.
+    """The open recordings of one run, for use on one thread. A resumed run has several, oldest first.
 
     Raises:
-        RecordingError: one cannot be read, or there is none.
+        RecordingError: a recording cannot be read, or there is none.
     """
 
     def __init__(self, files: Sequence[Path]) -> None:
@@ -50,7 +50,7 @@ class RecordedScene:
             self._pieces = tuple(stack.enter_context(IndexedRecording.open(file)) for file in files)
             self._open = stack.pop_all()
         if not self._pieces:
-            raise RecordingError("there is no recording of this run")
+            raise RecordingError("this run has no recording")
 
     def close(self) -> None:
         """Close the files."""
@@ -58,12 +58,12 @@ class RecordedScene:
 
     @property
     def span_s(self) -> tuple[float, float]:
-        """The times of the run from which on and to which it can be shown, now."""
+        """The start and end time of the recorded part of the run, as of now."""
         self._pieces[-1].refresh()
         return self._pieces[0].span_s[0], self._pieces[-1].span_s[1]
 
     def show(self, newest: LatestMessages, time_s: float) -> None:
-        """Fill `newest` with what was the newest at a time of the run.
+        """Fill `newest` with the latest messages at a time of the run.
 
         Raises:
             RecordingError: the recording is damaged.
@@ -77,22 +77,22 @@ class RecordedScene:
                     newest.put(topic.rpartition("/")[0], message)
 
     def _message(self, piece: IndexedRecording, topic: str, kind: str, time_s: float) -> object | None:
-        found = piece.at(topic, time_s)
-        if found is None:
-            return _nothing(topic, kind)
-        # The same message is the same object: that is how whoever draws it knows that nothing has changed.
-        place = (piece.path, found.place)
+        recorded = piece.at(topic, time_s)
+        if recorded is None:
+            return _initial_message(topic, kind)
+        # The same message must be the same object: the layers detect changes by identity.
+        place = (piece.path, recorded.place)
         known = self._read.get(topic)
         if known is None or known[0] != place:
             try:
-                known = self._read[topic] = (place, _DECODERS[kind].decode(found.data))
+                known = self._read[topic] = (place, _DECODERS[kind].decode(recorded.data))
             except msgspec.MsgspecError as error:
                 raise RecordingError(f"a message of {topic} cannot be read: {error}", where=piece.path) from error
         return known[1]
 
 
-def _nothing(topic: str, kind: str) -> object | None:
-    """Return what is shown before the first message of a topic, where a later one may be drawn already."""
+def _initial_message(topic: str, kind: str) -> object | None:
+    """Return the message for a time before the first one of a topic; it clears a later one that is drawn."""
     name = topic.rpartition("/")[0]
     if kind == PathPreview.__name__:
         return PathPreview(robot=name, state="none")

@@ -1,4 +1,4 @@
-"""Which topics the 3D view follows: some always, the costly ones only while somebody looks at them."""
+"""Topic subscriptions of the 3D view: some permanent, the expensive ones only while a page shows them."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from engine.skills.planning_scene import PlanningSceneState
 from engine.skills.vision import Detections
 
 _log = logging.getLogger("flexcell.cell_view")
-# By type, not by name: what an arm or a camera is called is the cell's affair. Descriptions come first, they tell
-# which bodies of the scene are those of arms.
+# By type, not by name: the cell chooses the names of arms and cameras. Descriptions come first, because they tell
+# which bodies of the scene belong to arms.
 _ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, PathPreview, CameraInfo)
-# Cameras take images only while somebody reads what is made of them.
+# Cameras take images only while their data is subscribed.
 _WHILE_SHOWN: dict[str, LayerGroup] = {
     OccupancyState.__name__: "voxels",
     OccupancyGrid.__name__: "voxels",
@@ -34,28 +34,28 @@ _RANK = {kind.__name__: rank for rank, kind in enumerate(_ALWAYS)}
 
 
 class TopicSource(Protocol):
-    """The part of the backend that the 3D view is drawn from."""
+    """The part of the backend that the 3D view uses."""
 
     @property
     def bus(self) -> JsonBus:
-        """For the listing of the topics."""
+        """The bus, for the list of topics."""
         ...
 
     def recording_files(self, run_id: str) -> Sequence[Path]:
-        """Return the recordings of a run, oldest first; of one that is named by its path too."""
+        """Return the recordings of a run, oldest first; `run_id` may be the path of a recording."""
         ...
 
     def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Unsubscribe:
-        """Call back with every new message of a topic, the newest one first, at once."""
+        """Call `callback` with the latest message of a topic at once, then with every new one."""
         ...
 
 
 class TopicSubscriptions:
-    """Subscribes what is to be drawn; everything on the event loop's thread.
+    """Subscribes to the topics to draw; only on the event loop's thread.
 
     Args:
-        topics: Where the topics are.
-        newest: Gets every message.
+        topics: The source of the topics.
+        newest: Receives every message.
         shown: Returns the groups that are shown now.
     """
 
@@ -70,12 +70,12 @@ class TopicSubscriptions:
         self._task: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Follow what there is now, and from now on what `ask` makes due."""
+        """Subscribe to the current topics; `ask` updates the subscriptions later."""
         await self._follow()
         self._task = asyncio.create_task(self._keep_up(), name="cell view topics")
 
     async def close(self) -> None:
-        """Follow nothing more."""
+        """Unsubscribe from all topics."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.wait({self._task})
@@ -85,7 +85,7 @@ class TopicSubscriptions:
         self._followed = {}
 
     def ask(self) -> None:
-        """Something may be due, or due no more."""
+        """Request an update of the subscriptions."""
         self._asked.set()
 
     async def _keep_up(self) -> None:

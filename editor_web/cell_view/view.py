@@ -1,4 +1,4 @@
-"""The 3D view of one cell: viser's server, the thread that draws, and the topics that it draws from."""
+"""The 3D view of one cell: viser's server, the drawing thread, and the subscribed topics."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _log = logging.getLogger("flexcell.cell_view")
 
 
 class CellView:
-    """Draws the bodies, planned ways, obstacles, voxels and cameras of the backend's cell.
+    """Draws the bodies, planned paths, obstacles, voxels and cameras of the backend's cell.
 
-    Meshes are sent once; afterwards only what has changed is written, at most 30 times a second.
+    Meshes are sent once; afterwards only changes are sent, at most 30 times a second.
 
     Args:
-        backend: Where the topics are.
+        backend: The source of the topics.
         shadows: Whether lights cast shadows; slow without a graphics card.
     """
 
@@ -59,11 +59,11 @@ class CellView:
 
     @property
     def shown(self) -> frozenset[LayerGroup]:
-        """What at least one connected page shows now."""
+        """The groups that at least one connected page shows now."""
         return self._groups.shown if self._groups is not None else frozenset()
 
     def open(self) -> None:
-        """Start viser and the thread that draws; takes some 20 ms, call it off the event loop."""
+        """Start viser and the drawing thread; takes about 20 ms, call it off the event loop."""
         server = self._server = new_viser_server(self.key)
         server.scene.set_up_direction("+z")
         server.scene.configure_default_lights(cast_shadow=self._shadows)
@@ -77,46 +77,46 @@ class CellView:
         self._thread.start()
 
     def request_tunnel(self) -> str | None:
-        """Return what viser answers to a page that asks to be published: always None."""
+        """Return viser's response to a page that requests a public tunnel: always None."""
         return self._server.request_share_url() if self._server else None
 
     def show(self, page: str, groups: frozenset[LayerGroup]) -> None:
-        """Let a page show these groups and no others; the page's name is in the path that it loads the view from."""
+        """Show exactly these groups on a page; the page's name is in the path from which it loads the view."""
         if self._groups is not None:
             self._groups.show(page, groups)
 
     def show_past(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
-        """Let a page see a run as it was at a time of it; `tell` is called, on another thread, when it does."""
+        """Show a run at a time of its clock to a page; `tell` is called, on another thread, when it is drawn."""
         if self._past is not None:
             self._past.show(page, run, time_s, tell=tell)
 
     def show_present(self, page: str) -> None:
-        """Let a page see the cell as it is again."""
+        """Show the live cell to a page again."""
         if self._past is not None:
             self._past.leave(page)
 
     def give_handle(self, page: str, handle: DragHandle) -> None:
-        """Give a page, where an operator looks at it, this handle to pull at."""
+        """Give an operator's page this drag handle."""
         if self._handles is not None:
             self._handles.give(page, handle)
 
     def take_handle(self, page: str, handle: DragHandle) -> None:
-        """Take this handle away from a page, which may have got another one since."""
+        """Remove this handle from a page, unless the page has another one by now."""
         if self._handles is not None:
             self._handles.take(page, handle)
 
     def show_ghost(self, page: str, preview: PathPreview, *, place: int = 0) -> None:
-        """Show a page where an arm would be, until another is shown in its place; one in the state `none` hides it."""
+        """Show a preview of an arm to a page, until another one has the same place; the state `none` hides it."""
         if self._ghosts is not None:
             self._ghosts.put(page, preview, place=place)
 
     async def subscribe(self) -> None:
-        """Follow the cell's topics, on the event loop's thread."""
+        """Subscribe to the cell's topics, on the event loop's thread."""
         self._loop = asyncio.get_running_loop()
         await self._follower.open()
 
     async def unsubscribe(self) -> None:
-        """Stop following, on the event loop's thread."""
+        """Unsubscribe, on the event loop's thread."""
         self._loop = None
         await self._follower.close()
 
@@ -135,14 +135,14 @@ class CellView:
             self._server = None
 
     def _on_shown(self) -> None:
-        """On whatever thread: somebody looks at something else now."""
+        """Redraw and update the subscriptions after a change of the shown groups; called on any thread."""
         self._newest.arrived.set()
         loop = self._loop
         if loop is not None:
             try:
                 loop.call_soon_threadsafe(self._follower.ask)
             except RuntimeError:
-                # The loop has just been closed: nothing is followed any more.
+                # The loop has just been closed: the subscriptions have ended.
                 _log.debug("the last page left after the event loop had ended")
 
     def _write(self, server: viser.ViserServer, handles: DragHandles, ghosts: PageGhosts) -> None:

@@ -1,4 +1,1 @@
-"""What the server asks of the engine, as structural contracts; every room may use it.
-
-And it imports no other room.
-"""
+"""Protocols for what the server needs from the engine; every package may use them, and they import no other package."""

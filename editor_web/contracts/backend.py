@@ -1,7 +1,7 @@
-"""What the dashboard asks of the engine: the catalogue of behaviors, runs, events and the cell's topics.
+"""Protocols of the engine as the dashboard uses it: behaviors, runs, events and topics of the cell.
 
-These are structural contracts: the engine's own frozen structs satisfy them by having the same
-attributes, so `engine` imports nothing from here. All calls come from the event loop's thread.
+They are structural: the engine's frozen structs satisfy them by having the same attributes, so `engine` imports
+nothing from here. All calls come from the event loop's thread.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class FindingLike(Protocol):
 
     @property
     def severity(self) -> str:
-        """`error` (cannot be run) or `warning`."""
+        """`error` (prevents a run) or `warning`."""
         ...
 
     @property
@@ -39,12 +39,12 @@ class FindingLike(Protocol):
 
     @property
     def message(self) -> str:
-        """What is wrong, in one line."""
+        """The problem, in one line."""
         ...
 
     @property
     def path(self) -> str:
-        """The node path it is about, `root/approach/left`; empty for the whole document."""
+        """Path of the affected node, `root/approach/left`; empty for the whole document."""
         ...
 
     @property
@@ -59,12 +59,12 @@ class FindingLike(Protocol):
 
     @property
     def hint(self) -> str:
-        """What to do about it; may be empty."""
+        """How to fix it; may be empty."""
         ...
 
 
 class ParameterLike(Protocol):
-    """One value that is set per run."""
+    """One parameter of a run."""
 
     @property
     def name(self) -> str:
@@ -83,7 +83,7 @@ class ParameterLike(Protocol):
 
 
 class TransitionLike(Protocol):
-    """An arrow inside a machine: `source` ends with `outcome`, then `target` follows."""
+    """A transition inside a machine: when `source` ends with `outcome`, `target` is next."""
 
     @property
     def source(self) -> str:
@@ -121,12 +121,12 @@ class GraphNodeLike(Protocol):
 
     @property
     def title(self) -> str:
-        """What it runs: the state name `motion.MoveJoints`, or the referenced behavior; empty for containers."""
+        """State name, `motion.MoveJoints`, or the referenced behavior; empty for containers."""
         ...
 
     @property
     def outcomes(self) -> tuple[str, ...]:
-        """Every outcome it can end with."""
+        """All possible outcomes."""
         ...
 
     @property
@@ -136,17 +136,17 @@ class GraphNodeLike(Protocol):
 
     @property
     def transitions(self) -> tuple[TransitionLike, ...]:
-        """The arrows between the children; empty unless it is a machine."""
+        """The transitions between the children; empty unless it is a machine."""
         ...
 
     @property
     def initial(self) -> str | None:
-        """Name of the child a machine starts with."""
+        """Name of the initial child of a machine."""
         ...
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """The rules of a concurrency container in words, `finished: left=reached and right=reached`."""
+        """The rules of a concurrency container as text, `finished: left=reached and right=reached`."""
         ...
 
 
@@ -160,7 +160,7 @@ class BehaviorSummaryLike(Protocol):
 
     @property
     def name(self) -> str:
-        """The document's `name:`; the file name where it cannot be read."""
+        """The document's `name:`; the file name if the document cannot be read."""
         ...
 
     @property
@@ -175,7 +175,7 @@ class BehaviorSummaryLike(Protocol):
 
     @property
     def warnings(self) -> int:
-        """Number of findings that do not."""
+        """Number of findings that do not prevent a run."""
         ...
 
 
@@ -194,7 +194,7 @@ class BehaviorDetailLike(BehaviorSummaryLike, Protocol):
 
     @property
     def graph(self) -> GraphNodeLike | None:
-        """The root node; None when the document cannot be read."""
+        """The root node; None if the document cannot be read."""
         ...
 
     @property
@@ -209,7 +209,7 @@ class BehaviorDetailLike(BehaviorSummaryLike, Protocol):
 
 
 class RunSummaryLike(Protocol):
-    """One run, under way or over."""
+    """One run, active or ended."""
 
     @property
     def id(self) -> str:
@@ -233,12 +233,12 @@ class RunSummaryLike(Protocol):
 
     @property
     def success(self) -> bool:
-        """True when it finished with an outcome that means success."""
+        """True if it finished with an outcome that means success."""
         ...
 
     @property
     def cause(self) -> str:
-        """Why it went wrong, in one line; empty otherwise."""
+        """Why it failed, in one line; empty otherwise."""
         ...
 
     @property
@@ -248,12 +248,12 @@ class RunSummaryLike(Protocol):
 
     @property
     def duration_s(self) -> float:
-        """On the run's own clock; so far while it is under way."""
+        """Duration on the run's own clock; the elapsed time while it is active."""
         ...
 
     @property
     def control(self) -> ControlView | None:
-        """What an operator sees of it while it is under way."""
+        """The operator's view while the run is active; None after its end."""
         ...
 
 
@@ -267,7 +267,7 @@ class Backend(RunOperations, Protocol):
 
     @property
     def documents(self) -> DocumentRepository:
-        """The behaviors of the project as files to be edited."""
+        """The behaviors of the project as editable files."""
         ...
 
     @property
@@ -277,12 +277,12 @@ class Backend(RunOperations, Protocol):
 
     @property
     def bus(self) -> JsonBus:
-        """The skill bus, for the command line."""
+        """The skill bus as JSON, for the command line."""
         ...
 
     @property
     def desk(self) -> BusInspector:
-        """The skill bus, for a person at a screen."""
+        """The inspector of the skill bus, for the page."""
         ...
 
     def behaviors(self) -> tuple[BehaviorSummaryLike, ...]:
@@ -290,7 +290,7 @@ class Backend(RunOperations, Protocol):
         ...
 
     def behavior(self, behavior_id: str) -> BehaviorDetailLike:
-        """Return one behavior; raises FlexcellError when the id names none."""
+        """Return one behavior; raises FlexcellError if there is none with this id."""
         ...
 
     def runs(self) -> tuple[RunSummaryLike, ...]:
@@ -298,7 +298,7 @@ class Backend(RunOperations, Protocol):
         ...
 
     def run(self, run_id: str) -> RunSummaryLike:
-        """Return one run; raises FlexcellError when the id names none."""
+        """Return one run; raises FlexcellError if there is none with this id."""
         ...
 
     async def start(
@@ -312,19 +312,21 @@ class Backend(RunOperations, Protocol):
         breakpoints: bool = False,
         begin: RunPosition | None = None,
     ) -> str:
-        """Start a run and return its id; `breakpoints` uses those beside the behavior, `begin` a moment of a run.
+        """Start a run and return its id.
+
+        `breakpoints` enables the breakpoints stored with the behavior; `begin` starts from a position of a past run.
 
         Raises:
-            FlexcellError: It cannot start; `where` is the parameter's name when one is at fault.
+            FlexcellError: the run cannot start; `where` is the name of the invalid parameter, if there is one.
         """
         ...
 
     async def stop(self, run_id: str, *, reason: str) -> None:
-        """Ask a run to stop and return at once; stopping one that is over does nothing."""
+        """Request the stop of a run and return at once; no effect on a run that has ended."""
         ...
 
     def subscribe(self, callback: Callable[[str, Event], None]) -> Unsubscribe:
-        """Call back with (run id, event) for every event of every run, on the loop's thread."""
+        """Call `callback` with (run id, event) for every event of every run, on the event loop's thread."""
         ...
 
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
@@ -332,13 +334,13 @@ class Backend(RunOperations, Protocol):
         ...
 
     def userdata(self, run_id: str) -> UserdataHistory:
-        """Return an empty book of a run's userdata, to be read from its events on; raises FlexcellError."""
+        """Return the userdata history of a run before its first event; raises FlexcellError."""
         ...
 
     def recording_files(self, run_id: str) -> tuple[Path, ...]:
-        """Return the recordings of a run, oldest first, of a run under way too; `run_id` may be a recording's path.
+        """Return the recordings of a run, active or ended, oldest first; `run_id` may be the path of a recording.
 
-        Called on any thread.
+        May be called on any thread.
         """
         ...
 
@@ -347,9 +349,9 @@ class Backend(RunOperations, Protocol):
         ...
 
     def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Unsubscribe:
-        """Call back with every new message of a topic, on the loop's thread; the newest one first, at once.
+        """Call `callback` with the latest message of a topic at once, then with every new one, on the loop's thread.
 
         Raises:
-            FlexcellError: This cell has no such topic.
+            FlexcellError: this cell has no such topic.
         """
         ...

@@ -1,4 +1,4 @@
-"""What the dashboard asks of the engine to operate runs: control, operators, hot change, resuming."""
+"""Protocols for operating runs: control, operators, hot change and resume."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ class OperatorAttachment(Protocol):
     """One operator of one run."""
 
     def detach(self) -> None:
-        """Leave on purpose; may be called again."""
+        """Detach deliberately; may be called again."""
         ...
 
     def lose(self) -> None:
-        """Tell that this operator cannot be reached any more."""
+        """Report that this operator is no longer reachable."""
         ...
 
 
 class InterruptedRun(Protocol):
-    """A run of the journal whose engine died."""
+    """A run of the journal whose engine ended without ending the run."""
 
     @property
     def id(self) -> str:
@@ -47,59 +47,59 @@ class InterruptedRun(Protocol):
 
 
 class RunOperations(Protocol):
-    """The part of the backend that changes what runs do."""
+    """The part of the backend that operates runs."""
 
     def control(self, run_id: str) -> Control:
-        """Return what an operator can do with a run.
+        """Return the control of a run.
 
         Raises:
-            ControlError: it is over.
-            FlexcellError: the id names none.
+            ControlError: the run has ended.
+            FlexcellError: there is no run with this id.
         """
         ...
 
     def operate(self, run_id: str) -> OperatorAttachment:
-        """Be an operator of a run from now on.
+        """Attach an operator to a run.
 
         Raises:
-            ControlError: it is over.
-            FlexcellError: the id names none.
+            ControlError: the run has ended.
+            FlexcellError: there is no run with this id.
         """
         ...
 
     async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
-        """Let the behavior as its file is now take the place of the one that a paused run executes.
+        """Replace the behavior of a paused run by the current version of its file.
 
-        With `preempt`, what is active and cannot go on as it is is preempted.
+        With `preempt`, active nodes that cannot continue in the new version are preempted.
 
         Raises:
-            ControlError: the run cannot go on in the new version; it goes on as it is.
+            ControlError: the run cannot continue in the new version; it keeps the old one.
             FlexcellError: the file has errors.
         """
         ...
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
-        """Take back what a paused run has begun last, in one branch; returns what is undone, in order.
+        """Undo the last activation of a paused run, in one branch; returns the paths that are undone, in order.
 
         Raises:
-            ControlError: the run is over, is not paused, or something cannot be undone; nothing has moved.
-            FlexcellError: the id names none, or its journal cannot be read.
+            ControlError: the run has ended, is not paused, or something cannot be undone; nothing has moved.
+            FlexcellError: there is no run with this id, or its journal cannot be read.
         """
         ...
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
-        """Return the breakpoints beside a behavior's file; raises FlexcellError when the id names none."""
+        """Return the breakpoints stored with a behavior; raises FlexcellError if there is no such behavior."""
         ...
 
     def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
-        """Write the breakpoints beside a behavior's file; raises FlexcellError when the id names none."""
+        """Store the breakpoints with a behavior; raises FlexcellError if there is no such behavior."""
         ...
 
     async def stop_all(self, *, reason: str) -> None:
-        """Ask every run to stop, cancel every goal, and return when every robot is at rest.
+        """Request the stop of every run, cancel every goal, and return when every robot is at rest.
 
         Raises:
-            FlexcellError: a robot could not confirm it; the others were stopped all the same.
+            FlexcellError: a robot did not confirm the stop; the others were stopped.
         """
         ...
 
@@ -109,23 +109,23 @@ class RunOperations(Protocol):
         ...
 
     async def connect_cell(self) -> None:
-        """Connect again what is lost of the cell; does nothing where nothing is.
+        """Reconnect the lost devices of the cell; no effect if none is lost.
 
         Raises:
-            ControlError: a run is under way.
-            FlexcellError: a device does not come back.
+            ControlError: a run is active.
+            FlexcellError: a device does not reconnect.
         """
         ...
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
-        """Return the runs whose engine died, oldest first."""
+        """Return the interrupted runs, oldest first."""
         ...
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
-        """Go on with an interrupted run and return its id.
+        """Resume an interrupted run and return its id.
 
         Raises:
-            ControlError: it cannot go on, or states that were in mid-work ask.
-            FlexcellError: the id names none.
+            ControlError: the run cannot resume, or states that were active need an answer.
+            FlexcellError: there is no run with this id.
         """
         ...

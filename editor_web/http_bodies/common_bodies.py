@@ -1,6 +1,6 @@
-"""The JSON of the HTTP interface: what `/api/v1` takes and answers.
+"""JSON request and response bodies of `/api/v1`.
 
-Answers are read from the backend's structs by attribute; field meanings are documented in `backend`.
+Responses are read from the backend's structs by attribute; `contracts.backend` documents the fields.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from editor_web.security.authentication import OPERATOR, Role
 
 
 class HttpBody(BaseModel):
-    """Root of the HTTP bodies: frozen, read from attributes, unknown keys refused."""
+    """Base of the HTTP bodies: frozen, read from attributes, unknown keys rejected."""
 
     model_config = ConfigDict(frozen=True, from_attributes=True, extra="forbid", populate_by_name=True)
 
@@ -29,7 +29,7 @@ class FindingBody(HttpBody):
 
 
 class ParameterBody(HttpBody):
-    """One value that is set per run, with the JSON Schema of its field."""
+    """One parameter of a run, with the JSON Schema of its value."""
 
     name: str
     json_schema: dict[str, object] = Field(validation_alias="schema", serialization_alias="schema")
@@ -37,7 +37,7 @@ class ParameterBody(HttpBody):
 
 
 class TransitionBody(HttpBody):
-    """An arrow inside a machine."""
+    """A transition inside a machine."""
 
     source: str
     outcome: str
@@ -79,7 +79,7 @@ class BehaviorBody(BehaviorSummaryBody):
 
 
 class RunBody(HttpBody):
-    """One run, under way or over."""
+    """One run, active or ended."""
 
     id: str
     behavior: str
@@ -104,7 +104,7 @@ class StopBody(HttpBody):
 
 
 class EventsBody(HttpBody):
-    """A page of a run's events as the journal holds them; ask again with `after=last`."""
+    """A page of a run's events from the journal; `after=last` requests the next page."""
 
     events: tuple[dict[str, object], ...]
     last: int
@@ -125,27 +125,27 @@ class BusMessageBody(HttpBody):
 
 
 class StopEndpointBody(HttpBody):
-    """Where STOP is taken whatever this server does: POST `{"token": …, "reason": …}` as plain text to `url`."""
+    """The STOP endpoint, independent of this server: POST `{"token": …, "reason": …}` as plain text to `url`."""
 
     url: str
     token: str
 
 
 class ConnectionBody(HttpBody):
-    """Whether every device of the cell is connected; `reason` says which is lost and why."""
+    """Whether every device of the cell is connected; `reason` names the lost device and why."""
 
     connected: bool
     reason: str
 
 
 class ConnectBody(HttpBody):
-    """A request to connect again what is lost of the cell."""
+    """A request to reconnect the lost devices of the cell."""
 
 
 class SessionBody(HttpBody):
-    """Who is logged in, and what this server has; `stop` is for operators.
+    """The role of the session and the features of this server; `stop` is for operators.
 
-    The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null where there is none.
+    The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, a separate origin; null without a 3D view.
     """
 
     role: str
@@ -157,27 +157,27 @@ class SessionBody(HttpBody):
 
 
 class LoginLinkRequest(HttpBody):
-    """Whose log-in link is wanted."""
+    """The role of the requested login link."""
 
     role: Role = OPERATOR
 
 
 class LoginLinkBody(HttpBody):
-    """A token that logs a browser in once, at `/login?t=<token>`."""
+    """A single-use login token, for `/login?t=<token>`."""
 
     token: str
     expires_in_s: float
 
 
 class QuestionBody(HttpBody):
-    """A state that a crash found in mid-work: what became of it is for a person to say."""
+    """A state that was active when the engine crashed: a person must tell how it ended."""
 
     path: str
     outcomes: tuple[str, ...]
 
 
 class ErrorBody(HttpBody):
-    """Why a request failed: what, where (a parameter's name, a file, a node path), what to do."""
+    """Why a request failed: message, location (a parameter's name, a file, a node path) and hint."""
 
     message: str
     where: str
@@ -185,6 +185,6 @@ class ErrorBody(HttpBody):
 
 
 class ResumeQuestionsBody(ErrorBody):
-    """An interrupted run cannot go on before these questions are answered."""
+    """An interrupted run resumes only after these questions are answered."""
 
     questions: tuple[QuestionBody, ...]

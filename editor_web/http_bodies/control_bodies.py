@@ -1,4 +1,4 @@
-"""The JSON by which runs are operated over HTTP: the commands and what they answer."""
+"""JSON bodies for operating runs over HTTP: commands and responses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ GateSide = Literal["before", "after"]
 
 
 class WaitingNodeBody(HttpBody):
-    """A node that waits at the gate: `before` its entry or `after` its outcome, and for what."""
+    """A node that waits at the gate, `before` its entry or `after` its outcome, with the reasons."""
 
     path: str
     visit: int
@@ -24,7 +24,7 @@ class WaitingNodeBody(HttpBody):
 
 
 class BreakpointBody(HttpBody):
-    """Where a run pauses by itself; `path` may hold `*` and `?`, `condition` is an expression over userdata."""
+    """A breakpoint; `path` may contain `*` and `?`, `condition` is an expression over userdata."""
 
     path: str = Field(min_length=1)
     when: GateSide = "before"
@@ -35,7 +35,7 @@ class BreakpointBody(HttpBody):
 
 
 class ControlBody(HttpBody):
-    """What an operator sees of a run; `confirmed` once everything that was to be held is at rest."""
+    """The operator's view of a run; `confirmed` is true when everything that a pause holds is at rest."""
 
     paused: bool
     confirmed: bool
@@ -53,20 +53,20 @@ class ControlBody(HttpBody):
 
 
 class StepBody(HttpBody):
-    """One step of a paused run, in the branch of `path` where one is given."""
+    """One step of a paused run, in the branch of `path` if given."""
 
     mode: Literal["into", "over", "out"] = "into"
     path: str = ""
 
 
 class StepBackBody(HttpBody):
-    """One step back of a paused run, in the branch of `path` where one is given."""
+    """One step back of a paused run, in the branch of `path` if given."""
 
     path: str = ""
 
 
 class NodeCommandBody(HttpBody):
-    """The node that a command is about."""
+    """The node that a command addresses."""
 
     path: str
 
@@ -85,38 +85,38 @@ class ForceBody(HttpBody):
 
 
 class AutonomyBody(HttpBody):
-    """Outcomes that require less than `level` pass by themselves."""
+    """The autonomy level; outcomes that require less than `level` pass without an answer."""
 
     level: AutonomyLevel
 
 
 class BreakpointsBody(HttpBody):
-    """All breakpoints of a run, or of a behavior; they replace those before."""
+    """All breakpoints of a run or a behavior; they replace the previous ones."""
 
     breakpoints: tuple[BreakpointBody, ...]
 
 
 class HotChangeBody(HttpBody):
-    """A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted."""
+    """A request for a hot change; with `preempt`, active nodes that cannot continue are preempted."""
 
     preempt: bool = False
 
 
 class HotChangeResultBody(HttpBody):
-    """What a hot change did, a line for each difference."""
+    """The result of a hot change, one line per difference."""
 
     changes: tuple[str, ...]
 
 
 class ResumeBody(HttpBody):
-    """A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome."""
+    """A request to resume an interrupted run: `answers` by path are `rerun` or an outcome."""
 
     answers: dict[str, str] = {}
     changed: bool = False
 
 
 class InterruptedRunBody(HttpBody):
-    """A run of the journal whose engine died; `behavior` is the name of what it executed."""
+    """A run of the journal whose engine ended without ending the run; `behavior` is the name of its behavior."""
 
     id: str
     behavior: str

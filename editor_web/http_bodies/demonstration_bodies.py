@@ -1,4 +1,4 @@
-"""The JSON of a behavior proposed from taught entries."""
+"""JSON bodies for a behavior proposed from taught entries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ShortText = Annotated[str, Field(max_length=128)]
 
 
 class DemonstrationStepBody(HttpBody):
-    """An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed."""
+    """An entry, or an action `open` or `close` of the tool, in order; without a role, the role is inferred."""
 
     kind: StepKind
     name: EntryName
@@ -23,7 +23,7 @@ class DemonstrationStepBody(HttpBody):
 
 
 class ProposedStepBody(HttpBody):
-    """A step with its role, and what a grasp takes: a part, or an empty name for one that nobody named."""
+    """A step with its role, and the part of a grasp; an empty name is an unnamed part."""
 
     kind: StepKind
     name: str
@@ -32,7 +32,7 @@ class ProposedStepBody(HttpBody):
 
 
 class DemonstrationBody(HttpBody):
-    """What a behavior is to be proposed from; with `id` it is also written there, as a new document."""
+    """The input of a proposal; with `id` the behavior is also written as a new document."""
 
     steps: Annotated[tuple[DemonstrationStepBody, ...], Field(min_length=1, max_length=200)]
     arm: Annotated[str, Field(max_length=64)] = ""
@@ -45,7 +45,7 @@ class DemonstrationBody(HttpBody):
 
 
 class ProposalBody(HttpBody):
-    """The behavior as YAML, what it does in words, and what was decided; `id` is where it was written."""
+    """The behavior as YAML, its description as text, and the choices made; `id` is the document it was written to."""
 
     text: str
     steps: tuple[ProposedStepBody, ...]

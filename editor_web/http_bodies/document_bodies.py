@@ -1,4 +1,4 @@
-"""The JSON of the editor: documents as texts with what they draw, their versions, and what can be put into them."""
+"""JSON bodies of the editor: documents as text with their graph, their versions, and the catalogue."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ CanvasPosition = tuple[float, float]
 
 
 class RuleBody(HttpBody):
-    """One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`.
+    """One rule of a concurrency container: the outcome, and the outcomes of children that it needs, all or `at_least`.
 
-    One that preempts some children has no outcome.
+    A rule that preempts some children has no outcome.
     """
 
     outcome: str
@@ -29,11 +29,11 @@ class RuleBody(HttpBody):
 
 
 class DocumentNodeBody(GraphNodeBody):
-    """One node as written: beside what a run shows, all that a form edits, raw; lines and columns count from 1.
+    """One node as written: the fields of a run's graph and all raw fields of the form; lines and columns count from 1.
 
-    `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are
+    `targets` are its own transitions, outcome to target; `exits` are the outcomes without a transition. `settings` are
     the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to.
-    `role` is the key by which the part around it knows it, such as `then`.
+    `role` is its key in the parent node, such as `then`.
     """
 
     children: tuple[DocumentNodeBody, ...]  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -69,7 +69,7 @@ class DocumentNodeBody(GraphNodeBody):
 
 
 class DocumentInfoBody(HttpBody):
-    """What the document itself declares, as written."""
+    """The declarations of the document itself, as written."""
 
     name: str
     description: str
@@ -81,9 +81,9 @@ class DocumentInfoBody(HttpBody):
 
 
 class DraftResultBody(HttpBody):
-    """What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read.
+    """The graph and findings of a text; `graph` and `document` are null if the text cannot be read.
 
-    `checked` is false where it was not asked for findings, which may follow from `findings`.
+    `checked` is false if the request did not ask for findings; the route `findings` returns them.
     """
 
     hash: str
@@ -94,7 +94,7 @@ class DraftResultBody(HttpBody):
 
 
 class DocumentBody(DraftResultBody):
-    """A document as it is on disk; `saved_at` is the time of its last change, seconds since 1970."""
+    """A document on disk; `saved_at` is the time of its last change, seconds since 1970."""
 
     id: str
     text: str
@@ -102,7 +102,7 @@ class DocumentBody(DraftResultBody):
 
 
 class EditRefusalBody(HttpBody):
-    """Why no edit was made: `index` says which of them could not be."""
+    """Why no edit was applied: `index` is the edit that failed."""
 
     message: str
     hint: str
@@ -110,7 +110,7 @@ class EditRefusalBody(HttpBody):
 
 
 class EditResultBody(DraftResultBody):
-    """The text after the edits, and the nodes that they made or changed; the text as it was where refused."""
+    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused."""
 
     text: str
     changed: tuple[str, ...]
@@ -118,27 +118,27 @@ class EditResultBody(DraftResultBody):
 
 
 class CopyResultBody(HttpBody):
-    """Nodes as YAML, to be pasted anywhere."""
+    """Nodes as YAML, ready to paste."""
 
     yaml: str
 
 
 class TextBody(HttpBody):
-    """A text that is being edited."""
+    """A text under edit."""
 
     text: Text
 
 
 class TargetsBody(TextBody):
-    """A text whose targets are looked at; a newer one of the same page takes the place of those that still wait."""
+    """A text whose targets are checked; a newer request of the same page replaces the pending one."""
 
     page: Annotated[str, Field(max_length=40)]
 
 
 class TargetFindingsBody(HttpBody):
-    """The targets that an arm of the document's cell cannot be at.
+    """The targets that an arm of the document's cell cannot reach.
 
-    `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise.
+    `dropped` is true if the page has sent a newer text; `problem` tells why the targets could not be checked.
     """
 
     findings: tuple[FindingBody, ...] = ()
@@ -147,13 +147,13 @@ class TargetFindingsBody(HttpBody):
 
 
 class DraftBody(TextBody):
-    """A text to draw; without `check` the answer comes sooner, and without findings."""
+    """A text to draw; without `check` the response is faster and has no findings."""
 
     check: bool = True
 
 
 class EditsBody(DraftBody):
-    """A text and the edits to make in it, all or none; they are those of `engine.editing.edit`."""
+    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`."""
 
     edits: Annotated[list[dict[str, object]], Field(max_length=500)]
 
@@ -165,20 +165,20 @@ class CopyBody(TextBody):
 
 
 class SaveBody(TextBody):
-    """A text to write, and the hash of the one it was made from."""
+    """A text to write, and the hash of the version it is based on."""
 
     base_hash: Hash
 
 
 class SaveResultBody(HttpBody):
-    """What is on disk now."""
+    """The version that is on disk now."""
 
     hash: str
     saved_at: float
 
 
 class MergeConflictBody(HttpBody):
-    """Lines that both sides changed differently; `line` is where they stand in the text that was to be saved."""
+    """Lines that both sides changed differently; `line` is their position in the text to save."""
 
     line: int
     base: str
@@ -187,7 +187,7 @@ class MergeConflictBody(HttpBody):
 
 
 class ConflictBody(ErrorBody):
-    """The document has changed on disk; `merged` has both changes, and is null where they contradict each other."""
+    """The document has changed on disk; `merged` has both changes, null if they conflict."""
 
     theirs: str
     theirs_hash: str
@@ -196,7 +196,7 @@ class ConflictBody(ErrorBody):
 
 
 class NewDocumentBody(HttpBody):
-    """A document to make from a template: machine, sequence or concurrency."""
+    """A document to create from a template: machine, sequence or concurrency."""
 
     id: Id
     name: Annotated[str, Field(max_length=128)] = ""
@@ -204,13 +204,13 @@ class NewDocumentBody(HttpBody):
 
 
 class NewIdBody(HttpBody):
-    """Where a document is put, or its copy."""
+    """The new id of a document or of its copy."""
 
     id: Id
 
 
 class VersionBody(HttpBody):
-    """One version of a document: when it was first seen; `by` is `editor`, or `file` where it was found there."""
+    """One version of a document and when it was first seen; `by` is `editor`, or `file` for a change on disk."""
 
     hash: str
     saved_at: float
@@ -225,7 +225,7 @@ class VersionTextBody(VersionBody):
 
 
 class FieldChangeBody(HttpBody):
-    """One thing that differs; null where it was not, or is no longer, there."""
+    """One field that differs; null where the field is absent."""
 
     field: str
     before: object
@@ -233,7 +233,7 @@ class FieldChangeBody(HttpBody):
 
 
 class NodeChangeBody(HttpBody):
-    """A node that was added, removed, changed or moved between two versions; the path `document` is the document."""
+    """A node added, removed, changed or moved between two versions; the path `document` is the document itself."""
 
     path: str
     change: str
@@ -242,7 +242,7 @@ class NodeChangeBody(HttpBody):
 
 
 class DifferenceBody(HttpBody):
-    """What differs between two versions; `layout_only` when nothing but positions on the canvas does."""
+    """The differences of two versions; `layout_only` is true if only canvas positions differ."""
 
     changes: tuple[NodeChangeBody, ...]
     layout_only: bool
@@ -257,7 +257,7 @@ class KeyWriterBody(HttpBody):
 
 
 class KeyReaderBody(HttpBody):
-    """A node that reads a key: `defined` is always, maybe (`way` says how it is not), never, or unreachable."""
+    """A node that reads a key: `defined` is always, maybe (`way` is a path without it), never, or unreachable."""
 
     path: str
     by: str
@@ -269,7 +269,7 @@ class KeyReaderBody(HttpBody):
 
 
 class KeyFlowBody(HttpBody):
-    """One key with all that write and read it."""
+    """One key with all its writers and readers."""
 
     key: str
     writers: tuple[KeyWriterBody, ...]
@@ -286,7 +286,7 @@ class KeyBody(HttpBody):
 
 
 class StateBody(HttpBody):
-    """A state that can be put into a behavior."""
+    """A state that a behavior can use."""
 
     name: str
     group: str
@@ -300,7 +300,7 @@ class StateBody(HttpBody):
 
 
 class ContainerBody(HttpBody):
-    """A kind of node that holds others; `only_in_tree` says where it may stand."""
+    """A kind of container node; `only_in_tree` restricts it to behavior trees."""
 
     kind: str
     title: str
@@ -309,7 +309,7 @@ class ContainerBody(HttpBody):
 
 
 class ReferableBehaviorBody(HttpBody):
-    """A behavior that another may refer to."""
+    """A behavior that another behavior may refer to."""
 
     id: str
     name: str
@@ -328,10 +328,10 @@ class EntryBody(HttpBody):
 
 
 class CatalogueBody(HttpBody):
-    """Everything that can be put into a behavior.
+    """Everything that a behavior can use.
 
-    `names` are those of the open cell by kind, which the JSON Schema of a parameter calls `cell_name`: robots, parts,
-    cameras, frames. Those of a tool, link, output or label begin with the name of what has it: `left/panda_hand`.
+    `names` are the names in the open cell by kind, the `cell_name` in the JSON Schema of a parameter: robots, parts,
+    cameras, frames. A tool, link, output or label has the prefix of its owner: `left/panda_hand`.
     """
 
     states: tuple[StateBody, ...]

@@ -1,4 +1,4 @@
-"""The JSON of past runs and recordings: their lists, and what opens one."""
+"""JSON bodies of past runs and recordings."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from editor_web.http_bodies.common_bodies import BehaviorBody, HttpBody
 
 
 class PastRunBody(HttpBody):
-    """One run of the journal. `running` without an end: it is under way somewhere, or its engine died.
+    """One run of the journal. `running` means that it has no end: it is active, or its engine died.
 
-    `recording` is the path of its recording, empty where there is none; `here` says that it is a run of this server.
+    `recording` is the path of its recording, empty if there is none; `here` is true for a run of this server.
     """
 
     id: str
@@ -26,7 +26,7 @@ class PastRunBody(HttpBody):
 
 
 class PastRunsBody(HttpBody):
-    """A page of past runs, newest first, and how many there are of each kind that match the other filters."""
+    """A page of past runs, newest first, and the number of runs of each kind that match the other filters."""
 
     runs: tuple[PastRunBody, ...]
     total: int
@@ -34,7 +34,7 @@ class PastRunsBody(HttpBody):
 
 
 class RecordingBody(HttpBody):
-    """One recording of the project; `problem` says why it cannot be opened, empty where it can."""
+    """One recording of the project; `problem` tells why it cannot be opened, empty if it can."""
 
     path: str
     run: str
@@ -46,7 +46,7 @@ class RecordingBody(HttpBody):
 
 
 class OpenRunBody(HttpBody):
-    """A past run or a recording that is opened: what it was, and the behavior as it was when the run began."""
+    """An open past run or recording, with the behavior as of the start of the run."""
 
     run: PastRunBody
     behavior: BehaviorBody

@@ -1,4 +1,4 @@
-"""The JSON around documents: fixes of findings, who refers to a document, moving and restoring it."""
+"""JSON bodies for fixes of findings, references to a document, and moving or restoring it."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from editor_web.http_bodies.document_bodies import DocumentBody, Id, Text
 
 
 class FixBody(HttpBody):
-    """What would mend a finding: the edits to send, and what they do in words."""
+    """A fix of a finding: the edits to send, and a title that describes them."""
 
     title: str
     edits: tuple[dict[str, object], ...]
 
 
 class FixesBody(HttpBody):
-    """The fixes of one finding of a text; `code`, `path`, `line` and `message` say of which."""
+    """The fixes of one finding of a text; `code`, `path`, `line` and `message` identify the finding."""
 
     code: str
     path: str
@@ -28,7 +28,7 @@ class FixesBody(HttpBody):
 
 
 class ReferrerBody(HttpBody):
-    """A behavior that refers to another one, and the nodes that do."""
+    """A behavior that refers to another one, and its referring nodes."""
 
     id: str
     name: str
@@ -36,21 +36,21 @@ class ReferrerBody(HttpBody):
 
 
 class DeletedDocumentBody(HttpBody):
-    """A document that has gone and can be restored; `saved_at` is when its last text was first seen."""
+    """A deleted document that can be restored; `saved_at` is when its last text was first seen."""
 
     id: str
     saved_at: float
 
 
 class MoveBody(HttpBody):
-    """Where a document goes; with `follow`, references to it are written anew."""
+    """The new id of a document; with `follow`, references to it are updated."""
 
     id: Id
     follow: bool
 
 
 class MoveResultBody(HttpBody):
-    """A document at its new place: whose references follow, and whose could not."""
+    """A moved document: the ids whose references were updated, and those whose references were not."""
 
     document: DocumentBody
     followed: tuple[str, ...]
@@ -58,7 +58,7 @@ class MoveResultBody(HttpBody):
 
 
 class CompareBody(HttpBody):
-    """Two texts of a document to be compared."""
+    """Two texts of a document to compare."""
 
-    before: Annotated[Text, Field(description="The older one")]
-    after: Annotated[Text, Field(description="The newer one")]
+    before: Annotated[Text, Field(description="The older text")]
+    after: Annotated[Text, Field(description="The newer text")]

@@ -1,4 +1,4 @@
-"""The JSON by which runs are started over HTTP."""
+"""JSON bodies for starting runs over HTTP."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from editor_web.http_bodies.control_bodies import AutonomyLevel
 
 
 class RunPositionBody(HttpBody):
-    """An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise."""
+    """The event of a journaled run to begin at, at the last entered state unless `path` is given."""
 
     run: str
     seq: int = Field(ge=1)
@@ -19,7 +19,7 @@ class RunPositionBody(HttpBody):
 
 
 class SupervisionBody(HttpBody):
-    """How a run is watched over; see `flexcell run --help` for the same options."""
+    """Supervision options of a run; `flexcell run --help` explains the same options."""
 
     autonomy: AutonomyLevel = "full"
     demand_operator: bool = False
@@ -30,7 +30,7 @@ class SupervisionBody(HttpBody):
 
 
 class StartBody(HttpBody):
-    """A request to start a run; without a seed the server draws one."""
+    """A request to start a run; without a seed the server chooses one."""
 
     behavior: str
     parameters: dict[str, object] = {}

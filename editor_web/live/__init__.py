@@ -1,1 +1,1 @@
-"""The live state of runs, arms and documents, folded from events and sent to pages as snapshots and deltas."""
+"""The live state of runs, arms and documents, reduced from events and sent to pages as snapshots and deltas."""

@@ -1,4 +1,4 @@
-"""What the page shows of the control of the watched run: who waits and asks, breakpoints, locks, operator."""
+"""Control state of the watched run for the page: waiting nodes, requested outcomes, breakpoints, locks, operator."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ class BreakpointLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LockLive(msgspec.Struct, frozen=True, kw_only=True):
-    """A locked node and why, in the words of whoever locked it."""
+    """A locked node and the reason given by the operator."""
 
     path: str
     reason: str
 
 
 class ControlLive(msgspec.Struct, frozen=True, kw_only=True):
-    """The control of a run that is under way.
+    """The control state of an active run.
 
-    `confirmed` once everything that was to be held is at rest; `operator` is none, attached, detached
-    or lost; `loss_policy` is what happens `loss_timeout_s` after a loss.
+    `confirmed` is true when everything that a pause holds is at rest; `operator` is none, attached, detached
+    or lost; `loss_policy` applies `loss_timeout_s` after the loss of the operator.
     """
 
     paused: bool
@@ -63,7 +63,7 @@ class ControlLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def control_live(view: ControlView, *, lock_reasons: Mapping[str, str]) -> ControlLive:
-    """Return what the page needs of an operator's view."""
+    """Return the operator's view as a message for the page."""
     return ControlLive(
         paused=view.paused,
         confirmed=view.confirmed,
@@ -100,7 +100,7 @@ def control_live(view: ControlView, *, lock_reasons: Mapping[str, str]) -> Contr
 
 
 def waiting_reason(view: ControlView | None) -> str:
-    """Say in one word what a run waits for that somebody has to give: asks, paused, locked, or nothing."""
+    """Return why a run waits for a person: `asks`, `paused` or `locked`; empty if it does not."""
     if view is None:
         return ""
     if any("autonomy" in each.reasons for each in view.waiting):

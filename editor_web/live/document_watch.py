@@ -1,4 +1,4 @@
-"""Tells pages when a document changes on disk, by whoever: another page, an editor, git."""
+"""Notifies pages of documents that change on disk, through another page, an editor or git."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ DocumentsCallback = Callable[[dict[str, str | None]], None]
 
 
 class DocumentWatch:
-    """Looks at the files of a project each second while somebody is there to be told.
+    """Polls the files of a project every second while a page is connected.
 
     Args:
         documents: The documents.
-        changed: Called with the hash of each document that has changed, by id; None where it is gone.
-        wanted: Whether anybody wants to know.
-        period_s: Time between looks.
+        changed: Called with the hash of each changed document, by id; None for a deleted one.
+        wanted: Returns whether a page is connected.
+        period_s: Polling period.
     """
 
     def __init__(
@@ -39,37 +39,37 @@ class DocumentWatch:
         self._task: asyncio.Task[None] | None = None
 
     def open(self) -> None:
-        """Begin to look."""
+        """Start polling."""
         self._task = asyncio.create_task(self._poll_documents(), name="document-watch")
 
     async def close(self) -> None:
-        """Look no more."""
+        """Stop polling."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.wait({self._task})
             self._task = None
 
     def look(self) -> dict[str, str | None]:
-        """Return what has changed since the last look; nothing at the first. May be called from any thread."""
+        """Return the changes since the last call; nothing at the first call. May be called from any thread."""
         before, now = self._seen, self._documents.stamps()
         self._seen = now
         if before is None:
             return {}
-        touched = [each for each in {**before, **now} if before.get(each) != now.get(each)]
-        return {each: self._documents.hash_on_disk(each) for each in touched}
+        changed = [each for each in {**before, **now} if before.get(each) != now.get(each)]
+        return {each: self._documents.hash_on_disk(each) for each in changed}
 
     async def _poll_documents(self) -> None:
         while True:
-            # Not every file system tells of changes, least of all those that containers share.
+            # Not every file system reports changes, in particular those shared between containers.
             await asyncio.sleep(self._period_s)
             if not self._wanted():
                 self._seen = None
                 continue
             try:
-                found = await asyncio.to_thread(self.look)
+                changed = await asyncio.to_thread(self.look)
             except OSError as error:
-                # A folder that goes while it is looked through; the next look sees what has become of it.
+                # A folder was removed during the scan; the next scan reports the result.
                 _log.info("could not scan the documents: %s", error)
                 continue
-            if found:
-                self._changed(found)
+            if changed:
+                self._changed(changed)

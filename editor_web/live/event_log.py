@@ -1,4 +1,4 @@
-"""Every event of a run in words: what the log of the page shows."""
+"""Text of every event of a run, for the log of the page."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ from engine.event import (
     UserdataWritten,
 )
 
-# Outcomes that read as a failure where the event brings no cause with it.
+# Outcomes shown as a failure if the event has no cause.
 FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
-Words = tuple[str, str, str, Cause | None]
+LineParts = tuple[str, str, str, Cause | None]
 """Path, level, text, cause."""
 
 
 class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of a cause chain: first what was measured, then what followed from it."""
+    """One link of a cause chain; the first link is the root cause."""
 
     message: str
     where: str
@@ -74,27 +74,27 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 def status_of(event: NodeExited) -> str:
-    """Return how a node was left: done, failed or stopped."""
+    """Return the status of an exited node: done, failed or stopped."""
     if event.preempted:
         return "stopped"
     return "failed" if event.cause is not None or event.outcome in FAILURE_OUTCOMES else "done"
 
 
 def log_line(event: Event, *, duration_s: float = 0.0) -> LogLine:
-    """Say one event in words; `duration_s` is how long the node that ended took."""
-    path, level, text, cause = _words(event, duration_s)
+    """Return the log line of an event; `duration_s` is the duration of the node that ended."""
+    path, level, text, cause = _parts(event, duration_s)
     kind = str(type(event).__struct_config__.tag or "")
     return LogLine(
         seq=event.seq, time_s=event.time_s, kind=kind, level=level, path=path, text=text, causes=_lines(cause)
     )
 
 
-def _words(event: Event, duration_s: float) -> Words:
-    words = _words_of_nodes(event, duration_s) or _words_of_skills(event) or _words_of_control(event)
-    return words or _words_of_run(event)
+def _parts(event: Event, duration_s: float) -> LineParts:
+    parts = _node_event_parts(event, duration_s) or _skill_event_parts(event) or _control_event_parts(event)
+    return parts or _run_event_parts(event)
 
 
-def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
+def _node_event_parts(event: Event, duration_s: float) -> LineParts | None:
     match event:
         case NodeEntered():
             return event.path, "debug", "entered" if event.visit == 1 else f"entered, visit {event.visit}", None
@@ -110,10 +110,10 @@ def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
             return event.path, "info", f"{event.source} \u2014{event.outcome}\u2192 {event.target}", None
         case NodeDiverted():
             level = "warning" if event.cause is not None else "info"
-            return event.path, level, f"left by {event.by} for {event.target}", event.cause
+            return event.path, level, f"preempted by {event.by}, continues at {event.target}", event.cause
         case BranchesPreempted():
-            whom = ", ".join(event.branches)
-            return event.path, "info", f"{event.condition}: {whom or 'all of them had ended'}", None
+            branches = ", ".join(event.branches)
+            return event.path, "info", f"{event.condition}: {branches or 'all branches had ended'}", None
         case NodeRetried():
             return event.path, "warning", f"attempt {event.attempt} after {_seconds(event.wait_s)}", event.cause
         case StatusChanged():
@@ -123,23 +123,23 @@ def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
         case NodeAbandoned():
             return event.path, "error", f"did not stop within {event.waited_s:g} s and was abandoned", None
         case LoopBlocked():
-            text = f"kept everything waiting for {event.blocked_s:.2f} s, at {event.where}"
+            text = f"blocked the event loop for {event.blocked_s:.2f} s, at {event.where}"
             return event.path, "warning", text, None
         case _:
             return None
 
 
-def _words_of_skills(event: Event) -> Words | None:
+def _skill_event_parts(event: Event) -> LineParts | None:
     match event:
         case GoalSent():
-            return event.path, "debug", f"asked {event.address}: {_short(event.request)}", None
+            return event.path, "debug", f"sent a goal to {event.address}: {_short(event.request)}", None
         case GoalFinished():
             level = "debug" if event.status == "succeeded" else "warning"
             return event.path, level, f"goal {event.goal} {event.status}", event.cause
         case GoalHeld():
             return event.path, "info", f"goal {event.goal} held, at rest", None
         case GoalResumed():
-            return event.path, "info", f"goal {event.goal} goes on", None
+            return event.path, "info", f"goal {event.goal} resumed", None
         case ServiceCalled():
             return event.path, "debug", f"called {event.address}: {_short(event.request)}", None
         case ServiceAnswered():
@@ -159,7 +159,7 @@ def _words_of_skills(event: Event) -> Words | None:
             return None
 
 
-def _words_of_control(event: Event) -> Words | None:
+def _control_event_parts(event: Event) -> LineParts | None:
     match event:
         case OperatorCommanded():
             arguments = f" {_short(event.arguments)}" if event.arguments else ""
@@ -168,20 +168,20 @@ def _words_of_control(event: Event) -> Words | None:
             outcome = f" with {event.outcome}" if event.outcome else ""
             return event.path, "info", f"waits {event.point}{outcome}: {', '.join(event.reasons)}", None
         case GatePassed():
-            return event.path, "debug", f"waits no longer {event.point}", None
+            return event.path, "debug", f"no longer waits {event.point}", None
         case OutcomeRequested():
             return event.path, "warning", f"asks for {event.outcome}, which requires {event.required}", None
         case OutcomeWithdrawn():
-            return event.path, "debug", f"asks no longer for {event.outcome}", None
+            return event.path, "debug", f"no longer asks for {event.outcome}", None
         case PauseConfirmed():
             cannot = f"; cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
-            return "", "warning" if event.cannot else "info", f"paused, everything rests{cannot}", None
+            return "", "warning" if event.cannot else "info", f"paused, everything at rest{cannot}", None
         case OperatorChanged():
             return "", "warning" if event.status == "lost" else "info", f"operator {event.status}", None
         case BehaviorChanged():
-            return "", "info", f"behavior changed: {'; '.join(event.report) or 'nothing that matters'}", None
+            return "", "info", f"behavior changed: {'; '.join(event.report) or 'no effective difference'}", None
         case UndoStarted():
-            return event.path, "info", f"undoes visit {event.undoes}", None
+            return event.path, "info", f"undo of visit {event.undoes} started", None
         case UndoEnded():
             how = "stopped" if event.preempted else "failed" if event.cause is not None else "done"
             return (
@@ -193,23 +193,23 @@ def _words_of_control(event: Event) -> Words | None:
         case RunSteppedBack():
             if event.cause is not None:
                 return event.path, "error", "could not step back", event.cause
-            return event.path, "info", f"stepped back before its entry{_taken_back(event)}", None
+            return event.path, "info", f"stepped back before its entry{_restored_values(event)}", None
         case _:
             return None
 
 
-def _taken_back(event: RunSteppedBack) -> str:
+def _restored_values(event: RunSteppedBack) -> str:
     values = [f"{each.key} = {_short(each.value, 60)}" if each.defined else f"no {each.key}" for each in event.values]
-    return f", with {', '.join(values)} again" if values else ""
+    return f", restored {', '.join(values)}" if values else ""
 
 
-def _words_of_run(event: Event) -> Words:
+def _run_event_parts(event: Event) -> LineParts:
     match event:
         case RunStarted():
             return "", "info", f"run started: {event.behavior}, seed {event.seed}, {event.clock} clock", None
         case RunResumed():
-            again = f", entering again {', '.join(event.rerun)}" if event.rerun else ""
-            return "", "warning", f"resumed after event {event.after_seq}{again}", None
+            rerun = f", running again {', '.join(event.rerun)}" if event.rerun else ""
+            return "", "warning", f"resumed after event {event.after_seq}{rerun}", None
         case StopRequested():
             return "", "warning", f"stop requested: {event.reason}", None
         case RunEnded():

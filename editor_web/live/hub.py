@@ -1,8 +1,8 @@
-"""The live stream: one hub folds the engine's events, each client gets a snapshot and then deltas.
+"""The live stream: one hub reduces the engine's events, each client gets a snapshot and then deltas.
 
-State is last-value-wins per node and coalesced per client, log lines are a bounded ring with a
-count of what fell out; a client asks anew when `after` does not fit what it has. The engine's
-side only marks what is dirty and never waits for anybody.
+Node states are last-value-wins and coalesced per client; log lines are a bounded ring buffer with a count of dropped
+lines; a client requests a new snapshot if `after` does not match its state. The engine's side only sets dirty marks
+and never waits for a client.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ KEPT_RUNS = 50
 
 
 class LiveClient:
-    """What one page still has to be told; `frame` takes it."""
+    """The pending changes of one page; `frame` returns and clears them."""
 
     def __init__(self, hub: LiveHub) -> None:
         self._hub = hub
@@ -44,20 +44,20 @@ class LiveClient:
         self.dirty.set()
 
     def watch(self, run_id: str) -> None:
-        """Follow another run, or none (empty id); an unknown one shows as empty."""
+        """Follow another run, or none (empty id); an unknown run is empty."""
         self._watched = self._hub.live_run(run_id) if run_id else None
         self._snapshot_due = True
         self.dirty.set()
 
     def note(self, live: LiveRun, change: RunStateChange) -> None:
-        """Mark what changed; called by the hub for every event, never blocks."""
+        """Mark changes; the hub calls it for every event; never blocks."""
         if change.run_changed:
             self._runs[live.run_id] = None
             self.dirty.set()
         if self._watched is None or live.run_id != self._watched.run_id:
             return
         if live is not self._watched:
-            # It was watched before it was known.
+            # The page watched the run before the hub knew it.
             self.watch(live.run_id)
             return
         self._nodes.update(change.nodes)
@@ -68,7 +68,7 @@ class LiveClient:
         self.dirty.set()
 
     def note_robot(self, name: str) -> None:
-        """Mark an arm whose line is another now."""
+        """Mark an arm whose status has changed."""
         self._robots[name] = None
         self.dirty.set()
 
@@ -78,35 +78,35 @@ class LiveClient:
         self.dirty.set()
 
     def refresh(self, live: LiveRun) -> None:
-        """Mark a run that was rebuilt as a whole."""
+        """Mark a run that was rebuilt completely."""
         self._runs[live.run_id] = None
         self.dirty.set()
         if self._watched is not None and live.run_id == self._watched.run_id:
             self.watch(live.run_id)
 
     def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | None:
-        """Take what is due as one frame; None when nothing is."""
+        """Return the pending changes as one frame and clear them; None if there are none."""
         if self._documents and not self._snapshot_due:
-            # The rest is still due.
-            told, self._documents = self._documents, {}
-            return DocumentsChanged(changed=told)
+            # The other changes stay pending.
+            changed, self._documents = self._documents, {}
+            return DocumentsChanged(changed=changed)
         self.dirty.clear()
         if self._snapshot_due:
-            made: LiveSnapshot | LiveDelta | None = self._snapshot()
+            frame: LiveSnapshot | LiveDelta | None = self._snapshot()
         elif self._nodes or self._log or self._runs or self._robots:
-            made = self._delta()
+            frame = self._delta()
         else:
-            made = None
+            frame = None
         self._snapshot_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
         if self._documents:
             self.dirty.set()
-        # The engine tells the end of a run before it has filed it; such a run is looked at again.
+        # The engine reports the end of a run before it has stored it; such a run is read again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
         if self._runs:
             self.dirty.set()
         self._sent_seq = self._watched.seq if self._watched else 0
-        return made
+        return frame
 
     def _snapshot(self) -> LiveSnapshot:
         live = self._watched
@@ -140,11 +140,11 @@ class LiveClient:
 
 
 class LiveHub:
-    """Folds every run's events once and tells all clients.
+    """Reduces every run's events once and notifies all clients.
 
     Args:
         backend: The engine.
-        wall_s: A steady clock, seconds.
+        wall_s: A monotonic clock, seconds.
     """
 
     def __init__(self, backend: Backend, *, wall_s: Callable[[], float] = time.monotonic) -> None:
@@ -162,31 +162,31 @@ class LiveHub:
 
     @property
     def clients(self) -> tuple[LiveClient, ...]:
-        """Who is told."""
+        """The connected clients."""
         return tuple(self._clients)
 
     def open(self) -> None:
-        """Begin to follow the engine's events."""
+        """Subscribe to the engine's events."""
         self._unsubscribe = self.backend.subscribe(self._on_event)
 
     def close(self) -> None:
-        """Stop following."""
+        """Unsubscribe from the engine's events."""
         if self._unsubscribe is not None:
             self._unsubscribe()
             self._unsubscribe = None
 
     def join(self) -> LiveClient:
-        """Return a new client; `leave` ends it."""
+        """Return a new client; `leave` removes it."""
         client = LiveClient(self)
         self._clients.add(client)
         return client
 
     def leave(self, client: LiveClient) -> None:
-        """Forget a client."""
+        """Remove a client."""
         self._clients.discard(client)
 
     def live_run(self, run_id: str) -> LiveRun:
-        """Return the folded run, rebuilt from the journal where it is not at hand."""
+        """Return the reduced run, rebuilt from the journal if it is not cached."""
         if run_id not in self._runs:
             live = LiveRun(run_id)
             for event in self._recorded(run_id):
@@ -197,7 +197,7 @@ class LiveHub:
         return self._runs[run_id]
 
     def now_s(self, live: LiveRun | None) -> float:
-        """Return the run's clock now, carried on by wall time since its last event while it ticks."""
+        """Return the current run time, extrapolated with wall time since the last event while the clock ticks."""
         if live is None:
             return 0.0
         if not _ticking(live):
@@ -205,19 +205,19 @@ class LiveHub:
         return live.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
 
     def control_of(self, live: LiveRun | None) -> ControlLive | None:
-        """Return the control of a run as it is now; None when it is over or unknown."""
+        """Return the current control state of a run; None if it has ended or is unknown."""
         if live is None or live.ended or live.seq == 0:
             return None
         view = self.backend.run(live.run_id).control
         return None if view is None else control_live(view, lock_reasons=live.lock_reasons)
 
     def is_settled(self, run_id: str) -> bool:
-        """Say whether the backend's word on a run agrees with the run's events."""
+        """Tell whether the backend's status of a run agrees with the run's events."""
         live = self._runs.get(run_id)
         return live is None or not live.ended or self.backend.run(run_id).status not in ("running", "stopping")
 
     def _on_event(self, run_id: str, event: Event) -> None:
-        # A run that was under way before the hub opened is rebuilt first, this event included or not.
+        # A run that was active before the hub opened is rebuilt first, with or without this event.
         live = self.live_run(run_id)
         if live.seq == 0:
             self._keep(live)
@@ -242,13 +242,13 @@ class LiveHub:
         try:
             return self.backend.events(run_id)
         except FlexcellError:
-            # A page may ask for a run that is gone; it gets an empty one.
+            # A page may request a run that no longer exists; it gets an empty one.
             return []
 
     def _keep(self, live: LiveRun) -> None:
         self._runs[live.run_id] = live
-        over = [run_id for run_id, kept in self._runs.items() if kept.ended]
-        for run_id in over[: max(0, len(self._runs) - KEPT_RUNS)]:
+        ended = [run_id for run_id, kept in self._runs.items() if kept.ended]
+        for run_id in ended[: max(0, len(self._runs) - KEPT_RUNS)]:
             if run_id != live.run_id:
                 del self._runs[run_id]
                 self._seen_at_s.pop(run_id, None)

@@ -1,4 +1,4 @@
-"""The frames of the live stream, as the page gets and sends them."""
+"""The frames of the live stream, in both directions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PROTOCOL_VERSION = 2
 
 
 class RunOverview(msgspec.Struct, frozen=True, kw_only=True):
-    """One run in the list of runs; `waits` is asks, paused or locked while it waits for somebody."""
+    """One run in the list of runs; `waits` is asks, paused or locked while it waits for a person."""
 
     id: str
     behavior: str
@@ -28,7 +28,7 @@ class RunOverview(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k"):
-    """First frame; another `epoch` than before means that the server was restarted."""
+    """First frame; a changed `epoch` means that the server was restarted."""
 
     version: int
     epoch: str
@@ -37,10 +37,10 @@ class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k
 
 
 class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
-    """Everything of the watched run (empty when none is), all runs, newest first, and all arms.
+    """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
-    `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is
-    there while the run is under way.
+    `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run
+    is active.
     """
 
     run: str
@@ -55,9 +55,9 @@ class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", ta
 
 
 class LiveDelta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_field="k"):
-    """What changed in the watched run since `after`, the runs and arms that changed, and the run's present control.
+    """The changes of the watched run since `after`, the changed runs and arms, and the current control of the run.
 
-    `dropped` log lines are missing.
+    `dropped` is the number of missing log lines.
     """
 
     run: str
@@ -74,31 +74,31 @@ class LiveDelta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_fiel
 
 
 class DocumentsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="documents", tag_field="k"):
-    """Documents that have changed on disk, by id: their hash now, null where they are gone."""
+    """Documents that have changed on disk, by id: their new hash, null if deleted."""
 
     changed: dict[str, str | None]
 
 
 class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
-    """The connection lives; a page that does not answer with `Pong` for a while counts as gone."""
+    """Keep-alive; a page that does not answer with `Pong` in time is disconnected."""
 
     server_time_s: float
 
 
 class WatchRun(msgspec.Struct, frozen=True, kw_only=True, tag="watch", tag_field="k"):
-    """From the client: show this run from now on (empty: the list of runs only); answered by a snapshot."""
+    """From the client: watch this run (empty: the list of runs only); the response is a snapshot."""
 
     run: str = ""
 
 
 class OperateRun(msgspec.Struct, frozen=True, kw_only=True, tag="operate", tag_field="k"):
-    """From the client: I operate this run from now on (empty: none); losing the connection is losing the operator."""
+    """From the client: operate this run (empty: none); a lost connection is a lost operator."""
 
     run: str = ""
 
 
 class ShowLayers(msgspec.Struct, frozen=True, kw_only=True, tag="show", tag_field="k"):
-    """From the client: the 3D view under `/cell/<page>/` shows these groups from now on, and no others."""
+    """From the client: the 3D view under `/cell/<page>/` shows exactly these groups."""
 
     page: str
     groups: tuple[LayerGroup, ...]

@@ -1,4 +1,4 @@
-"""The arms of the cell as the page's strip shows them, folded from status, speed override and planned path."""
+"""Status of the cell's arms for the status bar of the page, from status, speed override and planned path."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from editor_web.contracts.backend import Backend, Unsubscribe
 from engine.skills.arm_control import ArmStatus, SpeedOverride
 from engine.skills.planning import PathPreview
 
-# In this order: what an arm is comes before what it plans.
+# In this order: the status of an arm comes before its planned path.
 _KINDS = (ArmStatus.__name__, SpeedOverride.__name__, PathPreview.__name__)
 
 
 class PathLive(msgspec.Struct, frozen=True, kw_only=True):
-    """The planned way of an arm: `proposed`, `moving` or `blocked`, by what, and since when (of the server's clock).
+    """The planned path of an arm: `proposed`, `moving` or `blocked`, the reason, and its start on the server's clock.
 
-    `length_m` is that of the tool's path.
+    `length_m` is the length of the tool's path.
     """
 
     state: str
@@ -30,9 +30,9 @@ class PathLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
-    """One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at.
+    """One arm: its mode, its activity, the error of a reflex stop, and its speed override.
 
-    `way` is the way that is planned for it, which the 3D view shows.
+    `way` is its planned path, which the 3D view shows.
     """
 
     name: str
@@ -45,11 +45,11 @@ class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RobotStatusCache:
-    """Keeps the newest line of every arm.
+    """Keeps the latest status of every arm.
 
     Args:
-        backend: Where the topics are.
-        changed: Told the name of an arm whose line is another now.
+        backend: The engine.
+        changed: Called with the name of an arm whose status has changed.
         unix_s: The server's clock.
     """
 
@@ -63,13 +63,13 @@ class RobotStatusCache:
         self.lines: dict[str, RobotLive] = {}
 
     async def open(self) -> None:
-        """Follow every arm that is on the bus now."""
+        """Subscribe to the topics of every arm on the bus."""
         entries = [each for each in await self._backend.bus.listing() if each.kind == "topic" and each.type in _KINDS]
         for entry in sorted(entries, key=lambda each: _KINDS.index(each.type)):
             self._follow(entry.name, entry.name.rpartition("/")[0])
 
     def close(self) -> None:
-        """Follow them no more."""
+        """Unsubscribe from all topics."""
         for unsubscribe in self._unsubscribe:
             unsubscribe()
         self._unsubscribe = []
@@ -93,20 +93,20 @@ class RobotStatusCache:
             case SpeedOverride() if known is not None:
                 line = msgspec.structs.replace(known, speed_override=message.share)
             case PathPreview() if known is not None:
-                line = msgspec.structs.replace(known, way=self._way(known.way, message))
+                line = msgspec.structs.replace(known, way=self._path(known.way, message))
             case _:
                 return
         if line != known:
             self.lines[arm] = line
             self._changed(arm)
 
-    def _way(self, known: PathLive | None, preview: PathPreview) -> PathLive | None:
+    def _path(self, known: PathLive | None, preview: PathPreview) -> PathLive | None:
         if preview.state == "none":
             return None
-        has_lasted = known is not None and known.state == preview.state
+        is_same_state = known is not None and known.state == preview.state
         return PathLive(
             state=preview.state,
             reason=preview.reason,
-            length_m=sum(math.dist(here, there) for here, there in pairwise(preview.tool_path)),
-            since_s=known.since_s if known is not None and has_lasted else self._unix_s(),
+            length_m=sum(math.dist(start, end) for start, end in pairwise(preview.tool_path)),
+            since_s=known.since_s if known is not None and is_same_state else self._unix_s(),
         )

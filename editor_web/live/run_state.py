@@ -1,4 +1,4 @@
-"""What the page shows of one run, folded from its events: node states, taken transitions, log lines."""
+"""State of one run for the page, reduced from its events: node states, taken transitions, log lines."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from engine.node_path import is_inside
 from engine.skills.planning import PlannedMotion
 
 LOG_LINES = 1000
-# The others change no node.
+# The other events change no node.
 _FOLDED = (RunStarted, NodeEntered, NodeExited, TransitionTaken, GoalFinished, StatusChanged, NodeDiverted, RunEnded)
-# After these the list of runs may have another word on what the run waits for.
-_TURNS = (
+# These events may change what the run waits for in the list of runs.
+_RUN_CHANGING = (
     RunStarted,
     StopRequested,
     RunEnded,
@@ -49,7 +49,7 @@ _TURNS = (
 
 
 class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
-    """A way that a node has planned: for which arm, how long it takes and is, who found it, and in what time."""
+    """A path that a node has planned: arm, duration, length, planner, and planning time."""
 
     robot: str
     duration_s: float
@@ -61,9 +61,9 @@ class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
 class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One node: idle, active, done, failed or stopped.
 
-    `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the
-    run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine
-    took last, as `source|outcome`. `plan` is the way that this visit has planned last.
+    `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock;
+    `duration_s` is that of the last finished visit. `followed` is the last transition of a machine, as
+    `source|outcome`. `plan` is the last path that this visit planned.
     """
 
     status: str = "idle"
@@ -77,7 +77,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 class RunStateChange(msgspec.Struct, frozen=True, kw_only=True):
-    """What one event changed."""
+    """The changes of one event."""
 
     nodes: dict[str, NodeLive]
     line: LogLine
@@ -85,7 +85,7 @@ class RunStateChange(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LiveRun:
-    """The folded state of one run; `apply` is the only way it changes."""
+    """The reduced state of one run; only `apply` and `advance` change it."""
 
     def __init__(self, run_id: str) -> None:
         self.run_id = run_id
@@ -99,16 +99,16 @@ class LiveRun:
         self._containers: frozenset[str] = frozenset()
 
     def apply(self, event: Event) -> RunStateChange | None:
-        """Fold one event in; None when it was already."""
+        """Apply one event; None if it was applied before."""
         changed = self.advance(event)
         if changed is None:
             return None
         line = log_line(event, duration_s=_duration(event, changed))
         self.log.append(line)
-        return RunStateChange(nodes=changed, line=line, run_changed=isinstance(event, _TURNS))
+        return RunStateChange(nodes=changed, line=line, run_changed=isinstance(event, _RUN_CHANGING))
 
     def advance(self, event: Event) -> dict[str, NodeLive] | None:
-        """Fold one event in, without a line in the log; the nodes that it changed, None when it was already."""
+        """Apply one event without a log line; return the changed nodes, None if it was applied before."""
         if event.seq <= self.seq:
             return None
         self.seq = event.seq
@@ -123,19 +123,19 @@ class LiveRun:
         return changed
 
     def copy(self) -> LiveRun:
-        """Return one that goes on from here by itself, its log empty."""
-        made = LiveRun(self.run_id)
-        made.seq, made.time_s, made.real_time, made.ended = self.seq, self.time_s, self.real_time, self.ended
-        made.lock_reasons, made.nodes = dict(self.lock_reasons), dict(self.nodes)
-        made._containers = self._containers
-        return made
+        """Return an independent copy with an empty log."""
+        copied = LiveRun(self.run_id)
+        copied.seq, copied.time_s, copied.real_time, copied.ended = self.seq, self.time_s, self.real_time, self.ended
+        copied.lock_reasons, copied.nodes = dict(self.lock_reasons), dict(self.nodes)
+        copied._containers = self._containers
+        return copied
 
     def _note_containers(self, path: str) -> None:
-        above = path.rpartition("/")[0]
-        # Never changed in place: copies share it.
-        while above and above not in self._containers:
-            self._containers = self._containers | {above}
-            above = above.rpartition("/")[0]
+        parent = path.rpartition("/")[0]
+        # Never changed in place: copies share the set.
+        while parent and parent not in self._containers:
+            self._containers = self._containers | {parent}
+            parent = parent.rpartition("/")[0]
 
     def _commanded(self, event: OperatorCommanded) -> None:
         if event.command == "lock":
@@ -170,7 +170,7 @@ class LiveRun:
         return {}
 
     def _undone(self, event: Event) -> dict[str, NodeLive]:
-        """A node that is being undone is active; one that was taken back is as if it had never been entered."""
+        """Apply an undo: a node under undo is active; an undone node has the state before its entry."""
         match event:
             case UndoStarted():
                 return {event.path: NodeLive(status="active", visits=event.visit, entered_s=event.time_s)}
@@ -181,27 +181,27 @@ class LiveRun:
                 duration_s = event.time_s - node.entered_s
                 return {event.path: msgspec.structs.replace(node, status=status, cause=cause, duration_s=duration_s)}
             case RunSteppedBack() if event.cause is None:
-                return self._taken_back(event)
+                return self._stepped_back(event)
             case _:
                 return {}
 
-    def _taken_back(self, event: RunSteppedBack) -> dict[str, NodeLive]:
+    def _stepped_back(self, event: RunSteppedBack) -> dict[str, NodeLive]:
         changed = {
             path: NodeLive(visits=node.visits)
             for path, node in self.nodes.items()
             if is_inside(event.path, path) or is_inside(event.source, path)
         }
-        above = event.path.rpartition("/")[0]
-        if above in self.nodes:
-            # The arrow that was taken last leads into what was taken back.
-            changed[above] = msgspec.structs.replace(self.nodes[above], followed="")
+        parent = event.path.rpartition("/")[0]
+        if parent in self.nodes:
+            # The last transition of the parent leads into an undone node.
+            changed[parent] = msgspec.structs.replace(self.nodes[parent], followed="")
         return changed
 
     def _entered(self, event: NodeEntered) -> dict[str, NodeLive]:
         changed: dict[str, NodeLive] = {}
         if event.path in self._containers:
             inside = f"{event.path}/"
-            # What lies inside starts afresh with its container; the counters go on.
+            # The nodes inside are reset with their container; the visit counters are kept.
             changed = {
                 path: NodeLive(visits=node.visits)
                 for path, node in self.nodes.items()
@@ -211,7 +211,7 @@ class LiveRun:
         return changed
 
     def _planned(self, event: GoalFinished) -> dict[str, NodeLive]:
-        """A finished goal matters to its node only where its result is a way."""
+        """Apply a finished goal; it changes its node only if its result is a planned path."""
         if event.result is None or "tool_path" not in event.result:
             return {}
         try:
@@ -221,14 +221,14 @@ class LiveRun:
         line = PlanLive(
             robot=plan.robot,
             duration_s=plan.duration_s,
-            length_m=sum(math.dist(here, there) for here, there in pairwise(plan.tool_path)),
+            length_m=sum(math.dist(start, end) for start, end in pairwise(plan.tool_path)),
             found_by=plan.found_by,
             planning_s=plan.planning_s,
         )
         return {event.path: msgspec.structs.replace(self.nodes.get(event.path, NodeLive()), plan=line)}
 
     def _status_changed(self, event: StatusChanged) -> NodeLive:
-        """A composite or decorator of a behavior tree has no visits of its own; how a leaf has ended is known."""
+        """Apply a tick status; composites and decorators have no visits of their own, leaves keep their outcome."""
         node = self.nodes.get(event.path, NodeLive())
         if (node.outcome or node.cause) and event.status != "invalid":
             return node

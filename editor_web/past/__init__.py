@@ -1,7 +1,7 @@
-"""A run as it was at any moment of it, folded from its events by what also folds the live view.
+"""The state of a run at any point in time, reduced from its events as in the live view.
 
-`OpenRunCache` opens runs of this server, of the journal and recordings as `PastRun`; one gives its timeline, its
-states over time and, where it failed, how.
+`OpenRunCache` opens runs of this server, of the journal and of recordings as `OpenRun`, which gives the timeline, the
+states over time and, for a failed run, the failure.
 """
 
 from editor_web.past.failure import RunFailure

@@ -1,4 +1,4 @@
-"""How a run failed: the chain of causes with advice, the node where it began, and what happened there."""
+"""Failure of a run: the cause chain with hints, the node where it originated, and the events of that node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _AROUND_KINDS = frozenset(
 
 
 class FailureLink(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of the chain of causes, what was measured first; `hint` says what to do about it, may be empty."""
+    """One link of the cause chain, root cause first; `hint` tells how to fix it, may be empty."""
 
     message: str
     where: str
@@ -27,7 +27,7 @@ class FailureLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FailureStep(msgspec.Struct, frozen=True, kw_only=True):
-    """How a node on the way from the root to the origin ended, after event `seq`."""
+    """How a node between the root and the origin ended, after event `seq`."""
 
     path: str
     seq: int
@@ -36,9 +36,9 @@ class FailureStep(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
-    """A run that failed: it began at event `seq`, at node `path` (empty where no node did it).
+    """A failed run: the failure originated at event `seq`, at node `path` (empty if in no node).
 
-    `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote.
+    `steps` are the nodes from the root to the origin, `around` the requests, answers and writes of the origin.
     """
 
     seq: int
@@ -52,7 +52,7 @@ class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None:
-    """Return how a run failed; None for one that did not, or is not over."""
+    """Return the failure of a run; None if it did not fail or has not ended."""
     end = events[-1] if events else None
     if not isinstance(end, RunEnded) or not is_failed:
         return None
@@ -73,14 +73,14 @@ def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None
 
 
 def _origin(events: Sequence[Event], end: RunEnded) -> Event:
-    """Return the event that began it: the deepest and earliest one of the same cause, in the last visit of its node."""
+    """Return the origin: the deepest and earliest event of the same cause, in the last visit of its node."""
     if end.cause is not None:
         root = end.cause.chain()[-1]
-        found = _innermost(events, lambda event: _root_of(event) == root) or _innermost(
+        origin = _innermost(events, lambda event: _root_of(event) == root) or _innermost(
             events, lambda event: _is_end_of_node(event) and _path(event) == root.where
         )
-        if found is not None:
-            return found
+        if origin is not None:
+            return origin
     return _innermost(events, _is_end_of_node) or end
 
 
@@ -110,7 +110,7 @@ def _path(event: Event) -> str:
 
 
 def _steps(events: Sequence[Event], path: str, since_seq: int) -> Iterator[FailureStep]:
-    """Tell how the containers around the origin ended after it, outermost first."""
+    """Yield how the containers around the origin ended after it, outermost first."""
     ends = {
         _path(event): event
         for event in events
@@ -118,17 +118,19 @@ def _steps(events: Sequence[Event], path: str, since_seq: int) -> Iterator[Failu
     }
     parts = path.split("/") if path else []
     for depth in range(1, len(parts) + 1):
-        here = "/".join(parts[:depth])
-        event = ends.get(here)
+        node = "/".join(parts[:depth])
+        event = ends.get(node)
         if event is not None:
             text = (
-                f"ended with {event.outcome or 'an error'}" if isinstance(event, NodeExited) else f"left by {event.by}"
+                f"ended with {event.outcome or 'an error'}"
+                if isinstance(event, NodeExited)
+                else f"preempted by {event.by}"
             )
-            yield FailureStep(path=here, seq=event.seq, time_s=event.time_s, text=text)
+            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=text)
 
 
 def _around(events: Sequence[Event], path: str, seq: int) -> tuple[LogLine, ...]:
-    """Return the last lines of the node's last visit, and how it ended."""
+    """Return the last log lines of the node's last visit, including its end."""
     begun = next(
         (e for e in reversed(events) if e.seq <= seq and isinstance(e, NodeEntered) and e.path == path), events[0]
     )
@@ -141,7 +143,7 @@ def _around(events: Sequence[Event], path: str, seq: int) -> tuple[LogLine, ...]
 
 
 def _link(cause: Cause) -> FailureLink:
-    message, hint = _parted(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
+    message, hint = _split_hint(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
     return FailureLink(message=message, where=cause.where, kind=cause.kind, hint=hint)
 
 
@@ -149,12 +151,12 @@ def _family(kind: type[FlexcellError]) -> frozenset[str]:
     return frozenset({kind.__name__}.union(*(_family(each) for each in kind.__subclasses__())))
 
 
-def _parted(message: str) -> tuple[str, str]:
-    """Part the advice from what an error of ours says: it stands in brackets at the end."""
+def _split_hint(message: str) -> tuple[str, str]:
+    """Split the message of a flexcell error into message and hint, which is in parentheses at the end."""
     depth = 0
     for index in range(len(message) - 1, 0, -1):
         depth += {")": 1, "(": -1}.get(message[index], 0)
         if depth == 0:
-            is_advice = index < len(message) - 1 and message[index - 1] == " "
-            return (message[: index - 1], message[index + 1 : -1]) if is_advice else (message, "")
+            has_hint = index < len(message) - 1 and message[index - 1] == " "
+            return (message[: index - 1], message[index + 1 : -1]) if has_hint else (message, "")
     return message, ""

@@ -1,4 +1,4 @@
-"""When each node was active: spans derived from the fold of the live view, merged where there are too many."""
+"""Activation intervals of each node, derived from the live run state, merged if there are too many."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from editor_web.live.run_state import NodeLive
 from engine.event import Event
 
 MAX_INTERVALS = 12_000
-"""Spans in one answer; more are merged."""
+"""Maximum number of intervals in one response; more are merged."""
 _WORST = {"failed": 0, "stopped": 1, "active": 2, "done": 3}
 
 
 class ActivationInterval(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active.
+    """One activation of a node, or `count` adjacent ones; `end_s` is null while it is active.
 
-    `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that
-    began and ended it.
+    `status` is active, done, failed or stopped, the worst of several; `seq` and `end_seq` are the events that started
+    and ended it.
     """
 
     start_s: float
@@ -33,7 +33,7 @@ class ActivationInterval(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 class ActivationIntervals:
-    """The spans of one run, by the path of the node; not to be used by two threads at once."""
+    """The intervals of one run, by node path; not thread-safe."""
 
     def __init__(self) -> None:
         self._over: defaultdict[str, list[ActivationInterval]] = defaultdict(list)
@@ -44,12 +44,12 @@ class ActivationIntervals:
         return self._count + len(self._open)
 
     def take(self, event: Event, changed: Mapping[str, NodeLive]) -> None:
-        """Take what an event has changed in the fold."""
+        """Apply the node changes of an event."""
         for path, node in changed.items():
             known = self._open.get(path)
             if node.status == "active":
                 if known is not None and (known.start_s, known.visit) == (node.entered_s, node.visits):
-                    # Something else of it has changed.
+                    # Another field of the node has changed.
                     continue
                 if known is not None:
                     self._close(path, event, "stopped", "")
@@ -59,8 +59,8 @@ class ActivationIntervals:
                 self._close(path, event, status, node.outcome)
 
     def of(self, *, from_s: float, until_s: float, after_seq: int) -> dict[str, tuple[ActivationInterval, ...]]:
-        """Return the spans that touch a time and were begun or ended after an event, in order, by path."""
-        found: dict[str, tuple[ActivationInterval, ...]] = {}
+        """Return the intervals that overlap a time range and started or ended after an event, in order, by path."""
+        selected: dict[str, tuple[ActivationInterval, ...]] = {}
         for path in {*self._over, *self._open}:
             spans = tuple(
                 span
@@ -70,8 +70,8 @@ class ActivationIntervals:
                 and (span.end_s is None or span.end_s >= from_s)
             )
             if spans:
-                found[path] = spans
-        return found
+                selected[path] = spans
+        return selected
 
     def _all(self, path: str) -> Iterator[ActivationInterval]:
         yield from self._over.get(path, ())
@@ -110,27 +110,27 @@ class ActivationIntervals:
 def merge_intervals(
     spans: Mapping[str, tuple[ActivationInterval, ...]], *, span_s: float, most: int = MAX_INTERVALS
 ) -> dict[str, tuple[ActivationInterval, ...]]:
-    """Return at most `most` spans where that can be: those of a node that lie close together become one.
+    """Return at most `most` intervals if possible: adjacent intervals of a node are merged.
 
     Args:
-        spans: By path, in order.
-        span_s: The time that is looked at; as a first try, what is nearer than a 4000th of it is merged.
-        most: How many spans may be left; nodes with one each cannot be merged any further.
+        spans: Intervals by path, in order.
+        span_s: The displayed time range; the first attempt merges intervals closer than 1/4000 of it.
+        most: Maximum number of intervals left; nodes with a single interval cannot be merged further.
     """
-    near_s = span_s / 4000
-    made = dict(spans)
-    while sum(map(len, made.values())) > max(most, len(made)) and near_s <= 2 * span_s:
-        made = {path: tuple(_joined(row, near_s)) for path, row in spans.items()}
-        near_s *= 2
-    return made
+    gap_s = span_s / 4000
+    merged = dict(spans)
+    while sum(map(len, merged.values())) > max(most, len(merged)) and gap_s <= 2 * span_s:
+        merged = {path: tuple(_merge_row(row, gap_s)) for path, row in spans.items()}
+        gap_s *= 2
+    return merged
 
 
-def _joined(row: Iterable[ActivationInterval], near_s: float) -> Iterator[ActivationInterval]:
+def _merge_row(row: Iterable[ActivationInterval], gap_s: float) -> Iterator[ActivationInterval]:
     held: ActivationInterval | None = None
     for span in row:
         if held is None:
             held = span
-        elif held.end_s is not None and _end(span) - held.start_s <= near_s:
+        elif held.end_s is not None and _end(span) - held.start_s <= gap_s:
             held = _join(held, span)
         else:
             yield held

@@ -1,4 +1,4 @@
-"""What of a run is marked on its timeline: failures, commands, gates, goals, changes, faults."""
+"""Timeline markers of a run: failures, commands, gates, goals, changes, faults."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from engine.event import (
 )
 
 MAX_MARKERS = 4000
-"""Marks in one answer; goals are left out first."""
+"""Maximum number of markers in one response; goals are dropped first."""
 _MARKED = (
     NodeAbandoned,
     BehaviorChanged,
@@ -62,12 +62,12 @@ class TimelineMarker(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 def marker_of(event: Event) -> TimelineMarker | None:
-    """Return the mark of an event; None where it has none."""
+    """Return the marker of an event; None if it has none."""
     kind = _kind(event) if isinstance(event, _MARKED) else None
     if kind is None:
         return None
     if isinstance(event, GoalSent):
-        # They are many, and their words would be the whole request.
+        # Goals are frequent, and their log line would contain the whole request.
         return TimelineMarker(seq=event.seq, time_s=event.time_s, kind=kind, path=event.path, text=event.address)
     line = log_line(event)
     text = f"ended with {event.outcome or 'an error'}" if isinstance(event, NodeExited) else line.text
@@ -79,18 +79,18 @@ def marker_of(event: Event) -> TimelineMarker | None:
 def limit_markers(
     marks: Iterable[TimelineMarker], *, most: int = MAX_MARKERS
 ) -> tuple[tuple[TimelineMarker, ...], int]:
-    """Return at most `most` marks in order and how many were left out: goals first, then the earliest of the others."""
+    """Return at most `most` markers in order, and the number dropped: goals first, then the earliest of the others."""
     every = tuple(marks)
     if len(every) <= most:
         return every, 0
     kept = [mark for mark in every if mark.kind != "goal"]
-    room = most - len(kept)
-    if room <= 0:
+    goal_count = most - len(kept)
+    if goal_count <= 0:
         return tuple(kept[-most:]), len(every) - most
     goals = [mark for mark in every if mark.kind == "goal"]
-    # Spread over the whole run, so that none of its parts looks idle.
-    step = len(goals) / room
-    kept += [goals[int(index * step)] for index in range(room)]
+    # Evenly spread over the run, so that no part of it looks idle.
+    step = len(goals) / goal_count
+    kept += [goals[int(index * step)] for index in range(goal_count)]
     return tuple(sorted(kept, key=lambda mark: mark.seq)), len(every) - len(kept)
 
 

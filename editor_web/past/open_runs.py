@@ -1,4 +1,4 @@
-"""The runs that are looked at: of this server, of the journal, of recordings; a few are kept open."""
+"""Cache of open runs: of this server, of the journal and of recordings."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from engine.event import Event
 from engine.runtime.history.userdata_history import UserdataHistory
 
 MAX_OPEN_RUNS = 6
-"""Runs that are kept open; 100,000 events take some 100 MB."""
-_BREATH = 256
-"""Events that are folded without letting the engine's thread have its turn."""
+"""Maximum number of open runs; 100,000 events take about 100 MB."""
+_EVENTS_PER_YIELD = 256
+"""Events processed before yielding to the engine's thread."""
 
 
 @dataclass(kw_only=True)
 class OpenRun:
-    """One run with its course, for any thread; `archived` is there where it is not a run of this server."""
+    """One run with its history; thread-safe; `archived` is None for a run of this server."""
 
     course: RunHistory
     books: UserdataCheckpoints
@@ -34,23 +34,23 @@ class OpenRun:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def follow(self, events: Iterable[Event]) -> None:
-        """Take further events."""
+        """Apply further events."""
         with self.lock:
             for count, event in enumerate(events, 1):
                 self.course.follow(event)
-                if count % _BREATH == 0:
-                    # Runs on a thread beside the engine's: a long fold must not make it wait for its turn.
+                if count % _EVENTS_PER_YIELD == 0:
+                    # Runs beside the engine's thread, which a long loop must not block.
                     time.sleep(0)
 
     def timeline(self, *, from_s: float, until_s: float, after_seq: int) -> Timeline:
-        """Return its timeline; see `Course.timeline`."""
+        """Return its timeline; see `RunHistory.timeline`."""
         with self.lock:
             return self.course.timeline(from_s=from_s, until_s=until_s, after_seq=after_seq)
 
     def at(self, *, time_s: float | None, seq: int | None, known: int | None, lines: int) -> PastRunState | None:
-        """Return the run at a time of its clock, or after an event; its last moment where none is given.
+        """Return the run at a time of its clock or after an event; by default after the last event.
 
-        None where that is after event `known`, which whoever asks has already.
+        None if that is the state after event `known`, which the client has already.
         """
         with self.lock:
             moments = self.course.moments
@@ -59,20 +59,20 @@ class OpenRun:
             return None if wanted == known else moments.at(wanted, lines=lines)
 
     def values(self, *, seq: int | None) -> PastUserdata:
-        """Return its userdata after an event, its last one where none is given."""
+        """Return its userdata after an event; by default after the last event."""
         with self.lock:
             moments = self.course.moments
             return self.books.at(moments, moments.last_seq if seq is None else min(seq, moments.last_seq))
 
     def failure(self, *, is_failed: bool) -> RunFailure | None:
-        """Return how it failed; None where it did not."""
+        """Return its failure; None if it did not fail."""
         with self.lock:
             moments = self.course.moments
             return failure_of(moments.events(1, moments.last_seq), is_failed=is_failed)
 
 
 class OpenRunCache:
-    """Opens runs to be looked at. A few are kept open.
+    """Opens runs and keeps at most `MAX_OPEN_RUNS` of them open.
 
     Args:
         backend: The engine.
@@ -89,9 +89,9 @@ class OpenRunCache:
         return self._backend.archive
 
     def of_server(self, run_id: str) -> tuple[OpenRun, list[Event]] | None:
-        """Return a run of this server and the events that it has still to follow; None where there is none.
+        """Return a run of this server and its events that are not applied yet; None if there is no such run.
 
-        Called on the event loop's thread; following may take a while and is done on another.
+        Call it on the event loop's thread; apply the events on another thread, as that may take long.
         """
         key = f"server {run_id}"
         known = self._known(key)
@@ -103,19 +103,19 @@ class OpenRunCache:
         return known or self._entry(key, run_id, self._book(run_id)), further
 
     def keeps(self, run_id: str) -> bool:
-        """Return whether a run of the journal is kept open."""
+        """Return whether a run of the journal is open."""
         return self._known(_journal_key(run_id)) is not None
 
     def of_journal(self, run_id: str, *, fresh: bool) -> OpenRun:
-        """Return a run of the journal; one without an end is read again where `fresh` is asked for.
+        """Return a run of the journal; with `fresh`, a run without an end is read again.
 
         Raises:
             JournalError: there is no such run, or it cannot be read.
         """
         key = _journal_key(run_id)
         known = self._known(key)
-        is_over = known is not None and known.archived is not None and known.archived.summary.status != "running"
-        if known is not None and (is_over or not fresh):
+        has_ended = known is not None and known.archived is not None and known.archived.summary.status != "running"
+        if known is not None and (has_ended or not fresh):
             return known
         return self._with(key, self._backend.archive.run(run_id))
 
@@ -123,7 +123,7 @@ class OpenRunCache:
         """Return a recording by its path in the project.
 
         Raises:
-            RecordingError: there is none, or it cannot be read.
+            RecordingError: there is no such recording, or it cannot be read.
         """
         file = self._backend.archive.recording_file(path)
         key = f"recording {path} {file.stat().st_mtime_ns}"
@@ -133,7 +133,7 @@ class OpenRunCache:
         plan = archived.plan
         book = UserdataHistory(lambda: plan) if plan is not None else None
         opened = OpenRun(course=RunHistory(archived.summary.id), books=UserdataCheckpoints(book), archived=archived)
-        # Before others can find it, so that nobody sees a part of it.
+        # Before it is in the cache, so that no reader sees a partial history.
         opened.follow(archived.events)
         with self._lock:
             self._keep(key, opened)

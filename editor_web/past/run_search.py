@@ -1,4 +1,4 @@
-"""Finding past runs: by words, by how they ended, by when they began."""
+"""Search for past runs by words, status and start time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RUN_KINDS: tuple[RunKind, ...] = ("all", "failed", "finished", "stopped", "runni
 
 @dataclass(frozen=True, kw_only=True)
 class PastRunQuery:
-    """What is looked for; `since_s` and `until_s` are of the wall clock, seconds since 1970."""
+    """A search query; `since_s` and `until_s` limit the start time, seconds since 1970."""
 
     text: str
     kind: RunKind
@@ -23,15 +23,15 @@ class PastRunQuery:
     until_s: float
 
     def matches(self, run: PastRun) -> bool:
-        """Tell whether a run has all of the words and began in that time, however it ended."""
+        """Tell whether a run contains all words and started in the time range; the kind is not compared."""
         if not self.since_s <= run.started_at_s <= self.until_s:
             return False
-        said = f"{run.id} {run.behavior} {run.status} {run.outcome or ''} {run.cause}".lower()
-        return all(word in said for word in self.text.lower().split())
+        text = f"{run.id} {run.behavior} {run.status} {run.outcome or ''} {run.cause}".lower()
+        return all(word in text for word in self.text.lower().split())
 
 
 def kind_of(run: PastRun) -> RunKind:
-    """Return how it ended."""
+    """Return the kind of a run by its end."""
     if run.failed:
         return "failed"
     match run.status:
@@ -44,7 +44,7 @@ def kind_of(run: PastRun) -> RunKind:
 def search_runs(
     runs: Sequence[PastRun], wanted: PastRunQuery, *, offset: int, limit: int
 ) -> tuple[tuple[PastRun, ...], int, Counter[str]]:
-    """Return a page of what matches, how many match, and how many there are of each kind whatever kind is wanted."""
+    """Return a page of the matching runs, their number, and the number of runs of each kind."""
     matching = [run for run in runs if wanted.matches(run)]
     counts: Counter[str] = Counter(map(kind_of, matching))
     counts["all"] = len(matching)

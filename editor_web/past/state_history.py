@@ -1,4 +1,4 @@
-"""The moments of a run: its events folded once, with checkpoints, so that each further moment is a short way off."""
+"""State history of a run: its events are reduced once, with checkpoints for fast access to any point in time."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive
 from engine.event import Event
 
 CHECKPOINT_INTERVAL = 512
-"""Events between two checkpoints, at first."""
+"""Initial number of events between two checkpoints."""
 MAX_CHECKPOINTS = 256
 
 
 class PastRunState(msgspec.Struct, frozen=True, kw_only=True):
-    """A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before."""
+    """A run after event `seq`: its nodes and the last lines of its log; `dropped` counts the earlier lines."""
 
     seq: int
     time_s: float
@@ -27,10 +27,7 @@ class PastRunState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RunStateHistory:
-    """The moments of one run; `follow` takes further events of one that is under way.
-
-    Not to be used by two threads at once.
-    """
+    """The state history of one run; `follow` applies further events of an active run. Not thread-safe."""
 
     def __init__(self, run_id: str) -> None:
         self.now = LiveRun(run_id)
@@ -46,7 +43,7 @@ class RunStateHistory:
         return self.now.seq
 
     def follow(self, event: Event) -> dict[str, NodeLive] | None:
-        """Take the next event; what it changes, None when it was taken already."""
+        """Apply the next event; return the changed nodes, None if it was applied before."""
         changed = self.now.advance(event)
         if changed is None:
             return None
@@ -62,7 +59,7 @@ class RunStateHistory:
         return self._events[index - 1].seq if index else 0
 
     def at(self, seq: int, *, lines: int = LOG_LINES) -> PastRunState:
-        """Return the run after event `seq`, with that many lines of its log at most."""
+        """Return the run after event `seq`, with at most `lines` lines of its log."""
         count = bisect_right(self._events, seq, key=lambda event: event.seq)
         wanted = min(lines, LOG_LINES)
         begin = max(0, count - wanted) // self._every
@@ -82,6 +79,6 @@ class RunStateHistory:
     def _keep(self) -> None:
         self._checkpoints.append(self.now.copy())
         if len(self._checkpoints) > MAX_CHECKPOINTS:
-            # Half as many, twice as far from one another.
+            # Keep every second checkpoint and double the interval.
             self._checkpoints = self._checkpoints[::2]
             self._every *= 2

@@ -1,4 +1,4 @@
-"""The timeline of a run: when each node was active, and what is marked."""
+"""The timeline of a run: activation intervals of each node, and markers."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from engine.event import Event
 
 
 class TimelineRow(msgspec.Struct, frozen=True, kw_only=True):
-    """The spans of one node, in order; its depth is in its path."""
+    """The intervals of one node, in order; its path gives its depth."""
 
     path: str
     spans: tuple[ActivationInterval, ...]
 
 
 class Timeline(msgspec.Struct, frozen=True, kw_only=True):
-    """A run up to event `seq`, or what of it was begun or ended after the event that was asked for.
+    """A run up to event `seq`, or its intervals that started or ended after the requested event.
 
-    `merge_intervals` says that spans which lie close together became one: ask for a part of the time to see it exactly.
-    `left_out` marks are not in it.
+    `merged` means that adjacent intervals were merged: request a shorter time range for the exact ones. `left_out` is
+    the number of dropped markers.
     """
 
     run: str
@@ -37,7 +37,7 @@ class Timeline(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RunHistory:
-    """A run followed from its first event: its moments, spans and marks; not to be used by two threads at once."""
+    """A run from its first event on: state history, intervals and markers. Not thread-safe."""
 
     def __init__(self, run_id: str) -> None:
         self.run_id = run_id
@@ -46,7 +46,7 @@ class RunHistory:
         self._marks: list[TimelineMarker] = []
 
     def follow(self, event: Event) -> None:
-        """Take the next event; one that was taken already does nothing."""
+        """Apply the next event; no effect if it was applied before."""
         changed = self.moments.follow(event)
         if changed is None:
             return
@@ -59,7 +59,7 @@ class RunHistory:
     def timeline(
         self, *, from_s: float = 0.0, until_s: float = math.inf, after_seq: int = 0, most: int = MAX_INTERVALS
     ) -> Timeline:
-        """Return what of the run touches a time, and is newer than an event; all of it where spans are merged."""
+        """Return the part of the run that overlaps a time range and is newer than an event; all of it if merged."""
         now = self.moments.now
         is_many = len(self._spans) > most
         after_seq = 0 if is_many else after_seq

@@ -1,4 +1,4 @@
-"""The userdata of a run at any moment of it, folded by what also tells it live, with checkpoints on the way."""
+"""The userdata of a run at any point in time, reduced as in the live view, with checkpoints."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _EVERY = 1024
 
 
 class PastUserdata(msgspec.Struct, frozen=True, kw_only=True):
-    """The scopes of a run after event `seq`, by the path of their container; `problem` says why there are none."""
+    """The scopes of a run after event `seq`, by container path; `problem` tells why there are none."""
 
     seq: int
     scopes: dict[str, UserdataScope]
@@ -24,19 +24,19 @@ class PastUserdata(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class UserdataCheckpoints:
-    """The userdata of one run; not to be used by two threads at once.
+    """The userdata of one run. Not thread-safe.
 
     Args:
-        book: That of the run before its first event; None where nothing tells what it executed.
+        book: The userdata history of the run before its first event; None if the executed behavior is unknown.
     """
 
     def __init__(self, book: UserdataHistory | None) -> None:
         self._checkpoints = [book] if book is not None else []
 
     def at(self, moments: RunStateHistory, seq: int) -> PastUserdata:
-        """Return the values after event `seq` of the run with these moments."""
+        """Return the values after event `seq` of the run with this state history."""
         if not self._checkpoints:
-            return PastUserdata(seq=seq, scopes={}, problem="nothing tells which behavior was executed")
+            return PastUserdata(seq=seq, scopes={}, problem="the executed behavior is unknown")
         index = bisect_right(self._checkpoints, seq, key=lambda book: book.seq) - 1
         book = self._checkpoints[index].copy()
         while book.seq + _EVERY < seq:

@@ -1,1 +1,1 @@
-"""The addresses of the server, one file per subject."""
+"""The HTTP routes of the server, one file per subject."""

@@ -1,4 +1,4 @@
-"""The catalogue: which behaviors there are, and one of them with its form, findings and graph."""
+"""Behaviors: the list, and one behavior with its form, findings and graph."""
 
 from __future__ import annotations
 

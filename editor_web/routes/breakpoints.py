@@ -1,4 +1,4 @@
-"""The breakpoints that are kept beside a behavior's file, for all its runs."""
+"""The breakpoints stored with a behavior, for all its runs."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ MAX_BREAKPOINTS = 200
 
 
 def to_breakpoints(body: BreakpointsBody) -> tuple[Breakpoint, ...]:
-    """Return the breakpoints of a request; raises ExpressionError where a condition does not compile."""
+    """Return the breakpoints of a request; raises ExpressionError if a condition does not compile."""
     if len(body.breakpoints) > MAX_BREAKPOINTS:
         raise ExpressionError(f"more than {MAX_BREAKPOINTS} breakpoints", hint="use wildcards in `path`")
-    made = tuple(Breakpoint(**each.model_dump()) for each in body.breakpoints)
-    for each in made:
-        _ = each.template  # compiled now, so that a wrong expression is refused before anything changes
-    return made
+    breakpoints = tuple(Breakpoint(**each.model_dump()) for each in body.breakpoints)
+    for each in breakpoints:
+        _ = each.template  # compiled now, so that an invalid expression is rejected before anything changes
+    return breakpoints
 
 
 @router.get("/{behavior_id:path}")
 def get_breakpoints(behavior_id: str, services: ServicesOf) -> BreakpointsBody:
-    """Return what is kept beside the behavior."""
+    """Return the breakpoints stored with the behavior."""
     kept = services.backend.breakpoints(behavior_id)
     return BreakpointsBody(breakpoints=tuple(BreakpointBody.model_validate(each) for each in kept))
 
 
 @router.put("/{behavior_id:path}")
 async def keep_breakpoints(behavior_id: str, body: BreakpointsBody, services: ServicesOf) -> BreakpointsBody:
-    """Write all breakpoints beside the behavior; without any, there is no file."""
+    """Replace the breakpoints stored with the behavior; an empty list removes the file."""
     services.backend.keep_breakpoints(behavior_id, await run_in_threadpool(to_breakpoints, body))
     return get_breakpoints(behavior_id, services)

@@ -1,4 +1,4 @@
-"""The skill bus for the command line and the page: what there is, call, publish, goals; all in the skills' own JSON."""
+"""The skill bus for the command line and the page: list, call, publish and goals, in the skills' own JSON."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ async def list_bus(services: ServicesOf) -> Response:
 
 @router.get("/echo")
 async def echo_topic(topic: str, services: ServicesOf) -> Response:
-    """Send the messages of a topic, one JSON object a line, the latest first, until the client goes."""
+    """Stream the messages of a topic, one JSON object per line, from the latest on, until the client disconnects."""
     messages = services.backend.bus.echo(topic)
     entries = await services.backend.bus.listing()
     if not any(entry.kind == "topic" and entry.name == topic for entry in entries):
-        # The bus knows best how to say that it does not know the topic.
+        # The bus itself raises the error for an unknown topic.
         await anext(messages)
     return StreamingResponse(_lines(messages), media_type="application/x-ndjson")
 
@@ -56,13 +56,13 @@ async def publish_message(body: BusMessageBody, services: ServicesOf) -> None:
 
 @router.post("/call")
 async def call_service(body: BusRequestBody, services: ServicesOf) -> Response:
-    """Ask a service and return its answer."""
+    """Call a service and return its response."""
     return Response(await services.backend.bus.call(body.address, body.request), media_type="application/json")
 
 
 @router.post("/goal")
 async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Request) -> Response:
-    """Send a goal and return its end; it is cancelled when the client goes. This moves the robot."""
+    """Send a goal and return its end; it is cancelled if the client disconnects. This moves the robot."""
     work = services.backend.bus.perform(body.address, body.request)
     end = await run_while_connected(work, request, name=f"goal {body.address}")
     if end is None:
@@ -72,7 +72,7 @@ async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Requ
 
 @router.get("/board")
 async def get_board(services: ServicesOf) -> Response:
-    """Return topics, services, actions and parameters with what they are for; `shape` tells when to ask again."""
+    """Return topics, services, actions and parameters with descriptions; `shape` changes when this list does."""
     desk = services.backend.desk
     parameters = (msgspec.structs.replace(each, value=truncate_value(each.value)) for each in desk.parameters())
     return json_response(
@@ -84,7 +84,7 @@ async def get_board(services: ServicesOf) -> Response:
 
 @router.get("/form")
 async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> Response:
-    """Return the JSON Schema of the request at an address, or of the messages of a topic."""
+    """Return the JSON Schema of the request of an address, or of the messages of a topic."""
     desk = services.backend.desk
     schema = desk.message_schema(topic) if topic else desk.request_schema(address)
     return json_response(BusForm(name=topic or address, schema=schema))
@@ -92,7 +92,7 @@ async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> 
 
 @router.get("/fields")
 async def get_fields(services: ServicesOf) -> Response:
-    """Return the numbers of the newest message of every topic, to be plotted."""
+    """Return the numeric fields of the latest message of every topic, for plots."""
     desk = services.backend.desk
     topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
     return json_response(
@@ -106,25 +106,25 @@ async def get_fields(services: ServicesOf) -> Response:
 
 @router.put("/parameter")
 async def set_parameter(body: BusParameterBody, services: ServicesOf) -> Response:
-    """Set a parameter and return its value then. This may change what a robot does."""
+    """Set a parameter and return its new value. This may change the behavior of a robot."""
     return json_response(truncate_value(services.backend.desk.set_parameter(body.name, body.value)))
 
 
 @router.post("/goals")
 async def send_goal(body: BusRequestBody, services: ServicesOf) -> Response:
-    """Send a goal and tell its course, a JSON object a line; cancelled when the client goes. This moves the robot."""
+    """Send a goal and stream its progress, one JSON object per line; cancelled on disconnect. This moves the robot."""
     desk = services.backend.desk
     return GoalStream(desk, desk.send(body.address, body.request))
 
 
 @router.post("/goals/{goal}/cancel", status_code=202)
 async def cancel_goal(goal: str, services: ServicesOf) -> None:
-    """Ask for the stop of a goal that a person sent; its own stream tells the end."""
+    """Cancel a goal that was sent from the page; its own stream reports the end."""
     services.backend.desk.cancel(goal)
 
 
 async def run_while_connected(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:
-    """Return what `work` returns; it is cancelled, and None returned, when the client goes before."""
+    """Return the result of `work`; if the client disconnects first, cancel it and return None."""
     goal = asyncio.create_task(work, name=name)
     gone = asyncio.create_task(wait_for_disconnect(request.receive), name="goal-client")
     try:
@@ -133,5 +133,5 @@ async def run_while_connected(work: Coroutine[Any, Any, R], request: Request, *,
     finally:
         for task in (goal, gone):
             task.cancel()
-        # The goal has ended only when its device is at rest.
+        # The goal ends only when its device is at rest.
         await asyncio.wait({goal, gone})

@@ -1,4 +1,4 @@
-"""What can be put into a behavior: states, containers, other behaviors, entries and names of the cell."""
+"""The catalogue: states, containers, other behaviors, entries and names of the cell that a behavior can use."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ router = APIRouter(prefix="/api/v1/catalogue", tags=["documents"])
 
 @router.get("")
 async def get_catalogue(services: ServicesOf) -> CatalogueBody:
-    """Return everything that can be put into a behavior, each part sorted by name."""
+    """Return everything that a behavior can use, each kind sorted by name."""
     entries = await _entries(services)
     return await run_in_threadpool(_catalogue, services, entries)
 

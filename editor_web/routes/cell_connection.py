@@ -1,4 +1,4 @@
-"""Whether the devices of the cell are connected, and connecting again what is lost."""
+"""Connection state of the cell's devices, and reconnection of lost ones."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ router = APIRouter(prefix="/api/v1/cell", tags=["cell"])
 
 @router.get("/connection")
 async def get_connection(services: ServicesOf) -> ConnectionBody:
-    """Say whether every device is connected, and which is lost and why."""
+    """Return whether every device is connected, and which one is lost and why."""
     return ConnectionBody.model_validate(services.backend.cell_connection)
 
 
 @router.post("/connect", status_code=204, responses={409: {"model": ErrorBody}, 422: {"model": ErrorBody}})
 async def connect_cell(body: ConnectBody, services: ServicesOf) -> None:
-    """Connect again what is lost; 409 while a run is under way, 422 where a device does not come back."""
+    """Reconnect lost devices; 409 while a run is active, 422 if a device does not reconnect."""
     del body
     await services.backend.connect_cell()

@@ -1,4 +1,4 @@
-"""One command for the whole cell: every run and every goal stops, every robot comes to rest."""
+"""Stop of the whole cell: every run and every goal stops, every robot comes to rest."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ router = APIRouter(prefix="/api/v1/cell", tags=["cell"])
 
 @router.post("/stop", status_code=204, responses={422: {"model": ErrorBody}})
 async def stop_cell(body: StopBody, services: ServicesOf) -> None:
-    """Stop everything; answers when every robot is measured at rest. This is no safety function."""
+    """Stop everything; responds when every robot is measured at rest. This is not a safety function."""
     await services.backend.stop_all(reason=body.reason)

@@ -1,4 +1,4 @@
-"""From demonstration to behavior: taught entries in their order become a new document."""
+"""Programming by demonstration: proposes a behavior from an ordered list of taught entries."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ UNNAMED = "behaviors/from_demonstration.yaml"
 
 @router.post("/proposal")
 async def propose_behavior(body: DemonstrationBody, services: ServicesOf) -> ProposalBody:
-    """Propose the behavior that goes through taught entries; with an `id` write it as a new document."""
+    """Propose a behavior that executes taught entries in order; with an `id`, write it as a new document."""
     request = await run_in_threadpool(_request, services, body)
     answer = await services.backend.bus.call(f"teach/{request.skill_name()}", msgspec.to_builtins(request))
-    return await run_in_threadpool(_answer, services, body, msgspec.json.decode(answer, type=Proposal))
+    return await run_in_threadpool(_response, services, body, msgspec.json.decode(answer, type=Proposal))
 
 
 def _request(services: Services, body: DemonstrationBody) -> ProposeBehavior:
@@ -43,19 +43,19 @@ def _request(services: Services, body: DemonstrationBody) -> ProposeBehavior:
     return ProposeBehavior(steps=steps, options=options)
 
 
-def _answer(services: Services, body: DemonstrationBody, made: Proposal) -> ProposalBody:
+def _response(services: Services, body: DemonstrationBody, proposal: Proposal) -> ProposalBody:
     if body.id:
-        services.documents.add(body.id, made.text)
-    examined = services.documents.examine(body.id or UNNAMED, made.text)
+        services.documents.add(body.id, proposal.text)
+    analysis = services.documents.examine(body.id or UNNAMED, proposal.text)
     return ProposalBody(
-        text=made.text,
-        steps=tuple(ProposedStepBody.model_validate(step) for step in made.steps),
-        words=made.words,
-        remarks=made.remarks,
-        arm=made.arm,
-        tool=made.tool,
-        arms=made.arms,
-        parts=made.parts,
-        findings=tuple(FindingBody.model_validate(each) for each in examined.findings),
+        text=proposal.text,
+        steps=tuple(ProposedStepBody.model_validate(step) for step in proposal.steps),
+        words=proposal.words,
+        remarks=proposal.remarks,
+        arm=proposal.arm,
+        tool=proposal.tool,
+        arms=proposal.arms,
+        parts=proposal.parts,
+        findings=tuple(FindingBody.model_validate(each) for each in analysis.findings),
         id=body.id,
     )

@@ -1,4 +1,4 @@
-"""Routes of documents: 404 for what is not there, 409 with both texts for what changed meanwhile."""
+"""Error responses of document routes: 404 for a missing document, 409 with both texts for a concurrent change."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from engine.editing import DocumentConflict, NoSuchDocument
 
 
 class DocumentRoute(APIRoute):
-    """A route whose handler may raise what `engine.editing.Documents` raises."""
+    """A route whose handler may raise the errors of `engine.editing.DocumentRepository`."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return the handler with these errors turned into answers."""
+        """Return the handler with these errors turned into responses."""
         handler = super().get_route_handler()
 
-        async def answered(request: Request) -> Response:
+        async def handle_with_errors(request: Request) -> Response:
             try:
                 return await handler(request)
             except NoSuchDocument as error:
@@ -30,7 +30,7 @@ class DocumentRoute(APIRoute):
             except DocumentConflict as error:
                 return JSONResponse(_conflict(error).model_dump(), status_code=409)
 
-        return answered
+        return handle_with_errors
 
 
 def _conflict(error: DocumentConflict) -> ConflictBody:

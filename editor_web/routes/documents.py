@@ -1,4 +1,4 @@
-"""Documents under edit: texts come and go, edits are functions of them; what is on disk changes only by `PUT`."""
+"""Documents under edit: requests carry the text, edits are functions of it; only `PUT` changes the file on disk."""
 
 from __future__ import annotations
 
@@ -46,98 +46,99 @@ router = APIRouter(
 
 @router.post("", status_code=201)
 def create_document(body: NewDocumentBody, services: ServicesOf) -> DocumentBody:
-    """Make a document from a template; its id is its path, `behaviors/folder/name.yaml`."""
-    made = services.documents.create(body.id, template=body.template, name=body.name)
-    return _document(services, made)
+    """Create a document from a template; its id is its path, `behaviors/folder/name.yaml`."""
+    created = services.documents.create(body.id, template=body.template, name=body.name)
+    return _document(services, created)
 
 
 @router.post("/{document_id:path}/draft", response_model=DraftResultBody)
 def draft(document_id: str, body: DraftBody, services: ServicesOf) -> Response:
-    """Draw and check a text as if it were the document's; text that cannot be read has findings and no graph."""
+    """Draw and check a text as the document's; an unreadable text has findings and no graph."""
     documents = services.documents
-    look = documents.examine if body.check else documents.draw
-    return _packed(look(document_id, body.text))
+    analyze = documents.examine if body.check else documents.draw
+    return _packed(analyze(document_id, body.text))
 
 
 @router.post("/{document_id:path}/findings")
 def find(document_id: str, body: TextBody, services: ServicesOf) -> list[FindingBody]:
-    """Check a text as if it were the document's, without drawing it."""
+    """Check a text as the document's, without drawing it."""
     return [FindingBody.model_validate(each) for each in services.documents.findings(document_id, body.text)]
 
 
 @router.post("/{document_id:path}/targets")
 async def find_targets(document_id: str, body: TargetsBody, services: ServicesOf) -> TargetFindingsBody:
-    """Put the arms of a text's cell to its targets, which takes seconds at first; nothing else waits for it."""
+    """Check that the arms of a text's cell reach its targets; the first check takes seconds and blocks nothing else."""
     documents = services.documents
     file = documents.file_of(document_id)
     drawn = await run_in_threadpool(documents.draw, document_id, body.text)
     if drawn.document is None or drawn.document.cell is None:
         return TargetFindingsBody()
-    found = await services.targets.findings(f"{body.page} {document_id}", file, body.text)
-    if found is None:
+    checked = await services.targets.findings(f"{body.page} {document_id}", file, body.text)
+    if checked is None:
         return TargetFindingsBody(dropped=True)
-    return TargetFindingsBody(findings=tuple(map(FindingBody.model_validate, found.findings)), problem=found.problem)
+    findings = tuple(map(FindingBody.model_validate, checked.findings))
+    return TargetFindingsBody(findings=findings, problem=checked.problem)
 
 
 @router.post("/{document_id:path}/names")
 def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[str, tuple[str, ...]]:
-    """Return the names that the cell of a text offers, by kind; those of the open cell where it names none."""
+    """Return the names in the cell of a text, by kind; those of the open cell if the text names no cell."""
     return {str(kind): names for kind, names in services.documents.offered_to(document_id, body.text).items()}
 
 
 @router.post("/{document_id:path}/edits", response_model=EditResultBody)
 def edit(document_id: str, body: EditsBody, services: ServicesOf) -> Response:
-    """Make edits in a text, all or none; nothing is saved."""
+    """Apply edits to a text, all or none; nothing is saved."""
     documents = services.documents
     edits, refusal = read_edits(body.edits)
-    done, found = documents.edit(document_id, body.text, edits)
+    done, analysis = documents.edit(document_id, body.text, edits)
     if body.check:
-        found = documents.examine(document_id, done.text)
-    return _packed(found, text=done.text, changed=done.changed, refused=refusal or done.refused)
+        analysis = documents.examine(document_id, done.text)
+    return _packed(analysis, text=done.text, changed=done.changed, refused=refusal or done.refused)
 
 
 @router.post("/{document_id:path}/data_flow")
 def get_data_flow(document_id: str, body: TextBody, services: ServicesOf) -> list[KeyFlowBody]:
-    """Tell who writes and who reads each key of a text; 422 where it is no valid behavior."""
+    """Return the writers and readers of each key of a text; 422 if it is not a valid behavior."""
     return [KeyFlowBody.model_validate(each) for each in services.documents.data_flow(document_id, body.text)]
 
 
 @router.post("/{document_id:path}/copy")
 def copy(document_id: str, body: CopyBody, services: ServicesOf) -> CopyResultBody:
-    """Return nodes of a text as YAML with their comments, to be pasted anywhere."""
+    """Return nodes of a text as YAML with their comments, ready to paste."""
     context = services.documents.context(document_id)
     return CopyResultBody(yaml=copy_nodes(body.text, body.paths, file=document_id, context=context))
 
 
 @router.post("/{document_id:path}/rename")
 def rename_document(document_id: str, body: NewIdBody, services: ServicesOf) -> DocumentBody:
-    """Give a document another id; its versions go along."""
+    """Give a document a new id; it keeps its versions."""
     return _document(services, services.documents.rename(document_id, body.id))
 
 
 @router.post("/{document_id:path}/duplicate", status_code=201)
 def duplicate_document(document_id: str, body: NewIdBody, services: ServicesOf) -> DocumentBody:
-    """Make a copy of a document as it is on disk."""
+    """Copy a document on disk."""
     return _document(services, services.documents.duplicate(document_id, body.id))
 
 
 @router.get("/{document_id:path}/versions")
 def list_versions(document_id: str, services: ServicesOf) -> list[VersionBody]:
     """List the versions of a document, newest first, also of a deleted one."""
-    found = services.documents.versions(document_id)
+    versions = services.documents.versions(document_id)
     now = services.documents.hash_on_disk(document_id)
     return [
-        VersionBody(hash=each.hash, saved_at=each.saved_at_s, by=each.by, current=each.hash == now) for each in found
+        VersionBody(hash=each.hash, saved_at=each.saved_at_s, by=each.by, current=each.hash == now) for each in versions
     ]
 
 
 @router.get("/{document_id:path}/versions/{digest}")
 def get_version(document_id: str, digest: str, services: ServicesOf) -> VersionTextBody:
     """Return the text of a version."""
-    found = services.documents.versions(document_id)
-    version = next((each for each in found if each.hash == digest), None)
+    versions = services.documents.versions(document_id)
+    version = next((each for each in versions if each.hash == digest), None)
     if version is None:
-        raise HTTPException(404, "this version is not kept")
+        raise HTTPException(404, "no such version of this document")
     text = services.documents.version(document_id, digest)
     current = digest == services.documents.hash_on_disk(document_id)
     return VersionTextBody(hash=digest, saved_at=version.saved_at_s, by=version.by, current=current, text=text)
@@ -148,7 +149,7 @@ def get_difference(
     document_id: str, services: ServicesOf, before: Annotated[str, Query(alias="from", pattern="^[0-9a-f]{64}$")],
     after: Annotated[str, Query(alias="to", pattern="^([0-9a-f]{64})?$")] = "",
 ) -> DifferenceBody:  # fmt: skip
-    """Compare two versions node by node; without `to`, with the one on disk."""
+    """Compare two versions node by node; without `to`, compare with the document on disk."""
     documents = services.documents
     old = documents.version(document_id, before)
     new = documents.version(document_id, after) if after else documents.open(document_id).text
@@ -157,28 +158,28 @@ def get_difference(
 
 @router.get("/{document_id:path}", response_model=DocumentBody)
 def get_document(document_id: str, services: ServicesOf, check: bool = True) -> Response:
-    """Return a document as it is on disk, drawn and checked; without `check` sooner, and without findings."""
+    """Return a document on disk, drawn and checked; without `check` the response is faster and has no findings."""
     opened = services.documents.open(document_id)
-    look = services.documents.examine if check else services.documents.draw
-    return _packed(look(opened.id, opened.text), id=opened.id, text=opened.text, saved_at=opened.saved_at_s)
+    analyze = services.documents.examine if check else services.documents.draw
+    return _packed(analyze(opened.id, opened.text), id=opened.id, text=opened.text, saved_at=opened.saved_at_s)
 
 
 @router.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
 def save_document(document_id: str, body: SaveBody, services: ServicesOf) -> SaveResultBody:
-    """Write a document that is as it was when it was read; 409 with both texts, and their merge, where it is not."""
+    """Write a document; 409 with both texts and their merge if it has changed on disk since it was read."""
     saved = services.documents.save(document_id, body.text, base_hash=body.base_hash)
     return SaveResultBody(hash=saved.hash, saved_at=saved.saved_at_s)
 
 
 @router.delete("/{document_id:path}", status_code=204)
 def delete_document(document_id: str, services: ServicesOf) -> None:
-    """Remove a document; its text stays among its versions."""
+    """Delete a document; its text is kept as a version."""
     services.documents.delete(document_id)
 
 
-def _packed(found: DocumentAnalysis, **beside: object) -> Response:
-    """Return an answer of a wire's model without making one of each node: its fields are the same."""
-    body = {each.name: getattr(found, each.name) for each in fields(found)} | beside
+def _packed(analysis: DocumentAnalysis, **extra: object) -> Response:
+    """Return the JSON response directly: the fields equal those of the body model, which is slow to build per node."""
+    body = {each.name: getattr(analysis, each.name) for each in fields(analysis)} | extra
     return Response(msgspec.json.encode(body), media_type="application/json")
 
 

@@ -1,4 +1,4 @@
-"""The built page: its files, and `index.html` for every address that the page itself routes."""
+"""The built page: its files, and `index.html` for every client-side route."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ NOT_BUILT = (
 
 @router.get("/assets/{name:path}")
 def asset(name: str, services: ServicesOf) -> Response:
-    """Serve one built file; names carry a hash of the content, so browsers may keep them for ever."""
+    """Serve one built file; its name contains a hash of the content, so browsers may cache it without limit."""
     file = services.static / "assets" / name
-    # A name that is none of the build's never reaches the file system.
+    # A name that the build cannot produce never reaches the file system.
     if not _ASSET.fullmatch(name) or not file.is_file():
         raise HTTPException(404, "no such file")
     return FileResponse(file, headers={"cache-control": "public, max-age=31536000, immutable"})
@@ -36,7 +36,7 @@ def icon(services: ServicesOf) -> Response:
 
 @router.get("/THIRD-PARTY-NOTICES.txt")
 def notices(services: ServicesOf) -> Response:
-    """Serve the licences of what the page is built from."""
+    """Serve the third-party licences of the page."""
     return _served(services.static / "THIRD-PARTY-NOTICES.txt")
 
 
@@ -50,7 +50,7 @@ def notices(services: ServicesOf) -> Response:
 @router.get("/edit/{rest:path}")
 @router.get("/teach")
 def index(services: ServicesOf, rest: str = "") -> Response:
-    """Serve the page; what `rest` means is the page's business."""
+    """Serve the page, which routes `rest` itself."""
     del rest
     file = services.static / "index.html"
     return FileResponse(file, media_type="text/html") if file.is_file() else HTMLResponse(NOT_BUILT, status_code=503)

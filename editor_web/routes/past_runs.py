@@ -1,4 +1,4 @@
-"""Looking at runs: the timeline, any moment and the failure of one; the past runs and recordings of the project."""
+"""History of runs: timeline, state at any time and failure of a run; past runs and recordings of the project."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ async def list_past_runs(
     offset: AfterSeq = 0,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
 ) -> PastRunsBody:
-    """List the runs of the journal that match, newest first: by words, by how they ended, by when they began."""
+    """List the matching runs of the journal, newest first, filtered by words, kind of end and start time."""
     backend = services.backend
     here = {run.id for run in backend.runs()}
     wanted = PastRunQuery(text=text, kind=kind, since_s=since_s, until_s=math.inf if until_s is None else until_s)
@@ -58,7 +58,7 @@ async def list_past_runs(
 
 @router.get("/runs/{run_id}/past", responses=_PROBLEMS)
 async def open_past_run(run_id: str, services: ServicesOf, request: Request) -> OpenRunBody:
-    """Open a run of the journal: what it was, and the behavior as it was then."""
+    """Open a run of the journal, with the behavior as of its start."""
     opened = await asyncio.to_thread(_of_journal, _pasts(request), run_id, fresh=True)
     recording = services.backend.archive.recording_of(run_id)
     return _opened_body(opened, recording=recording)
@@ -68,7 +68,7 @@ async def open_past_run(run_id: str, services: ServicesOf, request: Request) -> 
 async def run_timeline(
     run_id: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
 ) -> Response:
-    """Return when each node of a run was active, and what is marked; only what is new after event `after`."""
+    """Return the activation intervals and markers of a run; only those after event `after`."""
     return await _of_run(request, run_id, _timeline(from_s, until_s, after), fresh=True)
 
 
@@ -76,13 +76,13 @@ async def run_timeline(
 async def run_moment(
     run_id: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
 ) -> Response:
-    """Return a run as it was at a time or after an event; no content where that is the moment after event `known`."""
+    """Return the state of a run at a time or after an event; 204 if that is the state after event `known`."""
     return await _of_run(request, run_id, _moment(time_s, seq, known, lines))
 
 
 @router.get("/runs/{run_id}/failure", responses=_PROBLEMS)
 async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Response:
-    """Return how a run failed; null where it did not."""
+    """Return the failure of a run; null if it did not fail."""
     try:
         here = services.backend.run(run_id)
         is_failed: bool | None = here.status == "errored" or (here.status == "finished" and not here.success)
@@ -116,13 +116,13 @@ async def recording_timeline(
 async def recording_moment(
     path: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
 ) -> Response:
-    """Return a moment of a recording."""
+    """Return the state of a recorded run at a time or after an event."""
     return await asyncio.to_thread(_of_recording, _pasts(request), path, _moment(time_s, seq, known, lines))
 
 
 @router.get("/recordings/{path:path}/failure", responses=_PROBLEMS)
 async def recording_failure(path: str, request: Request) -> Response:
-    """Return how the run of a recording failed; null where it did not."""
+    """Return the failure of a recorded run; null if it did not fail."""
     return await asyncio.to_thread(_of_recording, _pasts(request), path, _failure(None))
 
 
@@ -134,7 +134,7 @@ async def recording_values(path: str, request: Request, seq: Seq = None) -> Resp
 
 @router.get("/recordings/{path:path}", responses=_PROBLEMS)
 async def open_recording(path: str, request: Request) -> OpenRunBody:
-    """Open a recording: what it holds, and the behavior that is inside it."""
+    """Open a recording, with the behavior that it contains."""
     opened = await asyncio.to_thread(_recording, _pasts(request), path)
     return _opened_body(opened, recording=path)
 
@@ -152,44 +152,44 @@ def _moment(time_s: float | None, seq: int | None, known: int | None, lines: int
 
 
 def _failure(is_failed: bool | None) -> RunReader:
-    """Without `is_failed`, what is archived says whether it did."""
+    """Return a reader of the failure; without `is_failed`, the archived summary decides."""
 
-    def look(opened: OpenRun) -> object:
+    def read(opened: OpenRun) -> object:
         archived = opened.archived
         failed = archived.summary.failed if is_failed is None and archived is not None else bool(is_failed)
         return opened.failure(is_failed=failed)
 
-    return look
+    return read
 
 
 def _pasts(request: Request) -> OpenRunCache:
     return request.app.state.pasts
 
 
-async def _of_run(request: Request, run_id: str, look: RunReader, *, fresh: bool = False) -> Response:
-    """Look at a run of this server, else at one of the journal; where that takes a while, the engine does not wait."""
+async def _of_run(request: Request, run_id: str, read: RunReader, *, fresh: bool = False) -> Response:
+    """Read a run of this server, else of the journal, on a thread that does not block the engine."""
     pasts = _pasts(request)
-    found = pasts.of_server(run_id)
-    if found is None:
-        return await asyncio.to_thread(lambda: _answer(look(_of_journal(pasts, run_id, fresh=fresh))))
-    opened, further = found
+    known = pasts.of_server(run_id)
+    if known is None:
+        return await asyncio.to_thread(lambda: _response(read(_of_journal(pasts, run_id, fresh=fresh))))
+    opened, further = known
 
-    def followed() -> Response:
+    def follow_and_read() -> Response:
         opened.follow(further)
-        return _answer(look(opened))
+        return _response(read(opened))
 
-    return await asyncio.to_thread(followed)
+    return await asyncio.to_thread(follow_and_read)
 
 
 def _of_journal(pasts: OpenRunCache, run_id: str, *, fresh: bool) -> OpenRun:
-    # A moment of a run that is open already asks nothing of the journal.
+    # A run that is open already needs no access to the journal.
     if (fresh or not pasts.keeps(run_id)) and not any(run.id == run_id for run in pasts.archive.runs()):
-        raise HTTPException(404, f"there is no run {run_id[:80]!r}, neither of this server nor in its journal")
+        raise HTTPException(404, f"there is no run {run_id[:80]!r} on this server or in its journal")
     return pasts.of_journal(run_id, fresh=fresh)
 
 
-def _of_recording(pasts: OpenRunCache, path: str, look: RunReader) -> Response:
-    return _answer(look(_recording(pasts, path)))
+def _of_recording(pasts: OpenRunCache, path: str, read: RunReader) -> Response:
+    return _response(read(_recording(pasts, path)))
 
 
 def _recording(pasts: OpenRunCache, path: str) -> OpenRun:
@@ -200,13 +200,13 @@ def _recording(pasts: OpenRunCache, path: str) -> OpenRun:
     return pasts.of_recording(path)
 
 
-def _answer(found: object) -> Response:
-    return found if isinstance(found, Response) else json_response(found)
+def _response(value: object) -> Response:
+    return value if isinstance(value, Response) else json_response(value)
 
 
 def _opened_body(opened: OpenRun, *, recording: str) -> OpenRunBody:
     archived: ArchivedRun | None = opened.archived
     if archived is None:
-        raise HTTPException(404, "there is no such run")
+        raise HTTPException(404, "no such run")
     run = PastRunBody.model_validate(archived.summary).model_copy(update={"recording": recording})
     return OpenRunBody(run=run, behavior=BehaviorBody.model_validate(archived.behavior))

@@ -1,4 +1,4 @@
-"""What stands around a document: fixes of its findings, who refers to it, moving, restoring, older texts drawn."""
+"""Fixes of a document's findings, references to it, moving, restoring, and drawing of older versions."""
 
 from __future__ import annotations
 
@@ -34,22 +34,22 @@ router = APIRouter(
 
 @router.get("/deleted_documents")
 def list_deleted(services: ServicesOf) -> list[DeletedDocumentBody]:
-    """List the documents that were deleted and can be restored, those deleted last first."""
+    """List the deleted documents that can be restored, last deleted first."""
     return [DeletedDocumentBody(id=each, saved_at=version.saved_at_s) for each, version in services.documents.deleted()]
 
 
 @router.post("/documents/{document_id:path}/fixes")
 def get_fixes(document_id: str, body: TextBody, services: ServicesOf) -> list[FixesBody]:
-    """Return edits that would mend findings of a text, for those findings that have some."""
+    """Return the fixes for findings of a text, for those findings that have any."""
     documents = services.documents
     findings = documents.findings(document_id, body.text)
-    found = fixes_of(body.text, findings, file=document_id, context=documents.context(document_id))
+    fixes_by_finding = fixes_of(body.text, findings, file=document_id, context=documents.context(document_id))
     return [
         FixesBody(
             code=finding.code, path=finding.path, line=finding.line, message=finding.message,
             fixes=tuple(map(_fix, fixes)),
         )
-        for finding, fixes in zip(findings, found, strict=True)
+        for finding, fixes in zip(findings, fixes_by_finding, strict=True)
         if fixes
     ]  # fmt: skip
 
@@ -62,7 +62,7 @@ def list_referrers(document_id: str, services: ServicesOf) -> list[ReferrerBody]
 
 @router.post("/documents/{document_id:path}/move")
 def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> MoveResultBody:
-    """Give a document another id, and write the references to it anew where that is asked for."""
+    """Give a document a new id, and update the references to it if `follow` is set."""
     moved = move_with_references(services.documents, document_id, body.id, follow=body.follow)
     opened = moved.opened
     drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
@@ -72,7 +72,7 @@ def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> Mov
 
 @router.post("/documents/{document_id:path}/restore", status_code=201)
 def restore_document(document_id: str, services: ServicesOf) -> DocumentBody:
-    """Write a deleted document again, as it was last."""
+    """Restore the last text of a deleted document."""
     opened = services.documents.restore(document_id)
     drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
     return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
@@ -80,7 +80,7 @@ def restore_document(document_id: str, services: ServicesOf) -> DocumentBody:
 
 @router.get("/documents/{document_id:path}/versions/{digest}/drawn")
 def get_drawn_version(document_id: str, digest: str, services: ServicesOf) -> DraftResultBody:
-    """Draw a version as if it were the document's text now."""
+    """Draw a version as the document's text."""
     documents = services.documents
     return DraftResultBody.model_validate(documents.draw(document_id, documents.version(document_id, digest)))
 

@@ -1,4 +1,4 @@
-"""Answers that are made of the engine's own structs, without a wire model between."""
+"""Responses from the engine's own structs, without a body model in between."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs: start, stop, list, and the recorded events of one."""
+"""Runs: start, stop, list, and the recorded events of a run."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ async def start_run(
     response: Response,
     idempotency_key: Annotated[str | None, Header(max_length=100)] = None,
 ) -> StartResultBody:
-    """Start a run; the same Idempotency-Key again returns the run it started and starts nothing."""
+    """Start a run; a repeated Idempotency-Key returns the run that it started and starts nothing."""
     started: OrderedDict[str, str] = request.app.state.started
     if idempotency_key is not None and idempotency_key in started:
         response.status_code = 200
@@ -68,7 +68,7 @@ async def start_run(
 
 @router.post("/{run_id}/stop", status_code=202, responses={422: {"model": ErrorBody}})
 async def stop_run(run_id: str, body: StopBody, services: ServicesOf) -> None:
-    """Ask a run to stop; the robots decelerate and the run ends as `stopped`."""
+    """Request the stop of a run; the robots decelerate and the run ends as `stopped`."""
     await services.backend.stop(run_id, reason=body.reason)
 
 

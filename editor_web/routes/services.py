@@ -1,4 +1,4 @@
-"""What every route works with, kept on the application: the backend, the hub, the tokens, the cell view."""
+"""Services of every route, stored on the application: the backend, the hub, the tokens, the cell view."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from engine.stop import StopEndpoint
 
 @dataclass(frozen=True, kw_only=True)
 class Services:
-    """The parts of one server; `cell_view` is None when it is switched off, and `view_port` with it."""
+    """The services of one server; `cell_view` and `view_port` are None if the 3D view is disabled."""
 
     backend: Backend
     hub: LiveHub
@@ -37,17 +37,17 @@ class Services:
 
     @property
     def documents(self) -> DocumentRepository:
-        """The behaviors of the project as files to be edited."""
+        """The behaviors of the project as editable files."""
         return self.backend.documents
 
 
 def services_of(connection: HTTPConnection) -> Services:
-    """Return the parts of the application that serves this request or websocket."""
+    """Return the services of the application that serves this request or websocket."""
     return cast(Services, connection.app.state.services)
 
 
 def role_of(connection: HTTPConnection) -> str:
-    """Return the role that the gate found for this request or websocket."""
+    """Return the role that the security middleware set for this request or websocket."""
     return str(connection.state.role)
 
 

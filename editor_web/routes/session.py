@@ -1,4 +1,4 @@
-"""Logging in and out: the printed link, the form for a pasted token, and who one is."""
+"""Login and logout: the printed link, the form for a pasted token, and the session."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from editor_web.security.middleware import LOG_OUT, cookie_name, peer_of
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
-_SPENT = "This link was used already, or is too old: <code>flexcell login</code> prints a new one."
+_SPENT = "This link has been used already or has expired: <code>flexcell login</code> prints a new one."
 
 
 @router.get("/api/v1/session")
 async def get_session(request: Request, services: ServicesOf) -> SessionBody:
-    """Say who is logged in and what this server has."""
+    """Return the role of the session and the features of this server."""
     role, stop = role_of(request), services.stop
     return SessionBody(
         role=role,
@@ -42,7 +42,7 @@ async def get_session(request: Request, services: ServicesOf) -> SessionBody:
 
 @router.post(LOG_OUT, status_code=204)
 async def log_out(request: Request, services: ServicesOf) -> Response:
-    """End the session for good; its websockets close."""
+    """End the session permanently; its websockets close."""
     session = _session_of(request)
     if session is not None:
         services.sessions.end(session)
@@ -53,18 +53,18 @@ async def log_out(request: Request, services: ServicesOf) -> Response:
 
 @router.post("/api/v1/login-links", status_code=201)
 async def new_login_link(body: LoginLinkRequest, request: Request, services: ServicesOf) -> LoginLinkBody:
-    """Make the token of a link that logs in once: `/login?t=<token>`."""
+    """Create the token of a single-use login link: `/login?t=<token>`."""
     if _session_of(request) is not None:
-        # Or a page that somebody misuses could outlive its own log-out.
-        raise HTTPException(403, "log-in links are made with the operator token: run `flexcell login`")
+        # Otherwise a misused page could outlive its own logout.
+        raise HTTPException(403, "login links require the operator token: run `flexcell login`")
     return LoginLinkBody(token=services.sessions.new_link(body.role), expires_in_s=LINK_LIMIT_S)
 
 
 @router.get("/login", include_in_schema=False)
 async def log_in_page(request: Request, services: ServicesOf) -> Response:
-    """Exchange the token of a log-in link for a session, or show the form."""
+    """Exchange the token of a login link for a session, or show the form."""
     token = request.query_params.get("t")
-    # Neither another page nor a browser that loads ahead may spend the link.
+    # Neither another page nor a prefetching browser may use up the link.
     is_opened = request.headers.get("sec-fetch-site", "none") in ("none", "same-origin")
     if token is None or not is_opened or "prefetch" in request.headers.get("sec-purpose", ""):
         return _form(problem="")
@@ -78,12 +78,12 @@ async def log_in_page(request: Request, services: ServicesOf) -> Response:
 
 @router.post("/login", include_in_schema=False)
 async def log_in(request: Request, services: ServicesOf) -> Response:
-    """Exchange a pasted token, of a link or permanent, for a session."""
+    """Exchange a pasted token, single-use or permanent, for a session."""
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
         if len(body) > MAX_FORM_BYTES:
-            return _form(problem="That is not a token.", status=413)
+            return _form(problem="This is not a token.", status=413)
     fields = parse_qs(body.decode("ascii", "replace"))
     token = fields.get("token", [""])[0].strip()
     role = services.sessions.take_link(token) or services.access.role_of_token(token)

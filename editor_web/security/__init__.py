@@ -1,4 +1,1 @@
-"""Admission of requests: tokens, log-in sessions.
-
-Request rules and the ASGI middleware in front of the application.
-"""
+"""Security of requests: access tokens, login sessions, request rules, and the ASGI middleware."""

@@ -1,4 +1,4 @@
-"""Who may enter: the permanent tokens of a server, and the limit on wrong ones."""
+"""Authentication: the permanent access tokens of a server, and the rate limit for wrong tokens."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ _MAX_PEERS = 1000
 
 @dataclass(frozen=True, kw_only=True)
 class AccessTokens:
-    """The two secrets of one server: `operator` may do everything, `viewer` may look."""
+    """The two access tokens of one server: `operator` has full access, `viewer` is read-only."""
 
     operator: str
     viewer: str
 
     def role_of_token(self, token: str) -> Role | None:
-        """Return the role a token opens, or None."""
+        """Return the role of a token; None for a wrong token."""
         return self._match(token, {self.operator: OPERATOR, self.viewer: VIEWER})
 
     def fingerprint(self) -> str:
-        """Return a hash of both tokens; sessions that were made under other tokens end."""
+        """Return a hash of both tokens; sessions created under other tokens end."""
         return hashlib.sha256(f"{self.operator} {self.viewer}".encode()).hexdigest()
 
     @staticmethod
     def _match(given: str, known: dict[str, Role]) -> Role | None:
-        found: Role | None = None
+        matched: Role | None = None
         for secret, role in known.items():
-            # Every secret is compared, so the time taken says nothing.
+            # Every secret is compared, so that the timing reveals nothing.
             if hmac.compare_digest(secret.encode(), given.encode("utf-8", "surrogateescape")):
-                found = role
-        return found
+                matched = role
+        return matched
 
 
 def load_access_tokens(file: Path) -> AccessTokens:
-    """Read the tokens from `file`, or make them there, readable by the owner alone (mode 0600).
+    """Read the tokens from `file`, or create them there, readable by the owner only (mode 0600).
 
     Raises:
         FlexcellError: The file is readable by others, damaged, or cannot be written.
@@ -77,10 +77,10 @@ def _create(file: Path) -> None:
 
 @dataclass(kw_only=True)
 class AttemptLimiter:
-    """Counts wrong tokens of each peer: `burst` at once, then one every `refill_s` seconds.
+    """Limits wrong tokens per peer: `burst` at once, then one every `refill_s` seconds.
 
-    It is asked only about tokens that are wrong: all programs of this machine share one address, so what
-    one of them does must not refuse the right token of another.
+    It counts wrong tokens only: all programs of a machine share one address, so wrong tokens of one program must not
+    block the right token of another.
     """
 
     now_s: Callable[[], float]
@@ -91,12 +91,12 @@ class AttemptLimiter:
     )
 
     def failed(self, peer: str) -> float:
-        """Count one wrong token of a peer and return the seconds it has to wait; 0 within the burst."""
+        """Count one wrong token of a peer and return its waiting time in seconds; 0 within the burst."""
         now_s = self.now_s()
         count, since_s = self._attempts.pop(peer, (0.0, now_s))
         left = max(0.0, count - (now_s - since_s) / self.refill_s)
         wait_s = max(0.0, (left + 1.0 - self.burst) * self.refill_s)
-        # What comes too early counts no further, or a busy peer would wait for ever.
+        # Attempts during the waiting time do not count, otherwise a busy peer would wait forever.
         self._attempts[peer] = (left if wait_s > 0 else left + 1.0, now_s)
         while len(self._attempts) > _MAX_PEERS:
             self._attempts.popitem(last=False)

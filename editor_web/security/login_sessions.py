@@ -1,4 +1,4 @@
-"""Log-in sessions of browsers: random, kept as hashes only, with an end; and links that log in once."""
+"""Login sessions of browsers: random secrets, stored as hashes, with expiry; and single-use login links."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ import msgspec
 from editor_web.security.authentication import Role
 
 ABSOLUTE_LIMIT_S = 7 * 24 * 3600.0
-"""A session ends this long after the log-in, used or not."""
+"""Maximum lifetime of a session after the login."""
 IDLE_LIMIT_S = 12 * 3600.0
-"""A session that no request or page uses for this long ends."""
+"""Maximum idle time of a session, without requests or open pages."""
 LINK_LIMIT_S = 3600.0
-"""A log-in link that was not opened for this long opens nothing."""
+"""Lifetime of an unused login link."""
 _MAX_SESSIONS = 200
 _MAX_LINKS = 100
-# A server that is killed forgets at most so much of the use of its sessions.
+# A killed server loses at most this much of the recorded use of its sessions.
 _SAVE_PERIOD_S = 300.0
 _log = logging.getLogger("flexcell.sessions")
 
 
 class SessionRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """One session as it is kept on disk; times in seconds since 1970."""
+    """One session as stored on disk; times in seconds since 1970."""
 
     digest: str
     role: Role
@@ -46,7 +46,7 @@ class _SessionFile(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(kw_only=True, eq=False)
 class LoginSession:
-    """One logged-in browser: its role, and who is told when it ends."""
+    """The session of one logged-in browser: its role, and the callbacks for its end."""
 
     digest: str
     role: Role
@@ -56,12 +56,12 @@ class LoginSession:
     _on_end: set[Callable[[], None]] = field(default_factory=set[Callable[[], None]], init=False)
 
     def left_s(self, now_s: float) -> float:
-        """Return how long it goes on if nobody uses it any more."""
+        """Return the remaining lifetime without further use."""
         return min(self.began_s + ABSOLUTE_LIMIT_S, self.used_s + IDLE_LIMIT_S) - now_s
 
     @contextmanager
     def calling(self, on_end: Callable[[], None]) -> Generator[None]:
-        """Have a function called when the session ends within the block."""
+        """Call a function if the session ends within the block."""
         self._on_end.add(on_end)
         try:
             yield
@@ -69,21 +69,21 @@ class LoginSession:
             self._on_end.discard(on_end)
 
     def end(self) -> None:
-        """End it: everything that is open in its name closes."""
+        """End the session: its websockets and requests close."""
         self.is_over = True
-        for told in tuple(self._on_end):
-            told()
+        for on_end in tuple(self._on_end):
+            on_end()
 
 
 class LoginSessions:
     """The sessions of one server.
 
-    Only hashes of what browsers and links carry are kept, so neither memory nor file logs anybody in. Sessions
-    end on the thread of the event loop only, where what is open in their name is closed.
+    Only hashes of session and link secrets are kept, so that neither memory nor file contains valid credentials.
+    Sessions end on the event loop's thread only, where their connections are closed.
 
     Args:
-        file: Where sessions outlive the server; None keeps them in memory only.
-        tokens: Hash of the tokens that open the server; sessions made under others are forgotten.
+        file: File that keeps sessions over a restart; None keeps them in memory only.
+        tokens: Hash of the server's access tokens; sessions created under other tokens are dropped.
         now_s: Wall clock in seconds since 1970.
     """
 
@@ -98,7 +98,7 @@ class LoginSessions:
         self._changing = threading.RLock()
 
     def load(self) -> None:
-        """Take up the sessions of the server before; a damaged file means that all log in again."""
+        """Load the sessions of the previous server; with a damaged file, all users log in again."""
         if self._file is None:
             return
         try:
@@ -106,7 +106,7 @@ class LoginSessions:
         except FileNotFoundError:
             return
         except (OSError, msgspec.DecodeError) as error:
-            _log.warning("%s cannot be read, so everybody logs in again: %s", self._file, error)
+            _log.warning("%s cannot be read; all users have to log in again: %s", self._file, error)
             return
         if kept.tokens != self._tokens:
             return
@@ -116,7 +116,7 @@ class LoginSessions:
                 self._sessions[each.digest] = session
 
     def begin(self, role: Role) -> str:
-        """Begin a session and return the secret that its browser carries."""
+        """Begin a session and return the secret for the browser's cookie."""
         secret, now_s = secrets.token_urlsafe(32), self._now_s()
         digest = _digest(secret)
         with self._changing:
@@ -127,7 +127,7 @@ class LoginSessions:
         return secret
 
     def find(self, secret: str) -> LoginSession | None:
-        """Return the session of a secret and note its use; None for one that never was or is over."""
+        """Return the session of a secret and record its use; None if it does not exist or has ended."""
         session = self._sessions.get(_digest(secret))
         if session is None:
             return None
@@ -138,22 +138,22 @@ class LoginSessions:
         return session
 
     def use(self, session: LoginSession) -> None:
-        """Note that a session is in use, which keeps it from ending of idleness."""
+        """Record the use of a session, which restarts its idle time."""
         session.used_s = self._now_s()
         if abs(session.used_s - self._saved_s) > _SAVE_PERIOD_S:
             self.save()
 
     def left_s(self, session: LoginSession) -> float:
-        """Return how long a session goes on if nobody uses it any more."""
+        """Return the remaining lifetime of a session without further use."""
         return session.left_s(self._now_s())
 
     def end(self, session: LoginSession) -> None:
-        """End a session for good; what is open in its name closes."""
+        """End a session permanently; its connections close."""
         self._drop(session)
         self.save()
 
     def new_link(self, role: Role) -> str:
-        """Return a token that logs in once, within `LINK_LIMIT_S`."""
+        """Return a single-use login token, valid for `LINK_LIMIT_S`."""
         token, now_s = secrets.token_urlsafe(32), self._now_s()
         with self._changing:
             self._links = {key: link for key, link in self._links.items() if now_s - link[1] < LINK_LIMIT_S}
@@ -163,7 +163,7 @@ class LoginSessions:
         return token
 
     def take_link(self, token: str) -> Role | None:
-        """Return the role that a log-in link opens and spend it; None for one that is spent, too old or unknown."""
+        """Return the role of a login link and invalidate it; None if it was used, has expired or is unknown."""
         with self._changing:
             role, made_s = self._links.pop(_digest(token), (None, 0.0))
         return role if self._now_s() - made_s < LINK_LIMIT_S else None
@@ -185,9 +185,9 @@ class LoginSessions:
             _write_private(file, msgspec.json.encode(_SessionFile(tokens=self._tokens, sessions=records)))
             self._is_save_failing = False
         except OSError as error:
-            # A full disk must not keep anybody from logging in, to stop the cell for instance.
+            # A full disk must not prevent a login, for example to stop the cell.
             if not self._is_save_failing:
-                _log.warning("%s cannot be written, so sessions end with this server: %s", file, error)
+                _log.warning("%s cannot be written; sessions end with this server: %s", file, error)
             self._is_save_failing = True
 
     def _drop(self, session: LoginSession) -> None:
@@ -196,7 +196,7 @@ class LoginSessions:
 
 
 def _digest(secret: str) -> str:
-    # The secrets are random and long: a plain hash cannot be searched for, and a look-up by it tells no prefix.
+    # The secrets are random and long: a plain hash cannot be inverted, and a lookup by hash reveals no prefix.
     return hashlib.sha256(secret.encode("utf-8", "surrogateescape")).hexdigest()
 
 

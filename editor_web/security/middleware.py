@@ -1,7 +1,7 @@
-"""The gate in front of every request: host, origin, session, role and response headers.
+"""Security middleware for every request: host, origin, session, role and response headers.
 
-A plain ASGI middleware, because it must also stand before websockets: browsers do not apply the
-same-origin policy to them.
+It is a plain ASGI middleware, because it must also protect websockets, to which browsers do not apply the same-origin
+policy.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ PAGE_POLICY = (
     "worker-src 'self' blob:; connect-src 'self'{sources}; frame-src 'self'{views}; frame-ancestors 'self'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'"
 )
-# viser's page is one file with inlined scripts and wasm; it gets what it needs, under its own path only.
+# viser's page is one file with inline scripts and wasm; this policy allows them under its own path only.
 CELL_POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; font-src 'self' data:; worker-src 'self' blob: data:; "
@@ -49,34 +49,35 @@ _audit = logging.getLogger("flexcell.audit")
 
 
 def cookie_name(port: int) -> str:
-    """Return the session cookie's name: browsers share cookies between the ports of one host."""
+    """Return the name of the session cookie, with the port: browsers share cookies between the ports of a host."""
     return f"flexcell_session_{port}"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Principal:
-    """Who a request is of: a role, and the session of the browser; None for a token, and at the open addresses."""
+    """The sender of a request: role, and browser session; the session is None for a token and on public paths."""
 
     role: Role | None
     session: LoginSession | None
 
 
 class SecurityMiddleware:
-    """Admit a request to `app` when its form, host, origin and credentials are right.
+    """Admits a request to `app` if its form, host, origin and credentials are valid.
 
-    A right token or session is always admitted: no failure of others is held against it.
+    A valid token or session is always admitted, regardless of failed attempts of others.
 
     Args:
-        app: The application behind the gate.
-        access: The tokens.
+        app: The protected application.
+        access: The access tokens.
         sessions: The sessions of logged-in browsers.
-        limit: Counts wrong bearer tokens, shared with the log-in page.
-        hosts: Values of the Host header to answer to, with port, in lower case.
-        port: Our own port, for the cookie's name.
-        capacity: Requests and websockets served at once; beyond it only an operator's commands are, such as a stop.
-        connect_sources: Further origins that the page may connect to.
-        view_port: Port of the 3D view, which alone is served there: its own origin, so that browsers give it a
-            process of its own and it reaches nothing of the page around it. None without one.
+        limit: Limits wrong bearer tokens, shared with the login page.
+        hosts: Accepted values of the Host header, with port, in lower case.
+        port: Port of this server, for the cookie's name.
+        capacity: Maximum number of concurrent requests and websockets; only an operator's commands, such as a stop,
+            are served beyond it.
+        connect_sources: Additional origins that the page may connect to.
+        view_port: Port that serves the 3D view only: a separate origin, so that browsers isolate its process and it
+            has no access to the page around it. None without a 3D view.
     """
 
     def __init__(
@@ -119,17 +120,17 @@ class SecurityMiddleware:
         finally:
             self._open -= 1
 
-    async def _serve(self, scope: Scope, receive: Receive, send: Send, found: Principal) -> None:
-        scope.setdefault("state", {}).update(role=found.role, session=found.session)
-        if found.session is not None:
-            receive = while_logged_in(receive, send, self._sessions, found.session, kind=scope["type"])
+    async def _serve(self, scope: Scope, receive: Receive, send: Send, principal: Principal) -> None:
+        scope.setdefault("state", {}).update(role=principal.role, session=principal.session)
+        if principal.session is not None:
+            receive = while_logged_in(receive, send, self._sessions, principal.session, kind=scope["type"])
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
             return
         try:
             await self._app(scope, limit_body(receive), _with_headers(self._headers(scope), send))
         except ClientDisconnect:
-            # Whoever goes in the middle of a request wants no answer; that is no fault of ours to be logged.
+            # A client that disconnects during its request needs no response, and this is not a server error.
             return
 
     async def _refuse(self, scope: Scope, receive: Receive, send: Send, refusal: RequestRefusal) -> None:
@@ -151,9 +152,9 @@ class SecurityMiddleware:
         host = headers.get("host", "").lower()
         is_view = host in self._view_hosts
         if host not in self._page_hosts and not is_view:
-            return RequestRefusal(status=421, message="this server does not answer to that host name")
+            return RequestRefusal(status=421, message="this server does not accept this host name")
         if is_view and not scope["path"].startswith(VIEW_PATH):
-            return RequestRefusal(status=404, message="at this address there is nothing but the 3D view")
+            return RequestRefusal(status=404, message="this address serves only the 3D view")
         if declares_too_large(headers):
             return RequestRefusal(status=413, message=TOO_LARGE)
         if not is_open or is_unsafe(scope):
@@ -162,10 +163,10 @@ class SecurityMiddleware:
                 return refusal
         if is_open:
             return Principal(role=None, session=self._session(headers))
-        found = self._by_token(scope, bearer) if bearer else self._by_cookie(scope, headers)
-        if isinstance(found, RequestRefusal):
-            return found
-        return self._forbidden(scope, found) or found
+        principal = self._by_token(scope, bearer) if bearer else self._by_cookie(scope, headers)
+        if isinstance(principal, RequestRefusal):
+            return principal
+        return self._forbidden(scope, principal) or principal
 
     def _by_token(self, scope: Scope, token: str) -> Principal | RequestRefusal:
         role = self._access.role_of_token(token)
@@ -194,24 +195,24 @@ class SecurityMiddleware:
             return None
         return self._sessions.find(cookie.value) if cookie else None
 
-    def _forbidden(self, scope: Scope, found: Principal) -> RequestRefusal | None:
-        """Refuse what a role may not do, or what there is no room for; note what is done."""
+    def _forbidden(self, scope: Scope, principal: Principal) -> RequestRefusal | None:
+        """Refuse a request that the role does not allow or that exceeds the capacity; log commands."""
         is_command = is_unsafe(scope) and scope["type"] == "http"
-        is_leaving = found.session is not None and scope["path"] == LOG_OUT
-        if is_command and found.role != OPERATOR and not is_leaving:
-            return RequestRefusal(status=403, message="a viewer may look only; log in with the operator token")
+        is_logout = principal.session is not None and scope["path"] == LOG_OUT
+        if is_command and principal.role != OPERATOR and not is_logout:
+            return RequestRefusal(status=403, message="a viewer has read-only access; log in with the operator token")
         if self._open >= self._capacity and not is_command:
             return RequestRefusal(
                 status=503, message="too many pages and requests at once", headers={"retry-after": "1"}
             )
         if is_command:
-            # The query is left out: it could carry a secret.
-            _audit.info("%s %s by %s", scope["method"], scope["path"], found.role)
+            # The query is omitted: it could contain a secret.
+            _audit.info("%s %s by %s", scope["method"], scope["path"], principal.role)
         return None
 
 
 def peer_of(scope: Scope) -> str:
-    """Return the address of who sends a request; all programs of this machine share one."""
+    """Return the sender's address of a request; all programs of a machine share one."""
     client: tuple[str, int] | None = scope.get("client")
     return client[0] if client else ""
 
@@ -219,7 +220,7 @@ def peer_of(scope: Scope) -> str:
 def while_logged_in(
     receive: Receive, send: Send, sessions: LoginSessions, session: LoginSession, *, kind: str
 ) -> Receive:
-    """Return `receive` of a request or websocket so that it ends with the session that it belongs to."""
+    """Wrap `receive` of a request or websocket so that it ends with its session."""
 
     async def received() -> Message:
         try:
@@ -231,7 +232,7 @@ def while_logged_in(
         except TimeoutError:
             if kind == "http":
                 return {"type": "http.disconnect"}
-            # Whoever has gone meanwhile, or was sent away, need not hear of it.
+            # The peer may have disconnected meanwhile.
             with suppress(RuntimeError, OSError):
                 await send({"type": "websocket.close", "code": 1008, "reason": "logged out"})
             return {"type": "websocket.disconnect", "code": 1008, "reason": "logged out"}
@@ -255,7 +256,7 @@ def _not_logged_in() -> RequestRefusal:
 
 @dataclass(frozen=True, kw_only=True)
 class PolicyOrigins:
-    """Sources of a content security policy: the page, its 3D view, and what else the page may connect to."""
+    """Sources of a content security policy: the page, its 3D view, and further origins for connections."""
 
     pages: Sequence[str] = ()
     views: Sequence[str] = ()
@@ -263,15 +264,15 @@ class PolicyOrigins:
 
     @classmethod
     def beside(cls, host: str, view_port: int | None, connect_sources: Sequence[str]) -> Self:
-        """Return those of the page at `host`, given with its port; the 3D view has the same host name."""
-        # A policy has no form for IPv6 addresses.
+        """Return the origins for the page at `host`, which includes the port; the 3D view has the same host name."""
+        # A content security policy cannot express IPv6 addresses.
         named = f"*:{host.rpartition(':')[2]}" if host.startswith("[") else host
         views = () if view_port is None else (f"http://{_at(named, view_port)}",)
         return cls(pages=(f"http://{named}",), views=views, connect_sources=tuple(connect_sources))
 
 
 def response_headers(path: str, origins: PolicyOrigins | None = None) -> dict[str, str]:
-    """Return the headers that every answer under `path` carries."""
+    """Return the headers of every response under `path`."""
     of = origins or PolicyOrigins()
     is_view = path.startswith(VIEW_PATH)
     policy = (
@@ -282,13 +283,13 @@ def response_headers(path: str, origins: PolicyOrigins | None = None) -> dict[st
     headers = {
         "content-security-policy": policy,
         "x-content-type-options": "nosniff",
-        # Under no-referrer a browser sends `Origin: null` with a form, and the log-in's would be refused.
+        # With no-referrer, a browser sends `Origin: null` with a form, and the login would be refused.
         "referrer-policy": "same-origin" if path == "/login" else "no-referrer",
         "cross-origin-opener-policy": "same-origin",
         "cross-origin-resource-policy": "same-origin",
     }
     if is_view:
-        # Without it, browsers may run the view in the process of the page around it, as both are of one site.
+        # Otherwise browsers may run the view in the process of the page around it, as both belong to one site.
         headers["origin-agent-cluster"] = "?1"
     if not path.startswith("/assets/"):
         headers["cache-control"] = "no-store"
@@ -296,7 +297,7 @@ def response_headers(path: str, origins: PolicyOrigins | None = None) -> dict[st
 
 
 def _at(host: str, port: int) -> str:
-    """Return a host, given with a port, with another one."""
+    """Return a host with its port replaced."""
     return f"{host.rpartition(':')[0]}:{port}"
 
 

@@ -1,4 +1,4 @@
-"""What every request and websocket must be like, whoever sends it: well formed, and from our own page."""
+"""Rules for every request and websocket: well-formed, and from a page of this server."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from starlette.types import Scope
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 MAX_HEADERS = 64
 MAX_HEADER_BYTES = 16_384
-# Two of one of these would let one part of a server believe the first, and another the second.
+# Duplicates of these headers are ambiguous: parts of a server could use different ones.
 _SINGLE = frozenset(
     {
         "authorization",
@@ -25,7 +25,7 @@ _SINGLE = frozenset(
         "transfer-encoding",
     }
 )
-# Control characters, and what is left of bytes that are no UTF-8: no name of ours has any.
+# Control characters, and replacements of bytes that are not UTF-8: no valid name contains them.
 _ODD = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffd\ud800-\udfff]")
 _OWN_SITES = ("same-origin", "none")
 VIEW_PATH = "/cell/"
@@ -34,7 +34,7 @@ _DATA_PATHS = ("/api/", VIEW_PATH)
 
 @dataclass(frozen=True, kw_only=True)
 class RequestRefusal:
-    """Why a request is turned away, and how."""
+    """The refusal of a request: status, message and headers."""
 
     status: int
     message: str
@@ -42,33 +42,36 @@ class RequestRefusal:
 
 
 def is_unsafe(scope: Scope) -> bool:
-    """Say whether a request may change something: a websocket, or any method but those that only read."""
+    """Tell whether a request may change something: a websocket, or any method that is not read-only."""
     return scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
 
 
 def refuse_malformed(scope: Scope) -> RequestRefusal | None:
-    """Refuse a request with too many headers, with two of a header that is read once, or with an odd address."""
+    """Refuse a request with too many headers, a duplicate of a single header, or invalid characters in its address."""
     headers: Sequence[tuple[bytes, bytes]] = scope["headers"]
     if len(headers) > MAX_HEADERS or sum(len(name) + len(value) for name, value in headers) > MAX_HEADER_BYTES:
         return RequestRefusal(
-            status=431, message=f"a request has at most {MAX_HEADERS} headers of {MAX_HEADER_BYTES} bytes together"
+            status=431, message=f"a request may have at most {MAX_HEADERS} headers, {MAX_HEADER_BYTES} bytes in total"
         )
     counts = Counter(name.decode("latin-1").lower() for name, _ in headers)
     twice = sorted(name for name in _SINGLE if counts[name] > 1)
     if twice:
-        return RequestRefusal(status=400, message=f"the header {twice[0]} is there more than once")
+        return RequestRefusal(status=400, message=f"the header {twice[0]} occurs more than once")
     if _ODD.search(scope["path"]):
-        return RequestRefusal(status=400, message="the address has control characters, or bytes that are no UTF-8")
+        return RequestRefusal(
+            status=400, message="the address contains control characters, or bytes that are not UTF-8"
+        )
     return None
 
 
 def refuse_cross_site(
     scope: Scope, headers: Mapping[str, str], *, has_token: bool, is_framed: bool = False
 ) -> RequestRefusal | None:
-    """Refuse what a page of another host or port, or of another site, makes a browser send.
+    """Refuse requests that a page of another host, port or site makes a browser send.
 
-    A page of another port of this machine counts as another site: browsers send it our cookie. What `is_framed`, the
-    3D view, is opened by the page of another port, ours; who else frames it is told by its policy that it must not.
+    A page of another port of this machine counts as another site, because browsers share the cookie between ports.
+    The 3D view (`is_framed`) is opened by this server's page, on another port; its content security policy prevents
+    others from framing it.
     """
     origin = headers.get("origin")
     if origin is None and is_unsafe(scope) and not has_token:
@@ -83,24 +86,25 @@ def refuse_cross_site(
 
 
 def refuse_unproven_cookie(scope: Scope, headers: Mapping[str, str]) -> RequestRefusal | None:
-    """Refuse a request for data with nothing but a cookie: the browser must say that our own page asks."""
+    """Refuse a request for data with only a cookie: the browser must declare that a page of this server sends it."""
     if "origin" in headers or "sec-fetch-site" in headers or not scope["path"].startswith(_DATA_PATHS):
         return None
     return RequestRefusal(
-        status=403, message="the browser does not say which page asks: update it, or send the token instead of a cookie"
+        status=403,
+        message="the browser does not declare the requesting page: update it, or send the token instead of a cookie",
     )
 
 
 def _opens_page(scope: Scope, headers: Mapping[str, str]) -> bool:
-    """Say whether somebody follows a link to the page itself; it holds no data, which it asks for on its own."""
+    """Tell whether a request is a navigation to the page itself, which contains no data."""
     return _navigates(scope, headers, to="document") and not scope["path"].startswith(_DATA_PATHS)
 
 
 def _opens_frame(scope: Scope, headers: Mapping[str, str]) -> bool:
-    """Say whether a page of this machine opens another one inside of it."""
+    """Tell whether a page of this machine opens the request in a frame."""
     return headers.get("sec-fetch-site") == "same-site" and _navigates(scope, headers, to="iframe")
 
 
 def _navigates(scope: Scope, headers: Mapping[str, str], *, to: str) -> bool:
-    is_meant = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == to
-    return is_meant and not is_unsafe(scope)
+    is_navigation = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == to
+    return is_navigation and not is_unsafe(scope)

@@ -1,4 +1,4 @@
-"""The websocket `/api/v1/cell/grip/<page>`: the handle that a page pulls at in its 3D view, as long as it is open.
+"""The websocket `/api/v1/cell/grip/<page>`: the drag handle of a page in its 3D view, while the socket is open.
 
 For operators only: it moves robots. The page sends `ShowHandle` and, while the mouse is down, `DragKeepAlive`.
 """
@@ -21,41 +21,41 @@ from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.teaching_messages import RefusedFrame
 
 router = APIRouter()
-_MOST_WAITING = 100
+_MAX_PENDING = 100
 _decoder: msgspec.json.Decoder[ShowHandle | DragKeepAlive] = msgspec.json.Decoder(ShowHandle | DragKeepAlive)
 
 
-class _News:
-    """What the page is to be told; the oldest is dropped where it takes nothing."""
+class _Outbox:
+    """Pending messages to the page; the oldest is dropped if the page does not take them."""
 
     def __init__(self) -> None:
         self.arrived = asyncio.Event()
-        self.waiting: deque[HandleStatus | RefusedFrame] = deque(maxlen=_MOST_WAITING)
+        self.waiting: deque[HandleStatus | RefusedFrame] = deque(maxlen=_MAX_PENDING)
 
-    def tell(self, news: HandleStatus | RefusedFrame) -> None:
-        self.waiting.append(news)
+    def put(self, message: HandleStatus | RefusedFrame) -> None:
+        self.waiting.append(message)
         self.arrived.set()
 
 
 @router.websocket("/api/v1/cell/grip/{page}")
 async def cell_grip(socket: WebSocket, page: str) -> None:
-    """Let one page pull at an arm until it goes."""
+    """Let one page drag an arm until it disconnects."""
     services = services_of(socket)
     view = services.cell_view
     if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
         await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     if role_of(socket) != OPERATOR:
-        await socket.close(REFUSED, "a viewer may look only")
+        await socket.close(REFUSED, "a viewer has read-only access")
         return
     await socket.accept()
-    news = _News()
+    outbox = _Outbox()
     joggers = cast("dict[str, Jogger]", socket.app.state.joggers)
-    grip = HandleDrag(services.backend, view, page, joggers=joggers, tell=news.tell)
+    grip = HandleDrag(services.backend, view, page, joggers=joggers, tell=outbox.put)
     try:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, grip), name="grip-receive")
-            tasks.create_task(_answer(socket, news), name="grip-answer")
+            tasks.create_task(_answer(socket, outbox), name="grip-answer")
     except* PageDisconnected:
         pass
     finally:
@@ -64,16 +64,16 @@ async def cell_grip(socket: WebSocket, page: str) -> None:
 
 async def _receive(socket: WebSocket, grip: HandleDrag) -> None:
     while True:
-        request = await read_message(socket, _decoder, expected="to take or to hold a handle")
+        request = await read_message(socket, _decoder, expected="a take or held message")
         if isinstance(request, ShowHandle):
             await grip.take(request)
         else:
             grip.held()
 
 
-async def _answer(socket: WebSocket, news: _News) -> None:
+async def _answer(socket: WebSocket, outbox: _Outbox) -> None:
     while True:
-        await news.arrived.wait()
-        news.arrived.clear()
-        while news.waiting:
-            await send_message(socket, news.waiting.popleft())
+        await outbox.arrived.wait()
+        outbox.arrived.clear()
+        while outbox.waiting:
+            await send_message(socket, outbox.waiting.popleft())

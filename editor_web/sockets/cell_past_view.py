@@ -1,6 +1,6 @@
-"""The websocket `/api/v1/cell/past`: what past moment the 3D view of a page shows, as long as it is open.
+"""The websocket `/api/v1/cell/past`: the past state that the 3D view of a page shows, while the socket is open.
 
-The page sends `PastViewRequest`s, many a second while somebody scrubs; `PastViewState`s come back, of the newest only.
+The page sends `PastViewRequest`s, many per second during scrubbing; the server sends `PastViewState`s, latest only.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ router = APIRouter()
 
 
 class PastViewRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """From the page: show this run at this time of it; null shows the present."""
+    """From the page: show this run at this time of its clock; null shows the live cell."""
 
     run: Annotated[str, msgspec.Meta(min_length=1, max_length=500)]
     time_s: float | None
@@ -31,25 +31,25 @@ _decoder = msgspec.json.Decoder(PastViewRequest)
 
 @router.websocket("/api/v1/cell/past/{page}")
 async def cell_past(socket: WebSocket, page: str) -> None:
-    """Show past moments to one page until it goes; it then sees the present again."""
+    """Show past states to one page until it disconnects; it then shows the live cell again."""
     view = services_of(socket).cell_view
     if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
         await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     await socket.accept()
-    told = _Told(asyncio.get_running_loop())
+    latest = _LatestState(asyncio.get_running_loop())
     try:
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, view, page, told), name="past-receive")
-            tasks.create_task(_answer(socket, told), name="past-answer")
+            tasks.create_task(_receive(socket, view, page, latest), name="past-receive")
+            tasks.create_task(_answer(socket, latest), name="past-answer")
     except* PageDisconnected:
         pass
     finally:
         view.show_present(page)
 
 
-class _Told:
-    """The newest state that the page has not been told; `put` may be called on any thread."""
+class _LatestState:
+    """The latest state that is not sent yet; `put` may be called on any thread."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
@@ -57,14 +57,14 @@ class _Told:
         self._state: PastViewState | None = None
 
     def put(self, state: PastViewState) -> None:
-        """Tell this next."""
+        """Send this state next."""
         try:
             self._loop.call_soon_threadsafe(self._take, state)
         except RuntimeError:
-            return  # the server has just ended, and with it the page's view
+            return  # the server has just ended
 
     async def next(self) -> PastViewState:
-        """Wait for something to tell."""
+        """Wait for a state to send."""
         while self._state is None:
             self._arrived.clear()
             await self._arrived.wait()
@@ -76,15 +76,15 @@ class _Told:
         self._arrived.set()
 
 
-async def _receive(socket: WebSocket, view: CellView, page: str, told: _Told) -> None:
+async def _receive(socket: WebSocket, view: CellView, page: str, latest: _LatestState) -> None:
     while True:
-        order = await read_message(socket, _decoder, expected="a run and a time")
-        if order.time_s is None:
+        request = await read_message(socket, _decoder, expected="a run and a time")
+        if request.time_s is None:
             view.show_present(page)
         else:
-            view.show_past(page, order.run, order.time_s, tell=told.put)
+            view.show_past(page, request.run, request.time_s, tell=latest.put)
 
 
-async def _answer(socket: WebSocket, told: _Told) -> None:
+async def _answer(socket: WebSocket, latest: _LatestState) -> None:
     while True:
-        await send_message(socket, await told.next())
+        await send_message(socket, await latest.next())

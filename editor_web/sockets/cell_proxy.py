@@ -1,4 +1,4 @@
-"""`/cell/`: viser's page and websocket on our own origin, behind our own gate."""
+"""`/cell/`: viser's page and websocket on this server's origin, behind its security middleware."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from editor_web.routes.services import ServicesOf, role_of, services_of
 from editor_web.sockets.page_socket import disconnect_page
 
 router = APIRouter(include_in_schema=False)
-# As viser's own limit: its render answers are large.
+# viser's own limit: its render responses are large.
 MAX_MESSAGE_BYTES = 50 * 1024 * 1024
 UNAVAILABLE = 1013
-# What a page calls itself; it goes into a header.
+# Name of a page; it is sent in a header.
 _PAGE = re.compile(r"[0-9a-z]{1,40}")
 _PROTOCOL = re.compile(r"viser-v[0-9.]{1,20}")
 _log = logging.getLogger("flexcell.cell_view")
 
 
 class _Closed(Exception):
-    """One of the two sides has gone."""
+    """One of the two sides has disconnected."""
 
 
 @router.get("/cell/")
 @router.get("/cell/{name}/")
 async def cell_page(services: ServicesOf, name: str = "") -> Response:
-    """Serve the one-file page of the 3D view; `name` is that of the page around it, which says what it shows."""
+    """Serve the one-file page of the 3D view; `name` is that of the parent page, which controls the view."""
     if name and not _PAGE.fullmatch(name):
         raise HTTPException(404, "no such page")
     if services.cell_view is None:
@@ -50,7 +50,7 @@ async def cell_page(services: ServicesOf, name: str = "") -> Response:
 @router.websocket("/cell/{name}/")
 @router.websocket("/cell/{name}")
 async def cell_socket(socket: WebSocket, name: str = "") -> None:
-    """Pass the 3D view's websocket through to viser and back."""
+    """Proxy the 3D view's websocket to viser."""
     view = services_of(socket).cell_view
     if view is None or (name and not _PAGE.fullmatch(name)):
         await socket.close(UNAVAILABLE, "this server has no such cell view")
@@ -63,7 +63,7 @@ async def cell_socket(socket: WebSocket, name: str = "") -> None:
                 tasks.create_task(_inwards(socket, inner), name="cell-inwards")
                 tasks.create_task(_outwards(socket, inner), name="cell-outwards")
     except* _Closed:
-        # Also where there is nothing to pass through yet: the page tries again.
+        # Also if viser is not reachable yet: the page tries again.
         await disconnect_page(socket, "the cell view has ended")
 
 
@@ -81,8 +81,8 @@ async def _viser(
             proxy=None,
         )
     except (OSError, InvalidHandshake) as error:
-        # The server ends, or has no file descriptor left.
-        _log.warning("the 3D view cannot be reached: %s", error)
+        # The server ends, or has no free file descriptor.
+        _log.warning("cannot connect to the 3D view: %s", error)
         raise _Closed from error
     async with connection:
         yield connection

@@ -1,4 +1,4 @@
-"""The websocket `/api/v1/data`: `DataSubscription` comes in; what is looked at goes out, and nothing else."""
+"""The websocket `/api/v1/data`: receives `DataSubscription`, sends exactly the subscribed data."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _decoder = msgspec.json.Decoder(DataSubscription)
 
 @router.websocket("/api/v1/data")
 async def data(socket: WebSocket) -> None:
-    """Serve one view of a page until it goes or falls behind."""
+    """Serve one view of a page until it disconnects or is too slow."""
     services = services_of(socket)
     await socket.accept()
     looking = PageSubscriptions(services.backend)
@@ -38,7 +38,7 @@ async def _receive(socket: WebSocket, looking: PageSubscriptions) -> None:
 
 
 async def _sample(looking: PageSubscriptions) -> None:
-    """Goes on while a slow page is being sent to, so that what it misses is the oldest."""
+    """Sample also while a slow page is being sent to, so that the page loses the oldest samples."""
     while True:
         await looking.begun.wait()
         if looking.samples:

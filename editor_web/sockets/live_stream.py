@@ -1,4 +1,4 @@
-"""The websocket `/api/v1/live`: `WatchRun` comes in, snapshots and deltas go out, at most 20 a second."""
+"""The websocket `/api/v1/live`: receives `WatchRun`, sends snapshots and deltas, at most 20 per second."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ router = APIRouter()
 PERIOD_S = 0.05
 PING_S = 5.0
 SILENCE_S = 12.0
-"""A page answers each ping; one that is silent for longer is out of reach, whatever its socket says."""
+"""A page answers each ping; one that is silent for longer counts as disconnected."""
 _decoder: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
 _log = logging.getLogger("flexcell.live")
 
 
 @router.websocket("/api/v1/live")
 async def live(socket: WebSocket) -> None:
-    """Serve one page until it goes, falls behind, or is silent for `SILENCE_S`."""
+    """Serve one page until it disconnects, is too slow, or is silent for `SILENCE_S`."""
     services = services_of(socket)
     await socket.accept()
     client = services.hub.join()
@@ -49,7 +49,7 @@ async def live(socket: WebSocket) -> None:
 
 
 class _Operator:
-    """What run the page of one connection operates."""
+    """The run that the page of one connection operates."""
 
     def __init__(self, operation: RunOperations, *, allowed: bool) -> None:
         self._operation = operation
@@ -57,7 +57,7 @@ class _Operator:
         self._attached: OperatorAttachment | None = None
 
     def operate(self, run_id: str) -> None:
-        """Leave the run before; operate this one where there is one that is under way."""
+        """Detach from the previous run; operate this run if it is active."""
         if self._attached is not None:
             self._attached.detach()
             self._attached = None
@@ -66,11 +66,11 @@ class _Operator:
         try:
             self._attached = self._operation.operate(run_id)
         except FlexcellError as error:
-            # The page learns from the run's events and control whether it operates it; it may be over by now.
+            # The run may have ended; its events and control state tell the page whether it operates the run.
             _log.info("a page cannot operate a run: %s", error)
 
     def lose(self) -> None:
-        """The connection has ended, for whatever reason."""
+        """Report the operator as lost after the end of the connection."""
         if self._attached is not None:
             self._attached.lose()
             self._attached = None
@@ -82,7 +82,7 @@ async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, v
             async with asyncio.timeout(SILENCE_S):
                 request = await read_message(socket, _decoder, expected="a watch or pong message")
         except TimeoutError as error:
-            _log.warning("a page was silent for %.0f s; it counts as gone", SILENCE_S)
+            _log.warning("a page was silent for %.0f s and is disconnected", SILENCE_S)
             await disconnect_page(socket, "silent")
             raise PageDisconnected from error
         match request:
@@ -112,5 +112,5 @@ async def _stream(socket: WebSocket, client: LiveClient) -> None:
         frame = client.frame()
         if frame is not None:
             await send_message(socket, frame)
-        # The frame rate's limit; what happens meanwhile is coalesced.
+        # Limit of the frame rate; changes in between are coalesced.
         await asyncio.sleep(PERIOD_S)

@@ -1,4 +1,4 @@
-"""The websockets of pages: one message read, one message sent, and how a page is sent away."""
+"""Websockets of pages: reading and sending a message, and disconnecting a page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 
 SEND_LIMIT_S = 5.0
 UNAVAILABLE = 1013
-"""The page may come back and try again."""
+"""The page may reconnect."""
 REFUSED = 1008
 _CLOSE_LIMIT_S = 1.0
 
@@ -21,30 +21,30 @@ _log = logging.getLogger("flexcell.pages")
 
 
 class PageDisconnected(Exception):
-    """The page has gone, or has been sent away."""
+    """The page has disconnected or was disconnected."""
 
 
 async def read_message(socket: WebSocket, decoder: msgspec.json.Decoder[T], *, expected: str) -> T:
-    """Return the next message of a page; one that sends anything else than `expected` is sent away.
+    """Return the next message of a page; a page that does not send `expected` is disconnected.
 
     Raises:
-        Gone: there is no next one.
+        PageDisconnected: there is no next message.
     """
     try:
         return decoder.decode(await socket.receive_text())
     except WebSocketDisconnect as error:
         raise PageDisconnected from error
     except (msgspec.ValidationError, msgspec.DecodeError, KeyError, RecursionError) as error:
-        # Starlette raises KeyError for bytes where text is due, msgspec RecursionError for what is nested too deeply.
+        # Starlette raises KeyError for bytes instead of text, msgspec RecursionError for too deep nesting.
         await disconnect_page(socket, f"expected {expected}", code=REFUSED)
         raise PageDisconnected from error
 
 
 async def send_message(socket: WebSocket, message: msgspec.Struct) -> None:
-    """Send a message to a page; one that is behind by more than `SEND_LIMIT_S` is sent away.
+    """Send a message to a page; a page that is behind by more than `SEND_LIMIT_S` is disconnected.
 
     Raises:
-        Gone: nobody takes it.
+        PageDisconnected: the page does not take the message.
     """
     try:
         async with asyncio.timeout(SEND_LIMIT_S):
@@ -61,10 +61,10 @@ async def send_message(socket: WebSocket, message: msgspec.Struct) -> None:
 
 
 async def disconnect_page(socket: WebSocket, reason: str, *, code: int = UNAVAILABLE) -> None:
-    """Close the connection of a page, whether or not it hears of it."""
+    """Close the connection of a page, even if the close frame cannot be delivered."""
     try:
         async with asyncio.timeout(_CLOSE_LIMIT_S):
             await socket.close(code, reason)
     except (TimeoutError, WebSocketDisconnect, RuntimeError):
-        # Nobody takes the close frame either; the socket ends with its task.
+        # The peer does not take the close frame; the socket ends with its task.
         _log.debug("the close frame could not be delivered")

@@ -1,4 +1,4 @@
-"""Teaching: the page's own connection, with which jogging and buttons end, and what it asks of entries and captures."""
+"""Teaching: the websocket of a page, whose end stops jogging and buttons, and the routes for entries and captures."""
 
 from __future__ import annotations
 
@@ -72,35 +72,35 @@ async def get_fits(
     capture: Annotated[int, Query(ge=0)] = 0,
     revision: Annotated[int, Query(ge=0)] = 0,
 ) -> Response:
-    """Return how an arm would go along an entry or a capture, beside the recording that it was learned from."""
-    look = PreviewTaught(arm=arm, kind=kind, name=name, capture=capture, revision=revision)
-    return json_response(await compare_primitive(services.backend.bus, arm, look))
+    """Return the motion of an arm along an entry or a capture, with the recording that it was learned from."""
+    reference = PreviewTaught(arm=arm, kind=kind, name=name, capture=capture, revision=revision)
+    return json_response(await compare_primitive(services.backend.bus, arm, reference))
 
 
 @router.post("/tags", status_code=204)
 async def set_tags(body: TagsBody, services: ServicesOf) -> None:
-    """Give an entry other tags."""
+    """Replace the tags of an entry."""
     await write_tags(services.backend.bus, body)
 
 
 @router.post("/play")
 async def play_back(body: PlayBody, request: Request, services: ServicesOf) -> Response:
-    """Carry out what was taught, slowly; it is stopped when the page goes. This moves the robot."""
+    """Play back a taught motion, slowly; it stops if the page disconnects. This moves the robot."""
     played = await run_while_connected(play(services.backend.bus, body), request, name=f"play {body.arm}")
     return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else json_response(played)
 
 
 @router.post("/push", status_code=204)
 async def push_tool(body: PushToolBody, services: ServicesOf) -> None:
-    """Push at the tool of a simulated arm that floats."""
+    """Push the tool of a simulated arm in hand guiding."""
     await push(services.backend, body)
 
 
 @router.websocket("/live")
 async def teach_live(socket: WebSocket, page: Annotated[str, Query(pattern=PAGE_NAME)] = "") -> None:
-    """Serve one page: arms and captures go out; jogging, buttons and ghosts come in, and end with the connection.
+    """Serve one page: send arms and captures; receive jogging, buttons and previews, which end with the connection.
 
-    Ghosts are seen in the 3D view that was loaded with the name `page`, and nowhere else.
+    Previews are visible only in the 3D view that was loaded with the name `page`.
     """
     services = services_of(socket)
     await socket.accept()
@@ -119,7 +119,7 @@ async def teach_live(socket: WebSocket, page: Annotated[str, Query(pattern=PAGE_
 
 
 class _Page:
-    """One page and what it holds."""
+    """One page with its jogged arm, pressed buttons and previews."""
 
     def __init__(
         self, backend: Backend, view: CellView | None, joggers: dict[str, Jogger], *, name: str, may_operate: bool
@@ -137,30 +137,30 @@ class _Page:
         self._is_hand_news = True
         self._are_entries_news = False
         self._held_by = ""
-        self._looked_at: set[tuple[str, int]] = set()
-        self._looking: dict[int, asyncio.Task[None]] = {}
+        self._previews: set[tuple[str, int]] = set()
+        self._preview_tasks: dict[int, asyncio.Task[None]] = {}
 
     async def open(self) -> None:
-        """Follow what the page is told of."""
+        """Subscribe to the topics of the page."""
         self._waiting.append(await self._board.arms())
         self._follow("teach/status", self._on_hand)
         self._follow("store/changes", self._on_entries)
 
     async def close(self) -> None:
-        """Let go of everything: the arm first."""
+        """Release everything: the arm first."""
         await self._jogger.rest()
         await self._buttons.release()
-        await self._look_away()
+        await self._clear_previews()
         for unsubscribe in self._unsubscribe:
             unsubscribe()
 
     async def take(self, request: FromPage) -> None:
-        """Do what the page says; a viewer's page may only look."""
+        """Execute a message of the page; a viewer's page has read-only access."""
         match request:
             case PreviewTaught():
-                await self._look_away(request.place)
+                await self._clear_previews(request.place)
                 if request.arm:
-                    self._looking[request.place] = asyncio.create_task(self._look(request), name="teach-look")
+                    self._preview_tasks[request.place] = asyncio.create_task(self._preview(request), name="teach-look")
             case _ if not self._may_operate:
                 self._waiting.append(
                     RefusedFrame(what="jog", message="you may look only", hint="log in with the operator token")
@@ -175,22 +175,22 @@ class _Page:
                 await self._buttons.take(request)
 
     async def news(self) -> list[ToPage]:
-        """Return what the page has not been told."""
-        told: list[ToPage] = list(self._waiting)
+        """Return the pending messages to the page."""
+        messages: list[ToPage] = list(self._waiting)
         self._waiting.clear()
         if self._is_hand_news:
             self._is_hand_news = False
-            told.append(HelpingHandFrame(status=self._hand))
+            messages.append(HelpingHandFrame(status=self._hand))
         if self._are_entries_news:
             self._are_entries_news = False
-            told.append(EntriesChanged())
+            messages.append(EntriesChanged())
         if (jogging := self._jogging()) is not None:
-            told.append(jogging)
+            messages.append(jogging)
         arms = await self._board.changed()
-        return [*told, ArmsLiveFrame(arms=arms)] if arms else told
+        return [*messages, ArmsLiveFrame(arms=arms)] if arms else messages
 
     def _jogging(self) -> JogStatus | None:
-        """Return what holds the jogged arm back, where that is another than told."""
+        """Return what limits the jogged arm, if that has changed."""
         arm = self._jogger.arm
         goals = self._backend.desk.goals() if arm else ()
         feedback = next((each.feedback for each in goals if each.address.startswith(f"{arm}/jog_")), None)
@@ -204,7 +204,7 @@ class _Page:
         try:
             self._unsubscribe.append(self._backend.subscribe_topic(topic, callback))
         except FlexcellError:
-            # A cell without a Helping Hand or a store; the page says what is missing.
+            # A cell without a Helping Hand or a store; the page reports what is missing.
             return
 
     def _on_hand(self, message: object) -> None:
@@ -214,50 +214,50 @@ class _Page:
     def _on_entries(self, _message: object) -> None:
         self._are_entries_news = True
 
-    async def _look(self, look: PreviewTaught) -> None:
+    async def _preview(self, request: PreviewTaught) -> None:
         try:
-            course = await trace(self._backend.bus, look.arm, await read_taught(self._backend.bus, look))
+            motion = await trace(self._backend.bus, request.arm, await read_taught(self._backend.bus, request))
         except FlexcellError as error:
             self._waiting.append(RefusedFrame(what="look", message=error.message, hint=error.hint or ""))
             return
-        if course.remark:
-            self._waiting.append(RefusedFrame(what="look", message=course.remark, hint=""))
+        if motion.remark:
+            self._waiting.append(RefusedFrame(what="look", message=motion.remark, hint=""))
         if self._view is not None:
-            self._looked_at.add((look.arm, look.place))
+            self._previews.add((request.arm, request.place))
             self._view.show_ghost(
                 self._name,
                 PathPreview(
-                    robot=look.arm,
+                    robot=request.arm,
                     state="proposed",
-                    joint_names=course.joint_names,
-                    joints=course.joints,
-                    tool_path=tuple((pose[0], pose[1], pose[2]) for pose in course.poses),
+                    joint_names=motion.joint_names,
+                    joints=motion.joints,
+                    tool_path=tuple((pose[0], pose[1], pose[2]) for pose in motion.poses),
                 ),
-                place=look.place,
+                place=request.place,
             )
 
-    async def _look_away(self, place: int = 0) -> None:
-        """Show nothing there any more; with `place` 0 nowhere."""
-        tasks = [self._looking.pop(each) for each in tuple(self._looking) if place in (0, each)]
+    async def _clear_previews(self, place: int = 0) -> None:
+        """Clear the preview at a place; `place` 0 clears all."""
+        tasks = [self._preview_tasks.pop(each) for each in tuple(self._preview_tasks) if place in (0, each)]
         for task in tasks:
             task.cancel()
         if tasks:
             await asyncio.wait(tasks)
-        gone = {each for each in self._looked_at if place in (0, each[1])}
-        self._looked_at -= gone
-        for arm, at in gone:
+        cleared = {each for each in self._previews if place in (0, each[1])}
+        self._previews -= cleared
+        for arm, at in cleared:
             if self._view is not None:
                 self._view.show_ghost(self._name, PathPreview(robot=arm, state="none"), place=at)
 
 
 async def _receive(socket: WebSocket, page: _Page) -> None:
     while True:
-        await page.take(await read_message(socket, _decoder, expected="a message of the page for teaching"))
+        await page.take(await read_message(socket, _decoder, expected="a teaching message"))
 
 
 async def _stream(socket: WebSocket, page: _Page) -> None:
     while True:
         for message in await page.news():
             await send_message(socket, message)
-        # The frame rate's limit; what happens meanwhile is coalesced.
+        # Limit of the frame rate; changes in between are coalesced.
         await asyncio.sleep(PERIOD_S)

@@ -1,1 +1,1 @@
-"""The server's side of the page on which arms are taught: what it is told, and what stops when it dies."""
+"""The server side of the teaching page: its messages, and the stop of motions when its connection ends."""

@@ -1,4 +1,4 @@
-"""The arms as the page for teaching shows them: what each is, and where it is just now."""
+"""Description and live status of the arms for the teaching page."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ _DIGITS = 6
 
 
 class ArmStatusReader:
-    """Looks at the arms of one cell for one page."""
+    """Reads the status of the arms of one cell for one page."""
 
     def __init__(self, backend: Backend) -> None:
         self._backend = backend
         self._tools: dict[str, str] = {}
-        self._told: dict[str, ArmLive] = {}
+        self._sent: dict[str, ArmLive] = {}
         self._names: tuple[str, ...] = ()
 
     async def arms(self) -> ArmInfoFrame:
         """Return the arms on the bus, by name."""
         rows = await self._backend.bus.listing()
-        found = {row.name.rpartition("/")[0]: row.name for row in rows if row.type == RobotDescription.__name__}
+        arms = {row.name.rpartition("/")[0]: row.name for row in rows if row.type == RobotDescription.__name__}
         skills = [row.name for row in rows if row.kind in ("action", "service")]
         kinds = {kind.__name__ for kind in _TOOLS}
         cards: list[ArmInfo] = []
-        for name, topic in sorted(found.items()):
-            said = self._backend.latest(topic)
-            if not isinstance(said, RobotDescription):
+        for name, topic in sorted(arms.items()):
+            description = self._backend.latest(topic)
+            if not isinstance(description, RobotDescription):
                 continue
             start = f"{name}/"
             tool = next((row.name for row in rows if row.name.startswith(start) and row.type in kinds), "")
@@ -42,12 +42,12 @@ class ArmStatusReader:
             cards.append(
                 ArmInfo(
                     name=name,
-                    model=said.model,
-                    joint_names=said.joint_names,
-                    lower_rad=said.lower_rad,
-                    upper_rad=said.upper_rad,
-                    velocity_rad_s=said.velocity_rad_s,
-                    tool=said.tool,
+                    model=description.model,
+                    joint_names=description.joint_names,
+                    lower_rad=description.lower_rad,
+                    upper_rad=description.upper_rad,
+                    velocity_rad_s=description.velocity_rad_s,
+                    tool=description.tool,
                     skills=tuple(sorted(each.removeprefix(start) for each in skills if each.startswith(start))),
                 )
             )
@@ -60,23 +60,23 @@ class ArmStatusReader:
         )
 
     async def changed(self) -> dict[str, ArmLive]:
-        """Return the arms that are another than when asked last."""
-        news: dict[str, ArmLive] = {}
+        """Return the arms whose status has changed since the last call."""
+        changed: dict[str, ArmLive] = {}
         for name in self._names:
-            now = await self._look(name)
-            if now is not None and now != self._told.get(name):
-                news[name] = self._told[name] = now
-        return news
+            now = await self._read(name)
+            if now is not None and now != self._sent.get(name):
+                changed[name] = self._sent[name] = now
+        return changed
 
-    async def _look(self, name: str) -> ArmLive | None:
+    async def _read(self, name: str) -> ArmLive | None:
         status = self._backend.latest(f"{name}/status")
         if not isinstance(status, ArmStatus):
             return None
-        before = self._told.get(name)
+        before = self._sent.get(name)
         state = self._backend.latest(f"{name}/joint_state")
         joints = tuple(round(q, _DIGITS) for q in state.position_rad) if isinstance(state, JointState) else ()
         if before is not None and _still(before.joints, joints):
-            # A sensor trembles; that is no news.
+            # Sensor noise is not a change.
             joints, pose = before.joints, before.tool_pose
         else:
             pose = await self._pose(name)
@@ -93,7 +93,7 @@ class ArmStatusReader:
         try:
             pose = json.loads(await self._backend.bus.call(f"{name}/forward_kinematics", {}))
         except FlexcellError:
-            # An arm that is not connected has no pose; its mode says so.
+            # A disconnected arm has no pose; its mode reports that.
             return ()
         return tuple(round(value, _DIGITS) for value in (*pose["xyz"], *pose["xyzw"]))
 

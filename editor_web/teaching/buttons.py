@@ -1,4 +1,4 @@
-"""Buttons of a page on the bus: each is told when it goes down and up, and let go when the page is gone."""
+"""Buttons of a page on the bus: published on press and release, and released when the page disconnects."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MOST_BUTTONS = 64
 
 
 class PressedButtons:
-    """The buttons of one page that are down."""
+    """The pressed buttons of one page."""
 
     def __init__(self, bus: JsonBus, *, tell: Callable[[RefusedFrame], None]) -> None:
         self._bus = bus
@@ -20,7 +20,7 @@ class PressedButtons:
         self._down: set[str] = set()
 
     async def take(self, button: ButtonInput) -> None:
-        """Tell the bus of a button; a topic that no trigger listens to is refused in words."""
+        """Publish a button on the bus; a topic without a trigger is refused with a message."""
         topic = f"buttons/{button.source}/{button.button}"
         if button.value and len(self._down) >= MOST_BUTTONS:
             return
@@ -33,11 +33,11 @@ class PressedButtons:
         (self._down.add if button.value else self._down.discard)(topic)
 
     async def release(self) -> None:
-        """Let every button go."""
+        """Release every button."""
         for topic in tuple(self._down):
             self._down.discard(topic)
             try:
                 await self._bus.publish(topic, {"value": False})
             except BusError:
-                # The trigger was taken away meanwhile: nobody is left to be told.
+                # The trigger was removed meanwhile.
                 continue

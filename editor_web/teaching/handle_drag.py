@@ -1,7 +1,7 @@
-"""An arm by its handle in the 3D view: its tool follows the handle, or is pushed towards it, while somebody holds it.
+"""Dragging an arm by its handle in the 3D view: the tool follows the handle, or is pushed towards it, during the drag.
 
-Holding takes two things: that viser says so, and that the page says so again every few milliseconds. When either
-ends, however that comes, the arm comes to rest.
+A drag needs two signals: viser's drag events, and a keep-alive of the page every 50 ms. When either ends, for any
+reason, the arm comes to rest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from engine.messages.pose_algebra import rotation_vector_between
 
 PERIOD_S = 0.05
 SILENCE_S = 0.2
-"""Longer than this unheard, the page does not hold any more."""
+"""Maximum time without a keep-alive of the page; then the drag counts as ended."""
 MOST_M_S, MOST_RAD_S, GAIN_1_S = 0.1, 0.5, 2.0
 NEAR_M, NEAR_RAD = 0.001, 0.01
 MOST_N, SPRING_N_M, PUSH_S = 40.0, 200.0, 0.15
@@ -37,7 +37,7 @@ Vector = NDArray[np.float64]
 
 
 class ShowHandle(msgspec.Struct, frozen=True, kw_only=True, tag="take", tag_field="k"):
-    """From the page: show the handle of this arm, none where empty; it moves the tool, or pushes at a floating arm."""
+    """From the page: show the handle of this arm (empty: none); it moves the tool, or pushes an arm in hand guiding."""
 
     arm: Annotated[str, msgspec.Meta(max_length=200)] = ""
     way: HandleMode = "move"
@@ -48,7 +48,7 @@ class DragKeepAlive(msgspec.Struct, frozen=True, kw_only=True, tag="held", tag_f
 
 
 class HandleStatus(msgspec.Struct, frozen=True, kw_only=True, tag="gripped", tag_field="k"):
-    """To the page: the arm whose handle it has, empty for none, and whether somebody pulls at it."""
+    """To the page: the arm whose handle it has (empty: none), and whether the handle is dragged."""
 
     arm: str
     way: HandleMode
@@ -59,14 +59,14 @@ Tell = Callable[[HandleStatus | RefusedFrame], None]
 
 
 class HandleDrag:
-    """What one page holds in its 3D view; on the event loop.
+    """The drag handle of one page in its 3D view; on the event loop.
 
     Args:
         backend: The engine.
         view: The 3D view.
-        page: What the page calls itself there.
-        joggers: Who jogs which arm, of all pages.
-        tell: Takes what the page is to know.
+        page: Name of the page in the view.
+        joggers: The active jogger of each arm, for all pages.
+        tell: Receives the messages to the page.
     """
 
     def __init__(self, backend: Backend, view: CellView, page: str, *, joggers: dict[str, Jogger], tell: Tell) -> None:
@@ -85,7 +85,7 @@ class HandleDrag:
 
     async def take(self, take: ShowHandle) -> None:
         """Show the handle of an arm, or none."""
-        await self._let_go()
+        await self._stop_drag()
         self._take = take
         description = self._backend.latest(f"{take.arm}/description") if take.arm else None
         if isinstance(description, RobotDescription):
@@ -93,29 +93,29 @@ class HandleDrag:
             self._handle = DragHandle(frame=description.tool_frame, turns=turns, pulled=self._on_pull(take))
             self._view.give_handle(self._page, self._handle)
         else:
-            self._take_away()
+            self._remove_handle()
             if take.arm:
-                self._refuse("there is no such arm", "choose one of the cell's")
+                self._refuse("there is no such arm", "choose an arm of the cell")
             self._take = ShowHandle()
-        self._told()
+        self._send_status()
 
     def held(self) -> None:
-        """The page says that the mouse is down."""
+        """Record a keep-alive of the page: the mouse is down."""
         self._held_s = self._loop.time()
 
     async def close(self) -> None:
-        """Bring the arm to rest and take the handle away."""
-        await self._let_go()
-        self._take_away()
+        """Bring the arm to rest and remove the handle."""
+        await self._stop_drag()
+        self._remove_handle()
 
-    def _take_away(self) -> None:
-        # By now the page may have a connection anew, with a handle of its own.
+    def _remove_handle(self) -> None:
+        # Meanwhile the page may have reconnected, with a new handle.
         handle, self._handle = self._handle, None
         if handle is not None:
             self._view.take_handle(self._page, handle)
 
-    async def _let_go(self) -> None:
-        # Nobody listens any more to the handle, which can be pulled at until it has gone from the page.
+    async def _stop_drag(self) -> None:
+        # Ignores the handle from now on, which the page can drag until it is removed.
         self._take = ShowHandle()
         self._target = None
         task, self._task = self._task, None
@@ -143,13 +143,13 @@ class HandleDrag:
 
     async def _follow(self, take: ShowHandle) -> None:
         self._is_refused = False
-        self._told()
+        self._send_status()
         try:
             while self._target is not None and not self._is_refused:
                 if self._loop.time() - self._held_s < SILENCE_S:
                     await self._step(take, self._target)
                 else:
-                    # It goes on where the page is heard again while the mouse is still down.
+                    # The drag resumes if keep-alives arrive again while the mouse is still down.
                     await self._jogger.rest()
                 await asyncio.sleep(PERIOD_S)
         except FlexcellError as error:
@@ -157,7 +157,7 @@ class HandleDrag:
         finally:
             self._target = None
             await self._rest(take)
-            self._told()
+            self._send_status()
 
     async def _step(self, take: ShowHandle, target: WorldPose) -> None:
         now = self._now(take.arm)
@@ -175,7 +175,7 @@ class HandleDrag:
         try:
             await self._push(take.arm, (0.0, 0.0, 0.0))
         except FlexcellError:
-            return  # it holds itself, or its world is gone; the last push ends by itself
+            return  # the arm left hand guiding, or its world is closed; the last push ends by itself
 
     async def _push(self, arm: str, force_n: tuple[float, float, float]) -> None:
         await push(self._backend, PushToolBody(arm=arm, force_n=force_n, duration_s=PUSH_S))
@@ -196,16 +196,16 @@ class HandleDrag:
     def _refuse(self, message: str, hint: str) -> None:
         self._tell(RefusedFrame(what="jog", message=message, hint=hint))
 
-    def _told(self) -> None:
+    def _send_status(self) -> None:
         self._tell(HandleStatus(arm=self._take.arm, way=self._take.way, pulled=self._target is not None))
 
 
 def _velocity(now: WorldPose, target: WorldPose) -> tuple[float, ...]:
-    """Return how fast the tool goes towards the handle, m/s and rad/s in the world."""
-    way = np.subtract(target.xyz, now.xyz)
-    turn = np.array(rotation_vector_between(now.xyzw, target.xyzw))
-    linear = _limited(way * GAIN_1_S, MOST_M_S) if np.linalg.norm(way) > NEAR_M else np.zeros(3)
-    angular = _limited(turn * GAIN_1_S, MOST_RAD_S) if np.linalg.norm(turn) > NEAR_RAD else np.zeros(3)
+    """Return the velocity of the tool towards the handle, m/s and rad/s in the world."""
+    offset = np.subtract(target.xyz, now.xyz)
+    rotation = np.array(rotation_vector_between(now.xyzw, target.xyzw))
+    linear = _limited(offset * GAIN_1_S, MOST_M_S) if np.linalg.norm(offset) > NEAR_M else np.zeros(3)
+    angular = _limited(rotation * GAIN_1_S, MOST_RAD_S) if np.linalg.norm(rotation) > NEAR_RAD else np.zeros(3)
     return tuple(float(value) for value in (*linear, *angular))
 
 

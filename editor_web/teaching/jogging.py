@@ -1,6 +1,6 @@
-"""Jogging for one page: an arm goes only as long as the page says so, and rests when the page is gone.
+"""Jogging for one page: an arm moves only while the page sends velocities, and stops when the page disconnects.
 
-The last word is the arm's own: where nothing is heard for `WATCHDOG_S` it comes to rest, whatever happens here.
+The arm has its own watchdog: without a velocity for `WATCHDOG_S` it comes to rest, independent of this module.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Jogger:
     """Jogs at most one arm.
 
     Args:
-        bus: Where the arms are.
-        taken: The arms that are jogged, by anybody's page; shared by all joggers of a server.
-        tell: Takes what the page is to know.
+        bus: The bus of the arms.
+        taken: The jogged arms of all pages; shared by all joggers of a server.
+        tell: Receives the messages to the page.
     """
 
     def __init__(
@@ -42,22 +42,22 @@ class Jogger:
 
     @property
     def arm(self) -> str:
-        """The arm that is jogged; empty for none."""
+        """The jogged arm; empty for none."""
         return self._jog.arm if self._jog is not None else ""
 
     async def begin(self, jog: StartJog) -> None:
-        """Make ready to jog; what was jogged before comes to rest first."""
+        """Prepare to jog an arm; the previously jogged arm comes to rest first."""
         await self.rest()
         other = self._taken.get(jog.arm)
         if other is not None:
-            self._refuse("another page jogs this arm", "wait until it lets go")
+            self._refuse("another page jogs this arm", "wait until it stops jogging")
             return
         self._jog = jog
         self._taken[jog.arm] = self
-        self._task = asyncio.create_task(self._carry_out(jog), name=f"jog {jog.arm}")
+        self._task = asyncio.create_task(self._perform(jog), name=f"jog {jog.arm}")
 
     async def go(self, velocity: tuple[float, ...]) -> None:
-        """Go at this velocity for `WATCHDOG_S` at most; one that is too fast is refused."""
+        """Move at this velocity for at most `WATCHDOG_S`; a velocity above the limits is refused."""
         jog = self._jog
         if jog is None:
             return
@@ -72,20 +72,20 @@ class Jogger:
             await self.rest()
 
     async def rest(self) -> None:
-        """Bring the arm to rest; returns when it is, also where that was asked for before."""
+        """Bring the arm to rest; return when it is at rest, also if the stop was requested before."""
         task = self._task
         if task is None:
             return
         if not task.cancelling():
-            # Once only: a second one would not let it wait until the arm rests.
+            # Once only: a second cancellation would interrupt the wait for the arm to rest.
             task.cancel()
         await asyncio.wait({task})
         if self._task is task:
             self._task = None
-            # One that was cancelled before it began has let go of nothing.
-            self._let_go()
+            # A task that was cancelled before it began has released nothing.
+            self._release()
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         jog, self._jog = self._jog, None
         if jog is not None:
             self._taken.pop(jog.arm, None)
@@ -94,7 +94,7 @@ class Jogger:
     def _refuse(self, message: str, hint: str) -> None:
         self._tell(RefusedFrame(what="jog", message=message, hint=hint))
 
-    async def _carry_out(self, jog: StartJog) -> None:
+    async def _perform(self, jog: StartJog) -> None:
         goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S}
         if jog.space == "tool":
             goal["frame"] = jog.frame
@@ -106,18 +106,18 @@ class Jogger:
         except FlexcellError as error:
             self._refuse(error.message, error.hint or "")
         finally:
-            self._let_go()
+            self._release()
 
 
 def _too_fast(jog: StartJog, velocity: tuple[float, ...]) -> str:
-    """Say which limit of jogging is exceeded; empty for none."""
+    """Return the exceeded limit of jogging; empty for none."""
     if jog.space == "joints":
         limits = [MOST_JOINT_RAD_S] * len(velocity)
     else:
         limits = [MOST_M_S] * _LINEAR + [MOST_RAD_S] * _LINEAR
         if len(velocity) != _TWIST:
-            return f"a velocity of {len(velocity)} numbers was given where {_TWIST} are due"
+            return f"expected a velocity of {_TWIST} numbers, got {len(velocity)}"
     for value, limit in zip(velocity, limits, strict=True):
         if not abs(value) <= limit:
-            return f"a jog goes at {limit:g} at most, not at {value:.3g}"
+            return f"jog velocity {value:.3g} exceeds the limit of {limit:g}"
     return ""

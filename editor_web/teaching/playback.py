@@ -1,4 +1,4 @@
-"""Plays back what was taught, slowly: to where it begins, then along it."""
+"""Slow playback of a taught motion: to its start, then along it."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from engine.bus.json_bus import JsonBus
 from engine.errors import FlexcellError
 from engine.skills.dmp import LearnedCartDmp, LearnedJointDmp
 
-# A share of the joints' limits: a half of this is brisk, a tenth is slow.
+# Fraction of the joint limits: half of it is fast, a tenth is slow.
 _JOINT_SHARE = 0.4
 Goal = tuple[str, dict[str, object]]
 
 
 async def play(bus: JsonBus, request: PlayBody) -> PlaybackResult:
-    """Carry it out and return how it ended; cancelled, the arm is brought to rest first.
+    """Play back a motion and return its end; on cancellation, the arm comes to rest first.
 
     Raises:
-        FlexcellError: there is none such, or it is of another arm.
+        FlexcellError: there is no such entry or capture, or it belongs to another arm.
     """
     taught = await _as_motion(bus, request.arm, await read_taught(bus, request))
     for skill, goal in await _goals(bus, request, taught):
@@ -34,7 +34,7 @@ async def play(bus: JsonBus, request: PlayBody) -> PlaybackResult:
 
 
 async def _as_motion(bus: JsonBus, arm: str, taught: TaughtData) -> TaughtData:
-    """Return a recording as the primitive learned from it: recordings themselves are not carried out."""
+    """Return the primitive learned from a recording: recordings themselves cannot be executed."""
     if taught.kind != "trajectory":
         return taught
     learn = "learn_joint_dmp" if taught.value.get("joints") else "learn_cart_dmp"
@@ -54,18 +54,18 @@ async def _goals(bus: JsonBus, request: PlayBody, taught: TaughtData) -> list[Go
             return [("cart_trap_vel", {"pose": taught.value, "speed": speed})]
         case "dmp":
             start = (await trace(bus, request.arm, taught)).joints[0]
-            there: Goal = ("joint_trap_vel", {"joints": start, "speed": speed})
-            return [there, ("joint_dmp", {"dmp": _slower(taught.value, request.speed)})]
+            approach: Goal = ("joint_trap_vel", {"joints": start, "speed": speed})
+            return [approach, ("joint_dmp", {"dmp": _slower(taught.value, request.speed)})]
         case "cart_dmp":
-            course = await trace(bus, request.arm, taught)
-            pose = course.poses[0]
+            motion = await trace(bus, request.arm, taught)
+            pose = motion.poses[0]
             to_start: Goal = ("cart_trap_vel", {"pose": {"xyz": pose[:3], "xyzw": pose[3:]}, "speed": speed})
             return [to_start, ("cart_dmp", {"dmp": _slower(taught.value, request.speed)})]
         case _:
-            raise FlexcellError(f"a {taught.kind} cannot be carried out", where=request.arm)
+            raise FlexcellError(f"an entry of kind {taught.kind} cannot be played back", where=request.arm)
 
 
 def _slower(dmp: dict[str, object], share: float) -> dict[str, object]:
-    """Return the same way in more time."""
+    """Return the same path with a longer duration."""
     values = cast("dict[str, Any]", dmp)
     return {**values, "tau": values["tau"] / share, "dy0": [rate * share for rate in values["dy0"]]}

@@ -1,4 +1,4 @@
-"""Entries and captures by reference, and where an arm is along them."""
+"""Entries and captures by reference, and the motion of an arm along them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engine.skills.entries import EntryHistory, EntryList, EntryRecord
 from engine.skills.motion_trace import Trace, TraceableKind
 from engine.skills.teaching import Capture
 
-_PLACED = frozenset(get_args(TraceableKind))
+_TRACEABLE = frozenset(get_args(TraceableKind))
 
 
 class TaughtReference(Protocol):
@@ -39,20 +39,20 @@ class TaughtReference(Protocol):
 
     @property
     def revision(self) -> int:
-        """Which of its revisions, 0 for the entry as it is now."""
+        """Revision of the entry, 0 for the current one."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class TaughtData:
-    """What is referred to: the kind of an entry and its fields."""
+    """The referenced data: the kind of an entry and its fields."""
 
     kind: str
     value: dict[str, object]
 
 
 async def read_taught(bus: JsonBus, reference: TaughtReference) -> TaughtData:
-    """Return what is referred to; raises FlexcellError where there is none."""
+    """Return the referenced data; raises FlexcellError if there is none."""
     if reference.capture:
         capture = await read_capture(bus, reference.capture)
         kind = capture.summary.form
@@ -66,7 +66,7 @@ async def read_taught(bus: JsonBus, reference: TaughtReference) -> TaughtData:
 
 
 async def read_capture(bus: JsonBus, number: int) -> Capture:
-    """Return a capture with its data; raises FlexcellError where there is none."""
+    """Return a capture with its data; raises FlexcellError if there is none."""
     return msgspec.json.decode(await bus.call("teach/read_capture", {"id": number}), type=Capture)
 
 
@@ -87,26 +87,27 @@ def _value(capture: Capture) -> Message | dict[str, object]:
 
 
 async def trace(bus: JsonBus, arm: str, taught: TaughtData, *, most: int = 200) -> Trace:
-    """Return where an arm is along it.
+    """Return the motion of an arm along taught data.
 
     Raises:
-        FlexcellError: it is of another arm, or has no place.
+        FlexcellError: the data belongs to another arm, or has no poses.
     """
-    if taught.kind not in _PLACED:
-        raise FlexcellError(f"a {taught.kind} has no place", hint=f"these have: {', '.join(sorted(_PLACED))}")
+    if taught.kind not in _TRACEABLE:
+        hint = f"these kinds have: {', '.join(sorted(_TRACEABLE))}"
+        raise FlexcellError(f"an entry of kind {taught.kind} has no poses", hint=hint)
     request = {"kind": taught.kind, "value": taught.value, "most": most}
     return msgspec.json.decode(await bus.call(f"{arm}/trace_motion", request), type=Trace)
 
 
 async def compare_primitive(bus: JsonBus, arm: str, reference: TaughtReference) -> PrimitiveComparison:
-    """Return a recording and its primitive side by side; of an entry the one that it is."""
+    """Return a recording and its primitive for comparison; an entry gives only one of them."""
     if not reference.capture:
         taught = await read_taught(bus, reference)
-        course = await trace(bus, arm, taught)
+        motion = await trace(bus, arm, taught)
         is_primitive = taught.kind in ("dmp", "cart_dmp")
         return PrimitiveComparison(
-            demonstration=None if is_primitive else course,
-            primitive=course if is_primitive else None,
+            demonstration=None if is_primitive else motion,
+            primitive=motion if is_primitive else None,
             joint_fit=None,
             cart_fit=None,
         )
@@ -123,7 +124,7 @@ async def compare_primitive(bus: JsonBus, arm: str, reference: TaughtReference) 
         kind = "cart_dmp" if capture.cart_dmp is not None else "dmp"
         primitive = await trace(bus, arm, TaughtData(kind=kind, value=msgspec.to_builtins(learned)))
         if fit is not None:
-            # The primitive begins where the recording begins to move.
+            # The primitive starts at the first motion of the recording.
             later = tuple(time_s + fit.cut.start_s for time_s in primitive.times_s)
             primitive = msgspec.structs.replace(primitive, times_s=later)
     return PrimitiveComparison(
@@ -132,10 +133,10 @@ async def compare_primitive(bus: JsonBus, arm: str, reference: TaughtReference) 
 
 
 async def write_tags(bus: JsonBus, body: TagsBody) -> None:
-    """Give an entry other tags; its value stays.
+    """Replace the tags of an entry; its value is kept.
 
     Raises:
-        FlexcellError: there is none such, or somebody has changed it meanwhile.
+        FlexcellError: there is no such entry, or it was changed meanwhile.
     """
     named: dict[str, object] = {"kind": body.kind, "name": body.name}
     answer = await bus.call("store/read_entry", named)
@@ -151,16 +152,16 @@ async def write_tags(bus: JsonBus, body: TagsBody) -> None:
 
 
 async def search_entries(bus: JsonBus, *, kind: str, text: str, limit: int) -> EntryPage:
-    """Return the first entries that match, each with its last change.
+    """Return the first matching entries, each with its last change.
 
     Raises:
         FlexcellError: the cell has no store.
     """
     answer = await bus.call("store/list_entries", {"kind": kind, "text": text})
-    found = msgspec.json.decode(answer, type=EntryList).entries
-    shown = found[:limit]
+    matching = msgspec.json.decode(answer, type=EntryList).entries
+    shown = matching[:limit]
     rows = await asyncio.gather(*(_row(bus, *each) for each in shown))
-    return EntryPage(entries=tuple(rows), total=len(found))
+    return EntryPage(entries=tuple(rows), total=len(matching))
 
 
 async def _row(bus: JsonBus, kind: str, name: str, revision: int) -> EntryRow:

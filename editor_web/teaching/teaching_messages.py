@@ -1,4 +1,4 @@
-"""What the page for teaching is told and sends: the frames of its websocket, and the bodies of its routes."""
+"""Messages of the teaching page: the frames of its websocket, and the bodies of its routes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Axes = Literal["world", "base", "tool"]
 
 
 class ArmInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """What an arm is: its joints with their limits (rad, rad/s), its tool, and the names of what it can do."""
+    """Description of an arm: its joints with their limits (rad, rad/s), its tool, and the names of its skills."""
 
     name: str
     model: str
@@ -32,7 +32,7 @@ class ArmInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ToolLive(msgspec.Struct, frozen=True, kw_only=True):
-    """What the tool measures: opening of a gripper (m) or how far a hand is closed (0 to 100), and what it holds."""
+    """Measured tool state: opening of a gripper (m) or closing of a hand (0 to 100), and whether it holds a part."""
 
     width_m: float | None = None
     closed_percent: float | None = None
@@ -40,7 +40,7 @@ class ToolLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ArmLive(msgspec.Struct, frozen=True, kw_only=True):
-    """What an arm does and where it is: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world."""
+    """Status of an arm: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world."""
 
     mode: str
     activity: str
@@ -51,7 +51,7 @@ class ArmLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ArmInfoFrame(msgspec.Struct, frozen=True, kw_only=True, tag="arms", tag_field="k"):
-    """First frame: the arms and frames of the cell; `can_push` where bodies can be pushed at, as in a simulation."""
+    """First frame: the arms and frames of the cell; `can_push` is true if bodies can be pushed, as in a simulation."""
 
     arms: tuple[ArmInfo, ...]
     can_push: bool
@@ -59,13 +59,13 @@ class ArmInfoFrame(msgspec.Struct, frozen=True, kw_only=True, tag="arms", tag_fi
 
 
 class ArmsLiveFrame(msgspec.Struct, frozen=True, kw_only=True, tag="now", tag_field="k"):
-    """The arms that are another than when told last, at most ten times a second."""
+    """The arms whose status has changed, at most ten times a second."""
 
     arms: dict[str, ArmLive]
 
 
 class HelpingHandFrame(msgspec.Struct, frozen=True, kw_only=True, tag="hand", tag_field="k"):
-    """What the Helping Hand does; null where there is none."""
+    """Status of the Helping Hand; null if there is none."""
 
     status: TeachStatus | None
 
@@ -75,14 +75,14 @@ class EntriesChanged(msgspec.Struct, frozen=True, kw_only=True, tag="entries", t
 
 
 class JogStatus(msgspec.Struct, frozen=True, kw_only=True, tag="jogging", tag_field="k"):
-    """Which arm this page jogs now, empty for none, and what holds it back, in words."""
+    """The arm that this page jogs, empty for none, and what limits its motion, as text."""
 
     arm: str
     held_by: str = ""
 
 
 class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag_field="k"):
-    """Something that the page sent was not done; `what` is which."""
+    """A message of the page was refused; `what` is its kind."""
 
     what: Literal["jog", "button", "look"]
     message: str
@@ -90,7 +90,7 @@ class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag
 
 
 class StartJog(msgspec.Struct, frozen=True, kw_only=True, tag="jog", tag_field="k"):
-    """From the page: make ready to jog this arm, until `rest`."""
+    """From the page: prepare to jog this arm, until `rest`."""
 
     arm: Name
     space: Space
@@ -98,7 +98,7 @@ class StartJog(msgspec.Struct, frozen=True, kw_only=True, tag="jog", tag_field="
 
 
 class JogVelocity(msgspec.Struct, frozen=True, kw_only=True, tag="go", tag_field="k"):
-    """From the page, ten times a second or more while a key is down: go at this velocity, m/s and rad/s."""
+    """From the page, ten times a second or more while a key is down: move at this velocity, m/s and rad/s."""
 
     velocity: Annotated[tuple[float, ...], msgspec.Meta(max_length=32)]
 
@@ -108,7 +108,7 @@ class StopJog(msgspec.Struct, frozen=True, kw_only=True, tag="rest", tag_field="
 
 
 class ButtonInput(msgspec.Struct, frozen=True, kw_only=True, tag="button", tag_field="k"):
-    """From the page: a button of a keyboard or gamepad, to be told on `buttons/<source>/<button>`."""
+    """From the page: a button of a keyboard or gamepad, to publish on `buttons/<source>/<button>`."""
 
     source: Word
     button: Word
@@ -116,10 +116,10 @@ class ButtonInput(msgspec.Struct, frozen=True, kw_only=True, tag="button", tag_f
 
 
 class PreviewTaught(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):
-    """From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm.
+    """From the page: preview this arm along an entry (`kind`, `name`) or a capture; without an arm, clear the preview.
 
-    `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of
-    all that is shown; 1 to 4 are beside that, each in its colour.
+    `revision` selects a revision of the entry, 0 the current one. `place` 0 replaces all previews; places 1 to 4 are
+    shown side by side, each in its colour.
     """
 
     arm: Name = ""
@@ -131,7 +131,7 @@ class PreviewTaught(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_f
 
 
 class PrimitiveComparison(msgspec.Struct, frozen=True, kw_only=True):
-    """A recording and the primitive learned from it, as the arm would carry them out, and how far they are apart."""
+    """A recording and the primitive learned from it, as the arm would execute them, and their fit errors."""
 
     demonstration: Trace | None
     primitive: Trace | None
@@ -152,14 +152,14 @@ class EntryRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EntryPage(msgspec.Struct, frozen=True, kw_only=True):
-    """The first entries that matched, and how many did."""
+    """The first matching entries, and the total number."""
 
     entries: tuple[EntryRow, ...]
     total: int
 
 
 class TagsBody(HttpBody):
-    """The tags that an entry is to have; `revision` is the one that they were seen on."""
+    """New tags of an entry; `revision` is the revision that they are based on."""
 
     kind: str = Field(max_length=200)
     name: str = Field(max_length=200)
@@ -168,7 +168,7 @@ class TagsBody(HttpBody):
 
 
 class PlayBody(HttpBody):
-    """Carry out an entry (`kind`, `name`) or a capture with an arm, at `speed`: a share of its own, a half at most."""
+    """Play back an entry (`kind`, `name`) or a capture with an arm; `speed` is a fraction of the taught speed."""
 
     arm: str = Field(max_length=200)
     speed: float = Field(gt=0.0, le=0.5)
@@ -179,14 +179,14 @@ class PlayBody(HttpBody):
 
 
 class PlaybackResult(msgspec.Struct, frozen=True, kw_only=True):
-    """How it ended: `succeeded`, `preempted`, `rejected` or `failed`, and why."""
+    """The end of a playback: `succeeded`, `preempted`, `rejected` or `failed`, and the cause."""
 
     status: str
     cause: str
 
 
 class PushToolBody(HttpBody):
-    """Push at the tool of a simulated arm, along the axes of the world."""
+    """Push the tool of a simulated arm, along the world axes."""
 
     arm: str = Field(max_length=200)
     force_n: tuple[float, float, float]
@@ -196,4 +196,4 @@ class PushToolBody(HttpBody):
 ToPage = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
 FromPage = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
 SCHEMAS = (*get_args(ToPage), *get_args(FromPage), PrimitiveComparison, EntryPage, PlaybackResult)
-"""What the page's types are made from, beside the bodies of the routes."""
+"""Sources of the page's types, in addition to the bodies of the routes."""

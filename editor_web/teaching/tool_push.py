@@ -1,4 +1,4 @@
-"""Pushes at the tool of a simulated arm, as a hand would."""
+"""Pushes the tool of a simulated arm, as a hand would."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ MOST_N = 60.0
 
 
 async def push(backend: Backend, request: PushToolBody) -> str:
-    """Push at the last link of an arm that floats, and return its name.
+    """Push the last link of an arm in hand guiding, and return its name.
 
     Raises:
-        FlexcellError: it does not float, there is no simulated world, or nobody pushes so hard.
+        FlexcellError: the arm is not in hand guiding, there is no simulated world, or the force exceeds the limit.
     """
     status = backend.latest(f"{request.arm}/status")
     if not isinstance(status, ArmStatus) or status.mode != "guiding":
-        raise FlexcellError("the arm holds itself", where=request.arm, hint="let it float first")
+        raise FlexcellError("the arm is not in hand guiding", where=request.arm, hint="start hand guiding first")
     if math.hypot(*request.force_n) > MOST_N:
-        raise FlexcellError(f"a push is {MOST_N:g} N at most", where=request.arm)
+        raise FlexcellError(f"the force of a push exceeds the limit of {MOST_N:g} N", where=request.arm)
     body = _last_link(backend, request.arm)
     await backend.bus.call(
         "cell/push_body", {"body": body, "force_n": request.force_n, "duration_s": request.duration_s}
@@ -32,13 +32,13 @@ async def push(backend: Backend, request: PushToolBody) -> str:
 
 
 def _last_link(backend: Backend, arm: str) -> str:
-    """Return the moving body of the arm that is drawn last: its hand, or the fingers' holder."""
+    """Return the last moving link of the arm that is drawn, without fingers and pads."""
     scene, poses = backend.latest("cell/scene"), backend.latest("cell/frames")
     if not isinstance(scene, SceneDescription) or not isinstance(poses, FramePoses):
-        raise FlexcellError("nobody can push here", where=arm, hint="this is for simulated cells")
+        raise FlexcellError("this cell cannot push bodies", where=arm, hint="use a simulated cell")
     drawn = {geometry.frame for geometry in scene.geometries}
     moving = [name for name in poses.names if name.startswith(f"{arm}/") and name in drawn]
     links = [name for name in moving if "finger" not in name and "pad" not in name]
     if not links:
-        raise FlexcellError("this arm has no body to push at", where=arm)
+        raise FlexcellError("this arm has no link to push", where=arm)
     return links[-1]

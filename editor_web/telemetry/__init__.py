@@ -1,4 +1,1 @@
-"""What a page subscribes to besides the run: bus metrics, topic messages, plotted signals.
-
-Userdata and goal progress.
-"""
+"""Subscriptions of a page besides the run: bus metrics, topic messages, plots, userdata and goal progress."""

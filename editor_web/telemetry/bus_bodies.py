@@ -1,4 +1,4 @@
-"""What the page gets and sends of the skill bus: the board of what there is, forms, numbers, the course of a goal."""
+"""Messages for the bus page: the list of the bus, forms, numeric fields, and the progress of a goal."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from engine.project.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
 
 
 class BusListing(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything on the bus but its traffic."""
+    """All topics, skills and parameters of the bus, without metrics."""
 
     shape: str
     topics: tuple[TopicInfo, ...]
@@ -30,7 +30,7 @@ class BusForm(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TopicFields(msgspec.Struct, frozen=True, kw_only=True):
-    """The numbers of the messages of one topic."""
+    """The numeric fields of one topic."""
 
     topic: str
     type: str
@@ -38,26 +38,26 @@ class TopicFields(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class BusFields(msgspec.Struct, frozen=True, kw_only=True):
-    """The numbers of all topics."""
+    """The numeric fields of all topics."""
 
     topics: tuple[TopicFields, ...]
 
 
 class GoalSentLine(msgspec.Struct, frozen=True, kw_only=True, tag="sent", tag_field="k"):
-    """First line: the goal's id, by which it is cancelled."""
+    """First line: the goal's id, for its cancellation."""
 
     goal: str
 
 
 class GoalProgressLine(msgspec.Struct, frozen=True, kw_only=True, tag="course", tag_field="k"):
-    """Where it stands, with the newest feedback; at most five a second."""
+    """Status and latest feedback of the goal; at most five lines per second."""
 
     status: str
     feedback: object = None
 
 
 class GoalEndLine(msgspec.Struct, frozen=True, kw_only=True, tag="end", tag_field="k"):
-    """Last line: how it ended; the device is at rest."""
+    """Last line: the end of the goal; the device is at rest."""
 
     status: str
     result: object = None

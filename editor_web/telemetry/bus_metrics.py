@@ -1,4 +1,4 @@
-"""Rates, ages, leases and goals of a bus, measured by looking at its counters once in a while."""
+"""Rates, ages, leases and goals of a bus, from periodic samples of its counters."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ WINDOW_S = 4.0
 
 
 class BusMetrics:
-    """Measures between its own looks; costs publishers nothing."""
+    """Computes metrics between its own samples, at no cost for publishers."""
 
     def __init__(self, desk: BusInspector) -> None:
         self._desk = desk
-        self._looks: deque[tuple[float, dict[str, TopicStatistics]]] = deque()
+        self._samples: deque[tuple[float, dict[str, TopicStatistics]]] = deque()
 
     def frame(self) -> BusMetricsFrame:
-        """Look once more."""
+        """Take a sample and return the metrics."""
         now_s, traffic = self._desk.now_s, self._desk.traffic()
-        while len(self._looks) > 1 and now_s - self._looks[0][0] > WINDOW_S:
-            self._looks.popleft()
-        then_s, then = self._looks[0] if self._looks else (now_s, {})
-        self._looks.append((now_s, traffic))
+        while len(self._samples) > 1 and now_s - self._samples[0][0] > WINDOW_S:
+            self._samples.popleft()
+        then_s, then = self._samples[0] if self._samples else (now_s, {})
+        self._samples.append((now_s, traffic))
         goals = self._desk.goals()
         return BusMetricsFrame(
             shape=bus_fingerprint(self._desk),
@@ -41,7 +41,7 @@ class BusMetrics:
 
 
 def bus_fingerprint(desk: BusInspector) -> str:
-    """Return a word that changes with the topics, skills and parameters that there are, and with parameters' values."""
+    """Return a checksum of the topics, skills, parameters and parameter values."""
     return f"{zlib.crc32(chr(10).join(desk.shape()).encode()):08x}"
 
 

@@ -1,4 +1,4 @@
-"""The frames of the data stream: what a page says it looks at, and what it is sent of that."""
+"""The frames of the data stream: the subscription of a page, and the data that it receives."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ MAX_CURVES = 32
 
 
 class DataSubscription(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):
-    """From the client: I look at this from now on, and at nothing else.
+    """From the client: subscribe to exactly this data.
 
-    `number` comes back with the samples of these `fields`, each written `topic:path`. `traffic` asks for
-    rates, leases and goals, `topic` for the messages of one topic, `run` for the userdata of a run, `goals` for
-    how far the goals of a run are.
+    `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates,
+    leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals
+    of a run.
     """
 
     number: int = 0
@@ -33,7 +33,7 @@ class TopicMetrics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LeaseMetrics(msgspec.Struct, frozen=True, kw_only=True):
-    """Who commands `resource`, for how long, from which node and with which goal; both may be empty."""
+    """The lease of `resource`: its run, node and goal, which may be empty, and its duration."""
 
     resource: str
     run: str
@@ -43,7 +43,7 @@ class LeaseMetrics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GoalMetrics(msgspec.Struct, frozen=True, kw_only=True):
-    """A goal under way."""
+    """An active goal."""
 
     id: str
     address: str
@@ -53,7 +53,7 @@ class GoalMetrics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class BusMetricsFrame(msgspec.Struct, frozen=True, kw_only=True, tag="traffic", tag_field="k"):
-    """What passes on the bus, once a second; another `shape` means that the list of what there is has changed."""
+    """Metrics of the bus, once a second; a changed `shape` means that the list of the bus has changed."""
 
     shape: str
     topics: dict[str, TopicMetrics]
@@ -62,9 +62,9 @@ class BusMetricsFrame(msgspec.Struct, frozen=True, kw_only=True, tag="traffic", 
 
 
 class MessageFrame(msgspec.Struct, frozen=True, kw_only=True, tag="message", tag_field="k"):
-    """The newest message of the topic that is looked at, cut to a bounded size; at most five a second.
+    """The latest message of the subscribed topic, truncated to a bounded size; at most five per second.
 
-    `at_s` is the server's clock when it was looked at; `problem` says why there is none.
+    `at_s` is the sampling time on the server's clock; `problem` tells why there is no message.
     """
 
     topic: str
@@ -76,7 +76,7 @@ class MessageFrame(msgspec.Struct, frozen=True, kw_only=True, tag="message", tag
 class SamplesFrame(msgspec.Struct, frozen=True, kw_only=True, tag="samples", tag_field="k"):
     """Rows of the chosen fields, in their order: time on the server's clock, and a value each (null where none).
 
-    `dropped` rows in front of these were left out, as the page did not take them in time.
+    `dropped` is the number of earlier rows that were dropped because the page was too slow.
     """
 
     number: int
@@ -86,7 +86,7 @@ class SamplesFrame(msgspec.Struct, frozen=True, kw_only=True, tag="samples", tag
 
 
 class UserdataValue(msgspec.Struct, frozen=True, kw_only=True):
-    """One value of userdata: who wrote it last (empty: it began so), when on the run's clock, how often."""
+    """One userdata value: its last writer (empty: initial value), the time on the run's clock, the number of writes."""
 
     value: object
     by: str
@@ -103,9 +103,9 @@ class UserdataScope(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class UserdataFrame(msgspec.Struct, frozen=True, kw_only=True, tag="userdata", tag_field="k"):
-    """The scopes that have changed, by the path of their container; null for one that is no more.
+    """The changed scopes, by the path of their container; null for a removed one.
 
-    `first` means that these are all there are.
+    `first` means that the frame contains all scopes.
     """
 
     run: str
@@ -115,7 +115,7 @@ class UserdataFrame(msgspec.Struct, frozen=True, kw_only=True, tag="userdata", t
 
 
 class GoalProgress(msgspec.Struct, frozen=True, kw_only=True):
-    """A goal under way: `share` of its way from 0 to 1 where its feedback tells it, and else what it tells in words."""
+    """An active goal: `share` is its progress from 0 to 1 if the feedback has it, `words` the feedback as text."""
 
     address: str
     status: str
@@ -124,14 +124,14 @@ class GoalProgress(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GoalsFrame(msgspec.Struct, frozen=True, kw_only=True, tag="goals", tag_field="k"):
-    """The goals that a run has under way, all of them, by the path of the node that sent them."""
+    """All active goals of a run, by the path of the node that sent them."""
 
     run: str
     goals: dict[str, GoalProgress]
 
 
 class IdleFrame(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
-    """Nothing happened; the connection lives."""
+    """Keep-alive without data."""
 
 
 DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | IdleFrame

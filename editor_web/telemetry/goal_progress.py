@@ -1,4 +1,4 @@
-"""How far the goals of a run are, by the node that sent them, from the newest feedback of each."""
+"""Progress of the goals of a run, by the node that sent them, from the latest feedback."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from editor_web.telemetry.plot_signals import unit_of
 from engine.project.bus_inspector import GoalInfo
 
 _REST = ("remaining", "distance")
-_WORDS = ("phase", "reason")
+_TEXT_FIELDS = ("phase", "reason")
 
 
 def progress_by_node(goals: tuple[GoalInfo, ...]) -> dict[str, GoalProgress]:
-    """Return the goal that each node has under way; the newest one where it has several."""
+    """Return the active goal of each node; the latest one if it has several."""
     return {
         goal.node: GoalProgress(
-            address=goal.address, status=goal.status, share=_share(goal.feedback), words=_words(goal.feedback)
+            address=goal.address, status=goal.status, share=_share(goal.feedback), words=_feedback_text(goal.feedback)
         )
         for goal in goals
     }
@@ -31,18 +31,18 @@ def _share(feedback: object) -> float | None:
     return round(min(1.0, max(0.0, float(share))), 3)
 
 
-def _words(feedback: object) -> str:
-    """The phase and reason that a feedback tells, else what remains, else its first number; short."""
+def _feedback_text(feedback: object) -> str:
+    """Return the phase and reason of a feedback, else the remaining amount, else its first number; short."""
     if not isinstance(feedback, msgspec.Struct):
         return ""
-    told = [str(getattr(feedback, name)) for name in _WORDS if getattr(feedback, name, "")]
-    if told:
-        return ", ".join(told)[:80]
+    texts = [str(getattr(feedback, name)) for name in _TEXT_FIELDS if getattr(feedback, name, "")]
+    if texts:
+        return ", ".join(texts)[:80]
     numbers = {name: value for name in feedback.__struct_fields__ if (value := _number(feedback, name)) is not None}
     numbers.pop("progress", None)
     rest = [name for name in numbers if name.startswith(_REST)]
     for name in [*rest, *numbers][:1]:
-        return _in_words(name, numbers[name])
+        return _number_text(name, numbers[name])
     return ""
 
 
@@ -53,7 +53,7 @@ def _number(feedback: msgspec.Struct, name: str) -> float | None:
     return float(value)
 
 
-def _in_words(name: str, value: float) -> str:
+def _number_text(name: str, value: float) -> str:
     unit = unit_of(name)
     if not unit:
         return f"{name.replace('_', ' ')} {value:.3g}"

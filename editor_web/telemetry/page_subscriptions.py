@@ -1,7 +1,7 @@
-"""What one page looks at beside the run: traffic, one topic, curves, userdata; each sampled only while it is looked at.
+"""Data of one page besides the run: metrics, one topic, plots, userdata; each is sampled only while subscribed.
 
-Nothing is subscribed: publishers and the engine do the same whether a page looks or not. A page that
-takes its frames too slowly loses the oldest samples, and the newest of everything else wins.
+Sampling adds no bus subscription and no load for publishers and the engine. A slow page loses the oldest samples; for
+all other data the latest value wins.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ USERDATA_S = 0.2
 GOALS_S = 0.2
 TRAFFIC_S = 1.0
 KEPT_ROWS = 100
-"""Samples that wait for a slow page: five seconds."""
+"""Maximum number of samples kept for a slow page: five seconds."""
 _VALUE_LEAVES = 400
 _NOTHING = DataSubscription()
 
 
 class PageSubscriptions:
-    """What one page looks at; `due` takes what it is to be sent now.
+    """The subscriptions of one page; `due` returns the frames to send now.
 
     Args:
         backend: The engine.
@@ -64,15 +64,15 @@ class PageSubscriptions:
         self._book: UserdataHistory | None = None
         self._goals: dict[str, GoalProgress] | None = None
         self.begun = asyncio.Event()
-        """Set while the page looks at something."""
+        """Set while the page subscribes to anything."""
 
     @property
     def samples(self) -> bool:
-        """Whether curves are drawn."""
+        """Whether the page plots any signal."""
         return bool(self._curves)
 
     def look(self, look: DataSubscription) -> None:
-        """Look at something else from now on."""
+        """Replace the subscription."""
         before, self._look = self._look, look
         self._next_s = {}
         self._curves = tuple(_curve(field) for field in look.fields[:MAX_CURVES])
@@ -88,7 +88,7 @@ class PageSubscriptions:
             self.begun.clear()
 
     def sample(self) -> None:
-        """Read the present values of all curves; the oldest row gives way where too many wait."""
+        """Sample the current values of all plots; drop the oldest row if too many are pending."""
         messages: dict[str, object] = {}
         for topic, _ in self._curves:
             if topic not in messages:
@@ -99,7 +99,7 @@ class PageSubscriptions:
         self._rows.append((self._unix_s(), tuple(number_at(messages[topic], path) for topic, path in self._curves)))
 
     def due(self) -> list[DataFrame]:
-        """Return the frames that the page is to get now."""
+        """Return the frames to send now."""
         frames: list[DataFrame] = []
         if self._rows:
             frames.append(self._samples())
@@ -137,8 +137,8 @@ class PageSubscriptions:
             return self._once("topic", (name, -1), MessageFrame(topic=name, at_s=self._unix_s(), problem=error.message))
         latest = self._desk.latest(name)
         if latest is None:
-            told = MessageFrame(topic=name, at_s=self._unix_s(), problem="nothing was published on it yet")
-            return self._once("topic", (name, 0), told)
+            empty = MessageFrame(topic=name, at_s=self._unix_s(), problem="no message was published on this topic yet")
+            return self._once("topic", (name, 0), empty)
         if not topic.is_made_on_demand and self._seen.get("topic") == (name, topic.count):
             return []
         self._seen["topic"] = (name, topic.count)
@@ -174,7 +174,7 @@ def _curve(field: str) -> tuple[str, Path]:
 
 
 def userdata_scope(scope: ScopeView) -> UserdataScope:
-    """Return the values of a container as a page is sent them, large ones cut."""
+    """Return the values of a container for a page, large ones truncated."""
     return UserdataScope(
         is_open=scope.is_open,
         since_s=scope.since_s,

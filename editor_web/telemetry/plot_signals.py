@@ -1,4 +1,4 @@
-"""Numbers of messages: which ones a message has, under which name and unit, and reading one of them fast."""
+"""Numeric fields of messages for plots: their paths, labels and units, and fast reading of one field."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import cast
 import msgspec
 
 MAX_FIELDS = 200
-"""Numbers of one topic that can be chosen."""
+"""Maximum number of fields of one topic."""
 MAX_ROW = 40
-"""Items of a list whose numbers can be chosen; longer ones are data, not signals."""
+"""Maximum length of a list with selectable fields; longer lists are data, not signals."""
 MAX_DEPTH = 5
 _UNITS = {
     "m": "m",
@@ -35,14 +35,14 @@ _UNITS = {
 }
 _INDEX = re.compile(r"[0-9]{1,4}")
 _OWN_TIME = "time_s"
-"""When a message was made; curves have the server's time instead."""
+"""Creation time of a message; plots use the server's time instead."""
 _BY_NAME = {"xyz": "m"}
 _AXES = {"xyz": "xyz", "xyzw": "xyzw", "force_n": "xyz", "torque_nm": "xyz"}
 Path = tuple[str | int, ...]
 
 
 class SignalField(msgspec.Struct, frozen=True, kw_only=True):
-    """One number of a topic: its path `position_rad.0`, its name in words `position_rad joint1`, its unit."""
+    """One numeric field of a topic: its path `position_rad.0`, its label `position_rad joint1`, its unit."""
 
     path: str
     label: str
@@ -50,23 +50,23 @@ class SignalField(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def signal_fields(message: object) -> tuple[SignalField, ...]:
-    """Return the numbers of a message, in order; truth values count as 0 and 1."""
-    found: list[SignalField] = []
+    """Return the numeric fields of a message, in order; booleans count as 0 and 1."""
+    fields: list[SignalField] = []
     for field in _walk(message, (), (), "", 0):
         if field.path != _OWN_TIME:
-            found.append(field)
-        if len(found) == MAX_FIELDS:
+            fields.append(field)
+        if len(fields) == MAX_FIELDS:
             break
-    return tuple(found)
+    return tuple(fields)
 
 
 def path_of(text: str) -> Path:
-    """Return the path that `position_rad.0` writes."""
+    """Parse a path such as `position_rad.0`."""
     return tuple(int(part) if _INDEX.fullmatch(part) else part for part in text.split("."))
 
 
 def number_at(message: object, path: Path) -> float | None:
-    """Return the number of a message at `path`; None where it has none."""
+    """Return the number of a message at `path`; None if there is none."""
     value: object = message
     for step in path:
         match value:
@@ -86,7 +86,7 @@ def number_at(message: object, path: Path) -> float | None:
 
 
 def unit_of(name: str) -> str:
-    """Return the unit that the name of a field ends with, `width_m`; empty where it tells none."""
+    """Return the unit from the suffix of a field name, `width_m`; empty if it has none."""
     parts = name.lower().split("_")
     for length in (2, 1):
         unit = _UNITS.get("_".join(parts[-length:])) if len(parts) > length else None
@@ -107,7 +107,7 @@ def _walk(value: object, path: Path, words: tuple[str, ...], unit: str, depth: i
 
 
 def _parts(value: object, path: Path) -> Iterator[tuple[str | int, str, str, object]]:
-    """The parts of a value: step, word, unit where its name tells one, and the part."""
+    """Yield the parts of a value: path step, label word, unit if the name has one, and the part."""
     match value:
         case msgspec.Struct():
             row = _row_names(value)
@@ -134,7 +134,7 @@ def _parts(value: object, path: Path) -> Iterator[tuple[str | int, str, str, obj
 
 
 class _Row:
-    """A row whose items are named by the message's `names`."""
+    """A row whose items have the names in the message's `names`."""
 
     def __init__(self, items: tuple[object, ...], names: tuple[str, ...]) -> None:
         self.items = items
@@ -142,7 +142,7 @@ class _Row:
 
 
 def _row_names(message: msgspec.Struct) -> tuple[str, ...]:
-    """The names that a message gives to the items of its rows."""
+    """Return the names of the items of a message's rows."""
     names: object = getattr(message, "names", ())
     if not isinstance(names, tuple) or len(cast("tuple[object, ...]", names)) > MAX_ROW:
         return ()

@@ -1,4 +1,4 @@
-"""Any message or value as bounded, plain JSON: long lists, deep trees and large bytes are cut and say so."""
+"""Any message or value as bounded, plain JSON: long lists, deep trees and large bytes are truncated and marked."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ MAX_LEAVES = 1500
 
 
 def truncate_value(value: object, *, max_leaves: int = MAX_LEAVES) -> object:
-    """Return `value` as plain JSON of at most about `max_leaves` leaves; what is left out stands as `… 40 more`.
+    """Return `value` as plain JSON of at most about `max_leaves` leaves; omitted items are marked as `… 40 more`.
 
-    Nothing of a value that is left out is touched, so that a point cloud costs no more than a pose.
+    Omitted values are not accessed, so that a point cloud costs no more than a pose.
     """
     return _Truncation(max_leaves).of(value, 0)
 
 
 class _Truncation:
-    """One pruning; counts the leaves that are still allowed."""
+    """One truncation; counts the remaining leaves."""
 
     def __init__(self, left: int) -> None:
         self._left = left
@@ -56,30 +56,30 @@ class _Truncation:
     def _object(self, pairs: Iterable[tuple[str, object]], count: int, depth: int) -> object:
         if depth >= MAX_DEPTH:
             return f"… {count} fields"
-        made: dict[str, object] = {}
+        kept: dict[str, object] = {}
         for key, each in islice(pairs, MAX_ITEMS):
             if self._left <= 0:
                 break
-            made[key] = self.of(each, depth + 1)
-        if len(made) < count:
-            made["…"] = f"{count - len(made)} more"
-        return made
+            kept[key] = self.of(each, depth + 1)
+        if len(kept) < count:
+            kept["…"] = f"{count - len(kept)} more"
+        return kept
 
     def _list(self, items: Iterable[object], count: int, depth: int) -> object:
         if depth >= MAX_DEPTH:
             return f"… {count} items"
-        made: list[object] = []
+        kept: list[object] = []
         for each in islice(items, MAX_ITEMS):
             if self._left <= 0:
                 break
-            made.append(self.of(each, depth + 1))
-        if len(made) < count:
-            made.append(f"… {count - len(made)} more")
-        return made
+            kept.append(self.of(each, depth + 1))
+        if len(kept) < count:
+            kept.append(f"… {count - len(kept)} more")
+        return kept
 
 
 def _plain(value: object) -> object:
-    """Enumerations, dates and the like as msgspec writes them; what it does not know by its name."""
+    """Return enumerations, dates and similar as msgspec encodes them; unknown types by their name."""
     try:
         return msgspec.to_builtins(value)
     except (TypeError, ValueError):

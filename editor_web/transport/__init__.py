@@ -1,1 +1,1 @@
-"""Connections below HTTP: accepting, time and size limits, capacity, log throttling. Imports no other room."""
+"""Connections below HTTP: accepting, time and size limits, capacity, log throttling. Imports no other package."""

@@ -1,4 +1,4 @@
-"""Accepts connections, never more than a number at once, and calmly where the system has no room for more."""
+"""Accepts connections up to a limit, and handles a lack of file descriptors without log floods."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _log = logging.getLogger("flexcell.server")
 
 
 class Acceptor:
-    """Hands the connections of a listening socket to protocols until it is closed.
+    """Accepts the connections of a listening socket and assigns protocols to them until it is closed.
 
-    When there are `limit`, the one whose peer keeps us waiting longest makes room for the next; where none
-    does, the next is closed. asyncio's own server knows no limit, and logs thousands of errors a second once
-    the process has no file descriptor left.
+    At the limit, the connection that has waited longest for its peer is closed for the next one; if none waits, the
+    next one is closed. asyncio's own server has no limit, and logs thousands of errors per second when the process has
+    no file descriptor left.
 
     Args:
-        listener: A bound socket; closed with this.
-        new_protocol: Makes the protocol of a connection.
-        limit: Connections at once.
-        count: Tells how many there are.
-        waiting: Those that can make room.
+        listener: A bound socket; closed with the acceptor.
+        new_protocol: Creates the protocol of a connection.
+        limit: Maximum number of connections.
+        count: Returns the current number of connections.
+        waiting: The connections that wait for their peers and may be closed.
     """
 
     def __init__(
@@ -49,18 +49,18 @@ class Acceptor:
         self._logged_s: dict[str, float] = {}
 
     def open(self) -> None:
-        """Begin to accept."""
+        """Start accepting connections."""
         self._listener.setblocking(False)
         self._listener.listen(_BACKLOG)
         self._task = asyncio.create_task(self._accept_all(), name="accept")
 
     def close(self) -> None:
-        """Accept nothing any more."""
+        """Stop accepting connections."""
         if self._task is not None:
             self._task.cancel()
 
     async def wait_closed(self) -> None:
-        """Wait until nothing is accepted any more."""
+        """Wait until accepting has stopped."""
         if self._task is not None:
             await asyncio.wait({self._task})
 
@@ -80,21 +80,21 @@ class Acceptor:
     async def _take(self, wire: socket.socket) -> None:
         if self._count() >= self._limit and not self._waiting.close_longest():
             wire.close()
-            self._tell(f"there are {self._limit} connections already; another was closed")
+            self._warn(f"the limit of {self._limit} connections is reached; a new connection was closed")
             return
         try:
             await asyncio.get_running_loop().connect_accepted_socket(self._new_protocol, wire)
         except OSError as error:
             wire.close()
-            self._tell(f"a connection was lost while it was accepted: {error.strerror}")
+            self._warn(f"a connection failed while it was accepted: {error.strerror}")
 
     async def _make_room(self, problem: str) -> None:
-        self._tell(problem)
-        # Closing takes a round of the loop; where nobody makes room, only time does.
+        self._warn(problem)
+        # Closing takes one loop iteration; if no connection can be closed, wait.
         await asyncio.sleep(0 if self._waiting.close_longest() else RETRY_S)
 
-    def _tell(self, problem: str) -> None:
+    def _warn(self, problem: str) -> None:
         now_s = time.monotonic()
         if now_s - self._logged_s.get(problem, -_LOG_PERIOD_S) >= _LOG_PERIOD_S:
             self._logged_s[problem] = now_s
-            _log.warning("%s; told again after %.0f s at the earliest", problem, _LOG_PERIOD_S)
+            _log.warning("%s; logged at most once per %.0f s", problem, _LOG_PERIOD_S)

@@ -1,4 +1,4 @@
-"""How many connections the server takes: as its file descriptors allow, whose limit is raised as far as it may be."""
+"""Connection limit of the server from its file descriptors, whose limit is raised as far as the system allows."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 
 MAX_CONNECTIONS = 512
 COMMAND_RESERVE = 8
-"""Of the connections, so many are left for an operator's commands, whatever pages and viewers do."""
+"""Number of connections reserved for an operator's commands."""
 _MIN_CONNECTIONS = 16
 _WANTED_DESCRIPTORS = 65_536
-# Files, child processes and databases that are opened while the server runs.
+# For files, child processes and databases that are opened while the server runs.
 _SPARE_DESCRIPTORS = 12
 _OPEN_DESCRIPTORS = Path("/proc/self/fd")
 _log = logging.getLogger("flexcell.server")
@@ -27,14 +27,14 @@ def raise_descriptor_limit() -> None:
 
 
 def connection_limit() -> int:
-    """Return how many connections may be open at once, and say so where it is fewer than wanted."""
+    """Return the maximum number of connections, and log a warning if it is below `MAX_CONNECTIONS`."""
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     if soft == resource.RLIM_INFINITY:
         return MAX_CONNECTIONS
-    # A page's 3D view takes its own connection and both ends of the one to viser.
+    # A page's 3D view needs its own connection and both ends of the connection to viser.
     limit = max(_MIN_CONNECTIONS, min(MAX_CONNECTIONS, (soft - _open_descriptors() - _SPARE_DESCRIPTORS) // 2))
     if limit < MAX_CONNECTIONS:
-        _log.warning("%d open files allow only %d connections at once; raise `ulimit -n`", soft, limit)
+        _log.warning("the limit of %d open files allows only %d connections; raise `ulimit -n`", soft, limit)
     return limit
 
 

@@ -1,4 +1,4 @@
-"""What anybody outside can make a library log, again and again, is logged once a period."""
+"""Throttles repeated log messages of libraries that a client can trigger."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ from contextlib import contextmanager
 
 PERIOD_S = 10.0
 _MAX_TEXTS = 1000
-# The loops of the server and of viser, and uvicorn with its words about requests that are none.
+# The event loops of the server and of viser, and uvicorn's messages about invalid requests.
 _LOGGERS = ("asyncio", "uvicorn.error", "websockets.server")
 
 
 class RepeatedLogFilter(logging.Filter):
-    """Lets a text through once in `PERIOD_S`, however often it is logged."""
+    """Passes each text at most once per `PERIOD_S`."""
 
     def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:
         super().__init__()
         self._now_s = now_s
-        self._told_s: dict[str, float] = {}
+        self._logged_s: dict[str, float] = {}
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Say whether a record is logged."""
+        """Return whether a record is logged."""
         now_s, text = self._now_s(), _text(record)
-        if now_s - self._told_s.get(text, -PERIOD_S) < PERIOD_S:
+        if now_s - self._logged_s.get(text, -PERIOD_S) < PERIOD_S:
             return False
-        if len(self._told_s) >= _MAX_TEXTS:
-            self._told_s.clear()
-        self._told_s[text] = now_s
+        if len(self._logged_s) >= _MAX_TEXTS:
+            self._logged_s.clear()
+        self._logged_s[text] = now_s
         return True
 
 
 def _text(record: logging.LogRecord) -> str:
-    """Return what two records have in common that say the same: first line, and where what they tell of was raised."""
+    """Return the key that equal records share: level, first line, and the location of the exception."""
     first = str(record.msg).partition("\n")[0]
     trace = record.exc_info[2] if record.exc_info else None
     while trace is not None and trace.tb_next is not None:
@@ -44,7 +44,7 @@ def _text(record: logging.LogRecord) -> str:
 
 @contextmanager
 def throttle_library_logs() -> Generator[None]:
-    """Leave repeated texts of the libraries that serve out of the log."""
+    """Throttle repeated log messages of the server libraries in this context."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     repeats = RepeatedLogFilter()
     for logger in loggers:

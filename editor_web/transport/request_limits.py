@@ -1,4 +1,4 @@
-"""No request is read beyond a size or for longer than a time, whatever its route does with it."""
+"""Size and time limits for request bodies, independent of the route."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from fastapi import HTTPException
 from starlette.types import Message, Receive
 
 MAX_BODY_BYTES = 8_000_000
-"""Four times the largest document: JSON writes some characters as several."""
+"""Four times the largest document: JSON escapes some characters."""
 BODY_LIMIT_S = 30.0
-TOO_LARGE = f"a request has at most {MAX_BODY_BYTES / 1e6:g} MB"
+TOO_LARGE = f"a request may have at most {MAX_BODY_BYTES / 1e6:g} MB"
 
 
 def declares_too_large(headers: Mapping[str, str]) -> bool:
-    """Say whether a request announces more than it may bring."""
-    told = headers.get("content-length", "")
-    return told.isascii() and told.isdigit() and int(told) > MAX_BODY_BYTES
+    """Tell whether a request declares a body above the limit."""
+    length = headers.get("content-length", "")
+    return length.isascii() and length.isdigit() and int(length) > MAX_BODY_BYTES
 
 
 def limit_body(receive: Receive) -> Receive:
-    """Return `receive` of a request so that it ends a body that is too long (413) or comes too slowly (408)."""
+    """Wrap `receive` of a request so that it rejects a body that is too large (413) or too slow (408)."""
     count = 0
     complete = False
     began_s: float | None = None
@@ -29,7 +29,7 @@ def limit_body(receive: Receive) -> Receive:
     async def counted() -> Message:
         nonlocal count, complete, began_s
         if complete:
-            return await receive()  # waits for the end of the connection, as long as that takes
+            return await receive()  # waits for the end of the connection, without a limit
         now_s = asyncio.get_running_loop().time()
         began_s = now_s if began_s is None else began_s
         try:

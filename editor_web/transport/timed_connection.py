@@ -1,4 +1,4 @@
-"""Connections on which what the peer owes comes in time, or which are closed; those that owe make room for others."""
+"""Connections with timeouts for their peers; connections that wait for a peer can be closed for new ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from editor_web.transport import request_limits as bodies
 
 HEAD_LIMIT_S = 10.0
 WRITE_LIMIT_S = 30.0
-"""A peer that takes nothing of an answer for longer is gone."""
+"""A peer that does not read a response for longer is disconnected."""
 BODY_GRACE_S = 1.0
 _CLOSE_GRACE_S = 1.0
 _BAD_HANDSHAKE = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
@@ -25,21 +25,21 @@ _INVALID_TEXT = 1007
 
 
 class PendingConnections:
-    """The connections whose peer owes a request, or the rest of one; the longest waiting first."""
+    """The connections that wait for a request or the rest of one; the longest waiting first."""
 
     def __init__(self) -> None:
         self._waiting: OrderedDict[TimedConnection, None] = OrderedDict()
 
     def add(self, connection: TimedConnection) -> None:
-        """Note that a connection waits for its peer, unless it is noted already."""
+        """Add a connection that waits for its peer; no effect if it is present."""
         self._waiting.setdefault(connection)
 
     def discard(self, connection: TimedConnection) -> None:
-        """Note that a connection waits no longer."""
+        """Remove a connection that no longer waits."""
         self._waiting.pop(connection, None)
 
     def close_longest(self) -> bool:
-        """Close the connection that waits longest; False where none waits."""
+        """Close the connection that has waited longest; return False if none waits."""
         if not self._waiting:
             return False
         connection, _ = self._waiting.popitem(last=False)
@@ -48,10 +48,10 @@ class PendingConnections:
 
 
 class TimedConnection(H11Protocol):
-    """uvicorn's HTTP connection, which itself would wait for the rest of a request for ever.
+    """uvicorn's HTTP connection with timeouts; uvicorn itself waits forever for the rest of a request.
 
-    The head has to be there after `HEAD_LIMIT_S`, the body `bodies.BODY_LIMIT_S` after it, whether or not
-    anybody reads it: a refused request has one too.
+    The head must arrive within `HEAD_LIMIT_S`, the body within `bodies.BODY_LIMIT_S` after it, even if no route reads
+    it: a refused request has a body too.
     """
 
     _timer: asyncio.TimerHandle | None = None
@@ -71,18 +71,18 @@ class TimedConnection(H11Protocol):
         self._waiting = waiting
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Begin to wait for the first request."""
+        """Start waiting for the first request."""
         if isinstance(transport, asyncio.Transport):
             super().connection_made(transport)
         self._follow()
 
     def data_received(self, data: bytes) -> None:
-        """Take what came; each part of a request is timed from its first byte on."""
+        """Process received data; each part of a request is timed from its first byte on."""
         super().data_received(data)
         self._follow()
 
     def on_response_complete(self) -> None:
-        """Wait for the next request, or for the rest of one that was answered before it was read."""
+        """Wait for the next request, or for the rest of one that was answered before it was read completely."""
         super().on_response_complete()
         self._follow()
 
@@ -92,13 +92,13 @@ class TimedConnection(H11Protocol):
         self._release()
 
     def pause_writing(self) -> None:
-        """Wait for a peer that takes nothing, but not for ever."""
+        """Limit the wait for a peer that does not read."""
         super().pause_writing()
         self._waiting.add(self)
         self._write_timer = self.loop.call_later(WRITE_LIMIT_S, self.transport.abort)
 
     def resume_writing(self) -> None:
-        """Go on answering."""
+        """Resume the response."""
         self._stop_write_timer()
         super().resume_writing()
         self._follow()
@@ -110,7 +110,7 @@ class TimedConnection(H11Protocol):
         super().connection_lost(exc)
 
     def _follow(self) -> None:
-        """Time what the peer owes now."""
+        """Start or stop the timer for the data that the peer has to send now."""
         if self.transport.get_protocol() is not self or self.transport.is_closing():
             self._release()
             return
@@ -148,53 +148,53 @@ class TimedConnection(H11Protocol):
 
 
 class PageWebSocket(WebSocketsSansIOProtocol):
-    """uvicorn's websocket, which itself waits for ever for a peer that takes nothing, and logs all it sends wrong."""
+    """uvicorn's websocket with timeouts; uvicorn itself waits forever for a peer, and logs every protocol error."""
 
     _abort: asyncio.TimerHandle | None = None
 
     def send_receive_event_to_app(self) -> None:
-        """Pass a message on; text that is no UTF-8 ends the connection."""
+        """Forward a message; text that is not UTF-8 ends the connection."""
         if self.curr_msg_data_type == "text" and not self.close_sent:
             try:
                 b"".join(self.frames).decode()
             except UnicodeDecodeError:
                 self.frames = []
-                self.conn.fail(_INVALID_TEXT, "text that is no UTF-8")
+                self.conn.fail(_INVALID_TEXT, "text that is not UTF-8")
                 self.handle_parser_exception()
                 return
         super().send_receive_event_to_app()
 
     def data_received(self, data: bytes) -> None:
-        """Take what came; uvicorn itself would wait for ever where the handshake is none."""
+        """Process received data; uvicorn itself would wait forever after an invalid handshake."""
         super().data_received(data)
         if not self.handshake_initiated and self.conn.handshake_exc is not None:
             self.transport.write(_BAD_HANDSHAKE)
             self.transport.close()
 
     def handle_parser_exception(self) -> None:
-        """Close with the code of what is wrong, once."""
+        """Close once, with the code of the error."""
         if not self.close_sent:
             super().handle_parser_exception()
             self._abort_soon()
 
     def keepalive_timeout(self) -> None:
-        """Close on a peer that has answered no ping, whether or not it takes the close frame."""
+        """Close on a peer that does not answer pings, even if it does not take the close frame."""
         super().keepalive_timeout()
         self._abort_soon()
 
     async def send(self, message: ASGISendEvent) -> None:
-        """Send a message; a peer that neither takes nor answers a close frame is closed on."""
+        """Send a message; the connection is aborted if the peer does not answer a close frame."""
         await super().send(message)
         if self.close_timer is not None:
             self._abort_soon(self.close_timeout)
 
     def pause_writing(self) -> None:
-        """Wait for a peer that takes nothing, but not for ever: its pings and its close would wait as well."""
+        """Limit the wait for a peer that does not read: its pings and its close would wait as well."""
         super().pause_writing()
         self._abort_soon(WRITE_LIMIT_S)
 
     def resume_writing(self) -> None:
-        """Go on sending."""
+        """Resume sending."""
         self._stop_abort()
         super().resume_writing()
 
@@ -204,7 +204,7 @@ class PageWebSocket(WebSocketsSansIOProtocol):
         super().connection_lost(exc)
 
     def _abort_soon(self, after_s: float = 0.0) -> None:
-        # asyncio closes a transport only when the peer has taken all that was written.
+        # asyncio closes a transport only after the peer has read all written data.
         self._stop_abort()
         self._abort = self.loop.call_later(after_s + _CLOSE_GRACE_S, self.transport.abort)
 

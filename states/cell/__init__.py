@@ -1,1 +1,1 @@
-"""States that look at the cell as a whole."""
+"""States that concern the whole cell: positions of parts, and simulated people."""

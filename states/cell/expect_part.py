@@ -1,4 +1,4 @@
-"""cell.ExpectPart: checks where a part lies."""
+"""cell.ExpectPart: checks the position of a part."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
 
 
 class Region(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A rectangle along the world's axes: centre and full edge lengths, and heights where they matter."""
+    """A rectangle along the world axes: centre, full edge lengths, and optionally a height range."""
 
     center_m: Pair
     size_m: tuple[Metres, Metres]
@@ -49,12 +49,15 @@ class ExpectPart(State, frozen=True, kw_only=True):
     undo = nothing_to_undo
 
     part: PartName
-    region: Annotated[Region | None, Meta(description="Where its centre shall lie, in the world frame")] = None
+    region: Annotated[Region | None, Meta(description="Expected region of the part's centre, in the world frame")] = (
+        None
+    )
     frame: Annotated[
-        str, Meta(description="Frame of the cell that it shall lie at", extra_json_schema={"cell_name": "frame"})
+        str,
+        Meta(description="Expected frame of the cell at the part's centre", extra_json_schema={"cell_name": "frame"}),
     ] = ""
     tolerance_m: Annotated[
-        float, Meta(gt=0, description="Greatest distance from the frame", extra_json_schema={"unit": "m"})
+        float, Meta(gt=0, description="Maximum distance from the frame", extra_json_schema={"unit": "m"})
     ] = 0.05
 
     def __post_init__(self) -> None:
@@ -62,15 +65,15 @@ class ExpectPart(State, frozen=True, kw_only=True):
             raise ValueError("give either `region` or `frame`")
 
     async def run(self, ctx: Context) -> Outcome:
-        """Read the newest measured poses of the parts."""
-        place = await part_in_world(ctx, self.part)
-        if isinstance(place, Cause):
-            return self._elsewhere(ctx, place)
-        xyz = place.xyz
-        fault = _outside(self.region, xyz) if self.region else await self._away(ctx, xyz)
+        """Compare the latest measured pose of the part with the region or the frame."""
+        pose = await part_in_world(ctx, self.part)
+        if isinstance(pose, Cause):
+            return self._elsewhere(ctx, pose)
+        xyz = pose.xyz
+        fault = _region_fault(self.region, xyz) if self.region else await self._frame_fault(ctx, xyz)
         return self._elsewhere(ctx, Cause(message=fault, where=PARTS_TOPIC)) if fault else Outcome("there")
 
-    async def _away(self, ctx: Context, xyz: Vector3) -> str:
+    async def _frame_fault(self, ctx: Context, xyz: Vector3) -> str:
         frames = await ctx.latest(FRAMES_TOPIC, FramePoses)
         if self.frame not in frames.names:
             raise StateError(
@@ -79,17 +82,17 @@ class ExpectPart(State, frozen=True, kw_only=True):
         distance_m = math.dist(xyz, frames.xyz[frames.names.index(self.frame)])
         if distance_m <= self.tolerance_m:
             return ""
-        return f"it lies at {_written(xyz)}, {distance_m:.3f} m from {self.frame}, {self.tolerance_m:.3f} m allowed"
+        return f"it lies at {_format_xyz(xyz)}, {distance_m:.3f} m from {self.frame}, {self.tolerance_m:.3f} m allowed"
 
     def _elsewhere(self, ctx: Context, because: Cause) -> Outcome:
-        place = self.frame or "its region"
-        message = f"part {self.part} does not lie at {place}"
+        expected = self.frame or "its region"
+        message = f"part {self.part} does not lie at {expected}"
         return Outcome("elsewhere", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))
 
 
-def _outside(region: Region, xyz: Vector3) -> str:
-    return "" if region.contains(xyz) else f"it lies at {_written(xyz)}, not {region}"
+def _region_fault(region: Region, xyz: Vector3) -> str:
+    return "" if region.contains(xyz) else f"it lies at {_format_xyz(xyz)}, not {region}"
 
 
-def _written(xyz: Vector3) -> str:
+def _format_xyz(xyz: Vector3) -> str:
     return f"({', '.join(f'{value:.3f}' for value in xyz)}) m"

@@ -1,4 +1,4 @@
-"""cell.Reach: lets a person of a simulated cell reach into it."""
+"""cell.Reach: makes a simulated person reach into the cell."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from states.cell.person_hand import PersonName, WaitForArrival, move_hand
 
 
 class Reach(State, frozen=True, kw_only=True):
-    """Let the hand of a person of a simulated cell move to a place, on a straight line, from now on.
+    """Move the hand of a simulated person to a position on a straight line.
 
-    It replaces what that hand was doing. The person reaches on while the behavior goes on, unless `wait` says
-    otherwise. What a real person does no behavior says: in a real cell this state stops the run.
+    It replaces the current motion of that hand. The behavior continues during the motion unless `wait` is true. A
+    behavior cannot command a real person: in a real cell this state stops the run.
     """
 
     state_name: ClassVar[str] = "cell.Reach"
@@ -26,17 +26,17 @@ class Reach(State, frozen=True, kw_only=True):
 
     person: PersonName
     hand_m: Annotated[
-        Vector3, Meta(description="Where the middle of the hand goes, in the world", extra_json_schema={"unit": "m"})
+        Vector3, Meta(description="Target of the hand's centre, in the world frame", extra_json_schema={"unit": "m"})
     ]
     speed_m_s: HandSpeed = 0.8
     stay_s: Annotated[
         StayTime | None,
-        Meta(description="How long the hand stays before it goes back; for ever by default"),
+        Meta(description="Time at the target before the hand returns; unlimited by default"),
     ] = None
     wait: WaitForArrival = False
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell, and wait for the hand where that is wanted."""
+        """Send the request to the cell, and wait for the hand if `wait` is true."""
         request = people.Reach(person=self.person, hand_m=self.hand_m, speed_m_s=self.speed_m_s, stay_s=self.stay_s)
         what = f"{self.person} does not reach into the cell"
         return await move_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)

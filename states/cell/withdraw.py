@@ -1,4 +1,4 @@
-"""cell.Withdraw: lets a person of a simulated cell take the hand out of it."""
+"""cell.Withdraw: makes a simulated person withdraw the hand from the cell."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.cell.person_hand import PersonName, WaitForArrival, move_hand
 
 
 class Withdraw(State, frozen=True, kw_only=True):
-    """Let the hand of a person of a simulated cell go back to where it rests, from now on."""
+    """Move the hand of a simulated person back to its rest position."""
 
     state_name: ClassVar[str] = "cell.Withdraw"
     outcomes: ClassVar[tuple[str, ...]] = ("done", "failed")
@@ -22,7 +22,7 @@ class Withdraw(State, frozen=True, kw_only=True):
     wait: WaitForArrival = False
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell, and wait for the hand where that is wanted."""
+        """Send the request to the cell, and wait for the hand if `wait` is true."""
         request = people.Withdraw(person=self.person, speed_m_s=self.speed_m_s)
         what = f"{self.person} does not withdraw"
         return await move_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)

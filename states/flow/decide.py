@@ -22,7 +22,7 @@ class Decide(State, frozen=True, kw_only=True):
     when: Annotated[bool, Meta(description="The condition")]
 
     async def run(self, ctx: Context) -> Outcome:
-        """Give the outcome that the condition names."""
+        """Return the outcome of the condition."""
         if self.when:
             return Outcome("true")
         return Outcome("false", cause=Cause(message="the condition is false", where=ctx.path, kind=self.state_name))

@@ -18,8 +18,8 @@ class Log(State, frozen=True, kw_only=True):
     instant: ClassVar[bool] = True
     undo = nothing_to_undo
 
-    message: Annotated[str, Meta(description="What to say")]
-    level: Annotated[Literal["debug", "info", "warning", "error"], Meta(description="How serious it is")] = "info"
+    message: Annotated[str, Meta(description="Text of the line")]
+    level: Annotated[Literal["debug", "info", "warning", "error"], Meta(description="Severity")] = "info"
 
     async def run(self, ctx: Context) -> Outcome:
         """Write the line."""

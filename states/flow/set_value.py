@@ -1,4 +1,4 @@
-"""flow.SetValue: puts a value into userdata."""
+"""flow.SetValue: writes a value to userdata."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class SetValue(State, frozen=True, kw_only=True):
-    """Put a value into userdata under the key that `out: {value: key}` names."""
+    """Write a value to the userdata key given by `out: {value: key}`."""
 
     state_name: ClassVar[str] = "flow.SetValue"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
@@ -20,9 +20,7 @@ class SetValue(State, frozen=True, kw_only=True):
     outputs: ClassVar[Mapping[str, Any]] = {"value": object}
     undo = nothing_to_undo
 
-    value: Annotated[
-        object, Meta(description="Any value, or an expression that gives one", extra_json_schema={"output": "value"})
-    ]
+    value: Annotated[object, Meta(description="Any value, or an expression", extra_json_schema={"output": "value"})]
 
     async def run(self, ctx: Context) -> Outcome:
         """Write the value."""

@@ -1,4 +1,4 @@
-"""flow.Wait: lets time pass."""
+"""flow.Wait: waits for a duration."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Wait(State, frozen=True, kw_only=True):
-    """Let time pass on the run's clock."""
+    """Wait for a duration on the run's clock."""
 
     state_name: ClassVar[str] = "flow.Wait"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
     success: ClassVar[tuple[str, ...]] = ("done",)
     undo = nothing_to_undo
 
-    duration_s: Annotated[float, Meta(ge=0, description="How long to wait", extra_json_schema={"unit": "s"})]
+    duration_s: Annotated[float, Meta(ge=0, description="Duration of the wait", extra_json_schema={"unit": "s"})]
 
     async def run(self, ctx: Context) -> Outcome:
         """Sleep for the duration."""

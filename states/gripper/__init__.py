@@ -1,1 +1,1 @@
-"""States that open, close and question a two-finger gripper."""
+"""States that open, close and check a two-finger gripper."""

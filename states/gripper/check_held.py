@@ -1,4 +1,4 @@
-"""gripper.CheckHeld: asks whether a part is still held."""
+"""gripper.CheckHeld: checks whether a gripper still holds a part."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from states.part_label import PartLabel, part_label
 
 
 class CheckHeld(State, frozen=True, kw_only=True):
-    """Ask the gripper whether it still holds what it grasped."""
+    """Check whether the gripper still holds the part that it grasped."""
 
     state_name: ClassVar[str] = "gripper.CheckHeld"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")

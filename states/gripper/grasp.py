@@ -1,4 +1,4 @@
-"""gripper.Grasp: closes a gripper on a part and tells whether it holds it."""
+"""gripper.Grasp: closes a gripper on a part and checks that it holds it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ from states.part_label import PartLabel, part_label
 
 Force = Annotated[float, Meta(gt=0, le=1000, description="Grasp force", extra_json_schema={"unit": "N"})]
 Margin = Annotated[
-    float, Meta(ge=0, description="How far the opening may end off `width_m`", extra_json_schema={"unit": "m"})
+    float,
+    Meta(ge=0, description="Allowed deviation of the final opening from `width_m`", extra_json_schema={"unit": "m"}),
 ]
 
 
 class Grasp(State, frozen=True, kw_only=True):
-    """Close on a part of `width_m`: `held` when both pads press on it, `missed` when not.
+    """Close on a part of `width_m`: `held` when both pads press on it, else `missed`.
 
-    Writes `held` always and the final opening `width_m` where the gripper measured it.
+    Always writes `held`; writes the final opening `width_m` if the gripper measured it.
     """
 
     state_name: ClassVar[str] = "gripper.Grasp"
@@ -47,7 +48,7 @@ class Grasp(State, frozen=True, kw_only=True):
         return (gripper_address(self.gripper),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge what the fingers hold."""
+        """Send the goal and return whether the fingers hold the part."""
         address = gripper_address(self.gripper)
         goal = GripperGrasp(
             width_m=self.width_m,
@@ -58,30 +59,30 @@ class Grasp(State, frozen=True, kw_only=True):
         )
         end = await ctx.perform(goal, to=address)
         if end.status != "succeeded" or end.result is None:
-            cause = goal_cause(self._missed(), goal, end, to=address, where=ctx.path, kind=self.state_name)
+            cause = goal_cause(self._failure(), goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
         outputs = {"held": end.result.held, "width_m": end.result.width_m}
         if end.result.held:
             return Outcome("held", outputs)
-        because = self._closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
-        return Outcome("missed", outputs, wrap_cause(self._missed(), because, where=ctx.path, kind=self.state_name))
+        because = self._missed_cause(end.result, f"{address}/{goal.skill_name()}")
+        return Outcome("missed", outputs, wrap_cause(self._failure(), because, where=ctx.path, kind=self.state_name))
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """How the gripper was before has to be known."""
+        """Undo needs the recorded start state of the gripper."""
         return gripper_undo_problem(done, GripperGrasp)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Move the fingers as wide as they were before, which lets go of what was grasped."""
+        """Move the fingers back to their opening before the grasp, which releases the part."""
         address = gripper_address(self.gripper)
         await restore_gripper(ctx, done, GripperGrasp, address=address, speed_m_s=self.speed_m_s)
 
-    def _missed(self) -> str:
+    def _failure(self) -> str:
         return f"{self.gripper} did not grasp {part_label(self.part)}"
 
-    def _closed_on_nothing(self, result: GraspResult, address: str) -> Cause:
-        ended = f"the fingers ended {result.width_m * 1e3:.1f} mm apart, {self.width_m * 1e3:.1f} mm expected"
+    def _missed_cause(self, result: GraspResult, address: str) -> Cause:
+        opening = f"the fingers ended {result.width_m * 1e3:.1f} mm apart, {self.width_m * 1e3:.1f} mm expected"
         return Cause(
-            message=f"{ended}, pressing with {result.force_n:.1f} N",
+            message=f"{opening}, pressing with {result.force_n:.1f} N",
             where=address,
             because=Cause(message=result.reason, where=address) if result.reason else None,
         )

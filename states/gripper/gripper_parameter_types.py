@@ -1,4 +1,4 @@
-"""How states name a gripper: by the arm that carries it."""
+"""Parameter types of the gripper states; the name of a gripper is that of its arm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the states of a gripper are undone: the fingers go back to how they were before."""
+"""Undo of gripper states: restores the opening and grasp of the fingers before the state."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from states.goal_history import accepted_goals
 
 
 def gripper_undo_problem(done: ActivationRecord, goal: type[Action[GraspResult, Any]]) -> str:
-    """Return why a gripper cannot be brought back to how it was before an activation; empty where it can."""
+    """Return why the state of a gripper before an activation cannot be restored; empty if it can."""
     unknown = any(_start(result) is None for _, result in accepted_goals(done, goal))
-    return "it is not known how the gripper was before" if unknown else ""
+    return "the state of the gripper before the activation was not recorded" if unknown else ""
 
 
 def _start(result: GraspResult | None) -> GripperSetting | None:
@@ -29,24 +29,26 @@ async def restore_gripper(
     address: str,
     speed_m_s: float,
 ) -> None:
-    """Let go of what was grasped, or grasp again what was let go of.
+    """Release the part that was grasped, or grasp again the part that was released.
 
     Raises:
-        StateError: the fingers did not get there, or hold nothing where they held something.
+        StateError: the fingers did not reach the opening, or do not hold the part that they held before.
     """
     for _, result in accepted_goals(done, goal):
         start = _start(result)
         if start is None:
             raise StateError(gripper_undo_problem(done, goal), where=ctx.path)
         if start.held:
-            again: GripperGrasp | GripperMove = GripperGrasp(
+            restoring: GripperGrasp | GripperMove = GripperGrasp(
                 width_m=start.width_m, force_n=start.force_n, speed_m_s=speed_m_s
             )
         else:
-            again = GripperMove(width_m=start.width_m, speed_m_s=speed_m_s)
-        end = await ctx.perform(again, to=address)
+            restoring = GripperMove(width_m=start.width_m, speed_m_s=speed_m_s)
+        end = await ctx.perform(restoring, to=address)
         if end.status != "succeeded" or end.result is None:
             because = f": {end.cause.message}" if end.cause is not None else ""
-            raise StateError(f"{address} did not get back to {start.width_m * 1e3:.1f} mm{because}", where=ctx.path)
+            raise StateError(f"{address} did not return to {start.width_m * 1e3:.1f} mm{because}", where=ctx.path)
         if start.held and not end.result.held:
-            raise StateError(f"{address} does not hold again what it held: {end.result.reason}", where=ctx.path)
+            raise StateError(
+                f"{address} did not grasp again the part that it held: {end.result.reason}", where=ctx.path
+            )

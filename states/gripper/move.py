@@ -12,7 +12,7 @@ from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 
 
 class Move(State, frozen=True, kw_only=True):
-    """Move the fingers of a gripper to an opening, holding nothing."""
+    """Move the fingers of a gripper to an opening, without grasping."""
 
     state_name: ClassVar[str] = "gripper.Move"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
@@ -27,7 +27,7 @@ class Move(State, frozen=True, kw_only=True):
         return (gripper_address(self.gripper),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         address = gripper_address(self.gripper)
         goal = GripperMove(width_m=self.width_m, speed_m_s=self.speed_m_s)
         end = await ctx.perform(goal, to=address)
@@ -37,10 +37,10 @@ class Move(State, frozen=True, kw_only=True):
         return Outcome("failed", cause=goal_cause(what, goal, end, to=address, where=ctx.path, kind=self.state_name))
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """How the gripper was before has to be known."""
+        """Undo needs the recorded start state of the gripper."""
         return gripper_undo_problem(done, GripperMove)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Move the fingers as wide as they were, or to hold again what was let go of."""
+        """Move the fingers back to their previous opening, or grasp the released part again."""
         address = gripper_address(self.gripper)
         await restore_gripper(ctx, done, GripperMove, address=address, speed_m_s=self.speed_m_s)

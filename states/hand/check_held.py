@@ -1,4 +1,4 @@
-"""hand.CheckHeld: asks whether a hand still holds a part."""
+"""hand.CheckHeld: checks whether a hand still holds a part."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from states.part_label import PartLabel, part_label
 
 
 class CheckHeld(State, frozen=True, kw_only=True):
-    """Ask a hand whether it still holds something."""
+    """Check whether a hand still holds a part."""
 
     state_name: ClassVar[str] = "hand.CheckHeld"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")

@@ -1,4 +1,4 @@
-"""hand.Close: closes a hand by a percentage and tells whether it holds something."""
+"""hand.Close: closes a hand to a percentage and checks whether it holds a part."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from states.part_label import PartLabel, part_label
 class Close(State, frozen=True, kw_only=True):
     """Close a hand to `percent` within `time_s`: `held` when thumb or palm and fingers press on a part, else `missed`.
 
-    Writes `held` always, and how far the motor closed where the hand measured it.
+    Always writes `held`; writes the final closing `closed_percent` if the hand measured it.
     """
 
     state_name: ClassVar[str] = "hand.Close"
@@ -36,22 +36,22 @@ class Close(State, frozen=True, kw_only=True):
         return (hand_address(self.hand),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge what the hand holds."""
+        """Send the goal and return whether the hand holds the part."""
         address = hand_address(self.hand)
         goal = HandClose(percent=self.percent, time_s=self.time_s)
         end = await ctx.perform(goal, to=address)
         if end.status != "succeeded" or end.result is None:
-            cause = goal_cause(self._missed(), goal, end, to=address, where=ctx.path, kind=self.state_name)
+            cause = goal_cause(self._failure(), goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
         outputs = {"held": end.result.held, "closed_percent": end.result.closed_percent}
         if end.result.held:
             return Outcome("held", outputs)
-        because = _closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
-        return Outcome("missed", outputs, wrap_cause(self._missed(), because, where=ctx.path, kind=self.state_name))
+        because = _missed_cause(end.result, f"{address}/{goal.skill_name()}")
+        return Outcome("missed", outputs, wrap_cause(self._failure(), because, where=ctx.path, kind=self.state_name))
 
-    def _missed(self) -> str:
+    def _failure(self) -> str:
         return f"the hand of {self.hand} does not hold {part_label(self.part)}"
 
 
-def _closed_on_nothing(result: HandResult, address: str) -> Cause:
+def _missed_cause(result: HandResult, address: str) -> Cause:
     return Cause(message=result.reason or "nothing is held and the hand gave no reason", where=address)

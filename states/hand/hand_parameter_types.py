@@ -1,4 +1,4 @@
-"""How states name a hand: by the arm that carries it."""
+"""Parameter types of the hand states; the name of a hand is that of its arm."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ HandName = Annotated[
     str, Meta(min_length=1, description="The arm that carries the hand", extra_json_schema={"cell_name": "hand"})
 ]
 Percent = Annotated[
-    float, Meta(ge=0, le=100, description="How far to close, 0 open to 100 closed", extra_json_schema={"unit": "%"})
+    float, Meta(ge=0, le=100, description="Target closing, 0 open to 100 closed", extra_json_schema={"unit": "%"})
 ]
 ClosingTime = Annotated[float, Meta(gt=0, description="Duration of the motion", extra_json_schema={"unit": "s"})]
 

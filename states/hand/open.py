@@ -27,7 +27,7 @@ class Open(State, frozen=True, kw_only=True):
         return (hand_address(self.hand),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         address = hand_address(self.hand)
         goal = HandOpen(time_s=self.time_s)
         end = await ctx.perform(goal, to=address)

@@ -1,1 +1,1 @@
-"""States that switch inputs and outputs."""
+"""States that switch digital outputs."""

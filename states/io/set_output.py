@@ -16,7 +16,7 @@ OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
 
 
 class SetOutput(State, frozen=True, kw_only=True):
-    """Turn an output on or off, by its number (`output`) or by what hangs on it (`device`)."""
+    """Turn an output on or off, by its number (`output`) or by the device connected to it (`device`)."""
 
     state_name: ClassVar[str] = "io.SetOutput"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
@@ -35,7 +35,7 @@ class SetOutput(State, frozen=True, kw_only=True):
     device: Annotated[
         OutputUse | None,
         Meta(
-            description="What the cell says hangs on one of its outputs",
+            description="Device that the cell connects to one of the outputs",
             extra_json_schema={"cell_name": "output", "of": "robot"},
         ),
     ] = None
@@ -49,7 +49,7 @@ class SetOutput(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the robot."""
+        """Call the service of the robot."""
         name = self.device or f"output {self.output}"
         what = f"{name} of {self.robot} was not turned {'on' if self.value else 'off'}"
         return await call_or_fail(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)

@@ -1,4 +1,4 @@
-"""magnet.CheckHeld: asks whether a magnet still holds a part."""
+"""magnet.CheckHeld: checks whether a magnet still holds a part."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from states.part_label import PartLabel, part_label
 
 
 class CheckHeld(State, frozen=True, kw_only=True):
-    """Ask a magnet whether it still holds something."""
+    """Check whether a magnet still holds a part."""
 
     state_name: ClassVar[str] = "magnet.CheckHeld"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")

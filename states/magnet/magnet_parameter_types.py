@@ -1,4 +1,4 @@
-"""How states name a magnet: by the arm that carries it."""
+"""Parameter types of the magnet states; the name of a magnet is that of its arm."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from states.part_label import PartLabel
 
 
 class Off(State, frozen=True, kw_only=True):
-    """Switch a magnet off; `failed` when it says that it still holds something."""
+    """Switch a magnet off; `failed` when it reports that it still holds a part."""
 
     state_name: ClassVar[str] = "magnet.Off"
     outcomes: ClassVar[tuple[str, ...]] = ("released", "failed")
@@ -28,7 +28,7 @@ class Off(State, frozen=True, kw_only=True):
         return (magnet_address(self.magnet),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         address = magnet_address(self.magnet)
         goal = MagnetSwitch(on=False)
         what = f"the magnet of {self.magnet} did not release " + (f"part {self.part}" if self.part else "its part")

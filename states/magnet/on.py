@@ -1,4 +1,4 @@
-"""magnet.On: switches a magnet on and tells whether it holds something."""
+"""magnet.On: switches a magnet on and checks whether it holds a part."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from states.part_label import PartLabel, part_label
 
 
 class On(State, frozen=True, kw_only=True):
-    """Switch a magnet on: `held` when it pulls at a part that touches its face, `missed` when not.
+    """Switch a magnet on: `held` when it pulls on a part in contact with its face, else `missed`.
 
-    It stays on after `missed` too. Writes `held` always and the pull `pull_n` where the magnet measured it.
+    After `missed` it stays on. Always writes `held`; writes the pull force `pull_n` if the magnet measured it.
     """
 
     state_name: ClassVar[str] = "magnet.On"
@@ -34,13 +34,13 @@ class On(State, frozen=True, kw_only=True):
         return (magnet_address(self.magnet),)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge what the magnet holds."""
+        """Send the goal and return whether the magnet holds the part."""
         address = magnet_address(self.magnet)
         goal = MagnetSwitch(on=True)
-        missed = f"the magnet of {self.magnet} does not hold {part_label(self.part)}"
+        failure = f"the magnet of {self.magnet} does not hold {part_label(self.part)}"
         end = await ctx.perform(goal, to=address)
         if end.status != "succeeded" or end.result is None:
-            cause = goal_cause(missed, goal, end, to=address, where=ctx.path, kind=self.state_name)
+            cause = goal_cause(failure, goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
         outputs = {"held": end.result.held, "pull_n": end.result.pull_n}
         if end.result.held:
@@ -49,4 +49,4 @@ class On(State, frozen=True, kw_only=True):
             message=end.result.reason or "nothing is held and the magnet gave no reason",
             where=f"{address}/{goal.skill_name()}",
         )
-        return Outcome("missed", outputs, wrap_cause(missed, because, where=ctx.path, kind=self.state_name))
+        return Outcome("missed", outputs, wrap_cause(failure, because, where=ctx.path, kind=self.state_name))

@@ -1,1 +1,1 @@
-"""States that take a part and put it down: the whole way there, the tool, and what is planned with."""
+"""States that pick and place a part: approach, tool, and planning scene."""

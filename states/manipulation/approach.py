@@ -1,4 +1,4 @@
-"""Brings the tool to a part or a place: free of collisions in front of it, then straight in."""
+"""Approach of the tool to a pose: a collision-free motion to the pre-approach pose, then a straight line."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from states.motion.move_free import MoveFree
 from states.scene.scene_parameter_types import CELL
 
 _ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
-_TRIES = 8
-"""With so many configurations of the arm at most a pose is tried."""
-_TOLD_M = 0.001
-"""From here on it is told how deep two things would be in one another."""
-_SAME_RAD = 1.5
-"""A joint that turns farther on the straight way is in another configuration at its other end."""
+_MAX_CONFIGURATIONS = 8
+"""Maximum number of arm configurations tried per pose."""
+_REPORTED_DEPTH_M = 0.001
+"""Minimum penetration depth that a message reports."""
+_MAX_TURN_RAD = 1.5
+"""A joint that turns farther along the straight line ends in another configuration."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Approach:
-    """How an arm comes to a pose, and goes on: by which straight ways, how fast, how far from obstacles, how patient.
+    """Parameters of an approach to a pose and of the retreat from it.
 
-    `out_m` leads from the pose to where the arm comes from, `onward_m` to where it goes afterwards, in the world.
-    `expected` tells which pairs are meant to touch at the pose; `kind` names the state in causes.
+    `out_m` is the vector in the world from the pose to the pre-approach position, `onward_m` to the position of the
+    arm afterwards. `expected` returns whether a pair may touch at the pose; `kind` is the state's name in causes.
     """
 
     robot: str
@@ -49,10 +49,10 @@ class Approach:
     async def to(
         self, ctx: Context, poses: Sequence[Pose], *, before: Sequence[SequenceStep] = ()
     ) -> Pose | SequenceEnd:
-        """Bring the tool to the first pose, in the world, that is reached and free; return which one.
+        """Move the tool to the first pose, in the world, that is reachable and collision-free; return that pose.
 
-        A configuration is chosen at the pose itself, and the same one in front of it: else the straight ways might
-        end at a limit of a joint. `before` is gone through before the straight way.
+        The configuration is chosen at the pose itself and kept at the pre-approach pose: otherwise the straight line
+        could end at a joint limit. The steps `before` run between the collision-free motion and the straight line.
         """
         ended = SequenceEnd("unreachable", None)
         for pose in poses:
@@ -61,73 +61,74 @@ class Approach:
                 ended = solutions
                 continue
             for joints in solutions:
-                tried = await self._try(ctx, pose, joints, before)
-                if tried is None:
+                attempt = await self._attempt(ctx, pose, joints, before)
+                if attempt is None:
                     return pose
-                ended = tried
+                ended = attempt
                 if ended.outcome not in ("unreachable", "blocked"):
                     return ended
         return ended
 
     async def straight_to(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
-        """Go straight to a pose."""
+        """Move on a straight line to a pose."""
         return await move_along_line(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
 
     async def straight_out(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
-        """Go straight back to where the arm came to `pose` from."""
+        """Move on a straight line from `pose` back to its pre-approach position."""
         return await self.straight_to(ctx, translate_pose(pose, self.out_m))
 
     async def _solutions(self, ctx: Context, pose: Pose) -> Sequence[tuple[float, ...]] | SequenceEnd:
-        """Return configurations at a pose, soonest reached first."""
+        """Return arm configurations at a pose, nearest first."""
         try:
-            return (await ctx.call(AllInverseKinematics(pose=pose), to=self.robot)).solutions[:_TRIES]
+            return (await ctx.call(AllInverseKinematics(pose=pose), to=self.robot)).solutions[:_MAX_CONFIGURATIONS]
         except SkillFailed as error:
             return SequenceEnd("unreachable", cause_of(error))
 
-    async def _try(
+    async def _attempt(
         self, ctx: Context, pose: Pose, joints: tuple[float, ...], before: Sequence[SequenceStep]
     ) -> SequenceEnd | None:
-        """Bring the tool to a pose that it is to have with `joints`; None when it is there."""
-        in_front = await self._in_front_of(ctx, pose, joints)
-        if isinstance(in_front, SequenceEnd):
-            return in_front
+        """Move the tool to a pose in the configuration `joints`; None on success."""
+        pre_approach = await self._pre_approach_joints(ctx, pose, joints)
+        if isinstance(pre_approach, SequenceEnd):
+            return pre_approach
         move = MoveFree(
             robot=self.robot,
-            joints=in_front,
+            joints=pre_approach,
             speed=self.speed,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
         )
         return await run_steps(ctx, [SequenceStep(move, _ENDS), *before]) or await self.straight_to(ctx, pose)
 
-    async def _in_front_of(
+    async def _pre_approach_joints(
         self, ctx: Context, pose: Pose, joints: tuple[float, ...]
     ) -> tuple[float, ...] | SequenceEnd:
         report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
-        pairs = [_in_words(pair) for pair in report.touching if not self.expected(pair)]
+        pairs = [_describe_pair(pair) for pair in report.touching if not self.expected(pair)]
         if pairs:
-            return SequenceEnd("blocked", Cause(message=f"there, {', '.join(pairs)} would touch", where=self.robot))
-        in_front = await self._beside(ctx, translate_pose(pose, self.out_m), joints)
+            message = f"at the target, {', '.join(pairs)} would touch"
+            return SequenceEnd("blocked", Cause(message=message, where=self.robot))
+        pre_approach = await self._joints_at(ctx, translate_pose(pose, self.out_m), joints)
         onward = (
-            await self._beside(ctx, translate_pose(pose, self.onward_m), joints)
+            await self._joints_at(ctx, translate_pose(pose, self.onward_m), joints)
             if self.onward_m != self.out_m
             else None
         )
-        return onward if isinstance(onward, SequenceEnd) else in_front
+        return onward if isinstance(onward, SequenceEnd) else pre_approach
 
-    async def _beside(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | SequenceEnd:
-        """Return how the arm stands at the other end of a straight way, not otherwise than with `joints`."""
+    async def _joints_at(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | SequenceEnd:
+        """Return the joints at the other end of a straight line, in the same configuration as `joints`."""
         try:
-            found = (await ctx.call(InverseKinematics(pose=pose, seed=joints), to=self.robot)).joints
+            solution = (await ctx.call(InverseKinematics(pose=pose, seed=joints), to=self.robot)).joints
         except SkillFailed as error:
             return SequenceEnd("unreachable", cause_of(error))
-        turned = max(abs(a - b) for a, b in zip(joints, found, strict=True))
-        if turned <= _SAME_RAD:
-            return found
-        words = f"the straight way would turn a joint by {turned:.2f} rad"
-        return SequenceEnd("unreachable", Cause(message=words, where=self.robot))
+        turned = max(abs(a - b) for a, b in zip(joints, solution, strict=True))
+        if turned <= _MAX_TURN_RAD:
+            return solution
+        message = f"the straight line would turn a joint by {turned:.2f} rad"
+        return SequenceEnd("unreachable", Cause(message=message, where=self.robot))
 
 
-def _in_words(pair: TouchingPair) -> str:
-    deep = f" ({pair.depth_m * 1000:.0f} mm deep)" if pair.depth_m >= _TOLD_M else ""
-    return f"{pair.first} with {pair.second}{deep}"
+def _describe_pair(pair: TouchingPair) -> str:
+    depth = f" ({pair.depth_m * 1000:.0f} mm deep)" if pair.depth_m >= _REPORTED_DEPTH_M else ""
+    return f"{pair.first} with {pair.second}{depth}"

@@ -1,4 +1,4 @@
-"""The straight way between the place over a part and the part itself."""
+"""The straight line between the pre-approach pose and the pose at the part."""
 
 from __future__ import annotations
 
@@ -23,34 +23,34 @@ LineSpeed = Annotated[
 ]
 ApproachDirection = Annotated[
     Vector3 | None,
-    Meta(description="Where the tool comes from, in the frame of the pose; against its own z by default"),
+    Meta(description="Direction from the pose to the pre-approach pose, in the frame of the pose; tool -z by default"),
 ]
 
 
 def retreat_vector(tool: Pose, frame: Pose, direction: Vector3 | None, distance_m: float) -> Vector3:
-    """Return the way in the world from a pose of the tool out to where it comes from.
+    """Return the vector in the world from a pose of the tool to its pre-approach position.
 
     Args:
         tool: The pose of the tool in the world.
-        frame: The frame that `direction` is given in, in the world.
-        direction: Where it comes from; against the z axis of the tool where there is none.
-        distance_m: How far.
+        frame: The pose in the world of the frame in which `direction` is given.
+        direction: Direction to the pre-approach position; None means the negative z axis of the tool.
+        distance_m: Length of the vector.
     """
     out = rotate_vector(tool.xyzw, (0.0, 0.0, -1.0)) if direction is None else rotate_vector(frame.xyzw, direction)
     return offset_along(out, distance_m)
 
 
 async def move_along_line(ctx: Context, robot: str, pose: Pose, *, speed_m_s: float, kind: str) -> SequenceEnd | None:
-    """Move the tool on a straight line; None when it is there.
+    """Move the tool on a straight line; None on success.
 
-    `blocked` where what the arm holds would touch something before the end of the line.
+    `blocked` if the held part would touch something before the end of the line.
     """
     start = await ctx.call(ForwardKinematics(), to=robot)
     goal = CartLinTask(pose=pose, duration_s=line_duration_s(start, pose, speed_m_s=speed_m_s))
     end = await ctx.perform(goal, to=robot)
     if end.status == "succeeded":
         return None
-    what = f"{robot} did not go straight to {pose_label(PoseTarget(xyz=pose.xyz), NO_OFFSET)}"
+    what = f"{robot} did not move on a straight line to {pose_label(PoseTarget(xyz=pose.xyz), NO_OFFSET)}"
     cause = goal_cause(what, goal, end, to=robot, where=ctx.path, kind=kind)
     if is_path_blocked(end):
         return SequenceEnd("blocked", cause)

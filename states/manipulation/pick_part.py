@@ -1,4 +1,4 @@
-"""manipulation.PickPart: takes a part, from wherever the arm is to the part in the air."""
+"""manipulation.PickPart: picks and lifts a part, from any configuration of the arm."""
 
 from __future__ import annotations
 
@@ -37,24 +37,24 @@ PART = "part"
 
 
 class GraspTarget(PoseTarget, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pose of the tool centre point in the frame `part`, or in any other that the cell shows."""
+    """A pose of the tool centre point in the frame `part`, or in any other frame of the cell."""
 
     frame: Annotated[str, Meta(extra_json_schema={"cell_name": "frame", "or": [PART]})] = "world"
 
 
 FROM_ABOVE = GraspTarget(xyz=(0.0, 0.0, 0.0), xyzw=(1.0, 0.0, 0.0, 0.0), frame=PART)
 _FAILED = {"failed": "failed"}
-_STILL_DOWN = ("missed", "unreachable", "blocked")
-"""The ends of closing and lifting after which the part stands where it stood, or is lost."""
+_NOT_LIFTED = ("missed", "unreachable", "blocked")
+"""Outcomes of closing and lifting after which the part is still in place, or lost."""
 
 
 class PickPart(State, frozen=True, kw_only=True):
-    """Open the tool, move free of collisions in front of the part, straight in, close, lift, and look what is held.
-
-    Where the part is now is asked when the state runs. While it is held, ways are planned with it. `missed` when
-    the tool does not hold it, closed or lifted, or when there is no such part. `unreachable` when the arm cannot get
-    there or lift it, `blocked` when something is in the way, of the part too when it is lifted. The reason is written
-    as `reason`. A tool that has closed is open again then, and the arm back in front.
+    """Open the tool, move collision-free to the pre-approach pose, straight to the part, close, lift, check the grasp.
+    The state reads the latest measured pose of the part. Motions with the held part are planned including it.
+    `missed` when the tool does not hold the part after closing or lifting, or when there is no such part;
+    `unreachable` when the arm cannot reach the part or lift it; `blocked` when the planning scene blocks the arm or
+    the lifted part. These outcomes write the `reason`; a tool that has closed opens again, and the arm retreats to the
+    pre-approach pose.
     """
 
     state_name: ClassVar[str] = "manipulation.PickPart"
@@ -68,16 +68,20 @@ class PickPart(State, frozen=True, kw_only=True):
     tool: ToolKind = "gripper"
     grasp: Annotated[
         GraspTarget,
-        Meta(description="Tool centre point at the part: `{xyz, xyzw, frame}` with frame `part` or another"),
+        Meta(description="Pose of the tool centre point at the part: `{xyz, xyzw, frame}`, frame `part` or another"),
     ] = FROM_ABOVE
-    turns: Annotated[int, Meta(ge=1, le=8, description="In how many turns about the tool's z the grasp is as good")] = 1
+    turns: Annotated[
+        int, Meta(ge=1, le=8, description="Number of equivalent grasp rotations about the tool's z axis")
+    ] = 1
     approach: ApproachDirection = None
     approach_m: LineLength = 0.1
-    lift_m: Annotated[LineLength, Meta(description="How far it is lifted, along the world's z")] = 0.1
-    width_m: Annotated[Width | None, Meta(description="Width of the part between two fingers")] = None
+    lift_m: Annotated[LineLength, Meta(description="Lift distance along the world z axis")] = 0.1
+    width_m: Annotated[Width | None, Meta(description="Width of the part between the fingers of a gripper")] = None
     force_n: Force = 20.0
-    percent: Annotated[Percent, Meta(description="How far a hand closes")] = 80.0
-    mass_kg: Annotated[Mass, Meta(description="Told to the arm as its load; 0 tells it nothing")] = 0.0
+    percent: Annotated[Percent, Meta(description="Target closing of a hand, 0 open to 100 closed")] = 80.0
+    mass_kg: Annotated[
+        Mass, Meta(description="Mass of the part, set as the arm's load; 0 leaves the load unchanged")
+    ] = 0.0
     speed: Speed = 0.3
     line_speed_m_s: LineSpeed = 0.1
     margin_m: Margin = 0.0
@@ -87,24 +91,24 @@ class PickPart(State, frozen=True, kw_only=True):
         if self.tool == "gripper" and self.width_m is None:
             raise ValueError("a gripper needs `width_m`, the width of the part between its fingers")
         if self.approach is not None and not any(self.approach):
-            raise ValueError("`approach` is no direction")
+            raise ValueError("`approach` must not be a zero vector")
 
     def resources(self) -> tuple[str, ...]:
         """The arm and its tool."""
         return (self.robot, tool_resource(self.robot, self.tool))
 
     async def run(self, ctx: Context) -> Outcome:
-        """Go through the pick."""
+        """Run the steps of the pick."""
         ended = await self._pick(ctx)
         if ended is None:
             return Outcome("picked")
         return ended.under(f"{self.robot} did not pick part {self.part}", where=ctx.path, kind=self.state_name)
 
     async def _pick(self, ctx: Context) -> SequenceEnd | None:
-        found = await self._grasps(ctx)
-        if isinstance(found, Cause):
-            return SequenceEnd("missed", found)
-        frame, grasps = found
+        candidates = await self._grasps(ctx)
+        if isinstance(candidates, Cause):
+            return SequenceEnd("missed", candidates)
+        frame, grasps = candidates
         approach = self._approach(retreat_vector(grasps[0], frame, self.approach, self.approach_m))
         if ended := await run_steps(ctx, [SequenceStep(release_state(self.robot, self.tool, ""), _FAILED)]):
             return ended
@@ -112,12 +116,12 @@ class PickPart(State, frozen=True, kw_only=True):
         if isinstance(grasp, SequenceEnd):
             return grasp
         ended = await self._close(ctx) or await self._lift(ctx, approach, grasp)
-        if ended is not None and ended.outcome in _STILL_DOWN:
-            return await self._let_go(ctx) or await approach.straight_out(ctx, grasp) or ended
+        if ended is not None and ended.outcome in _NOT_LIFTED:
+            return await self._release(ctx) or await approach.straight_out(ctx, grasp) or ended
         return ended
 
     async def _grasps(self, ctx: Context) -> tuple[Pose, list[Pose]] | Cause:
-        """Return the frame that the grasp is given in, and the poses in the world to try, nearest turn first."""
+        """Return the frame of `grasp`, and the candidate poses in the world, smallest rotation from the tool first."""
         given = await resolve_pose(ctx, self.grasp, NO_OFFSET)
         of_part = given.frame in (PART, self.part)
         frame = await part_in_world(ctx, self.part) if of_part else await frame_in_world(ctx, given.frame)
@@ -126,9 +130,9 @@ class PickPart(State, frozen=True, kw_only=True):
         grasp = compose_poses(frame, given)
         if self.turns == 1:
             return frame, [grasp]
-        now = await ctx.call(ForwardKinematics(), to=self.robot)
-        turned = [compose_poses(grasp, _turned(2 * math.pi * turn / self.turns)) for turn in range(self.turns)]
-        return frame, sorted(turned, key=lambda pose: round(angle_between_rad(pose.xyzw, now.xyzw), 6))
+        tool = await ctx.call(ForwardKinematics(), to=self.robot)
+        rotated = [compose_poses(grasp, _rotation(2 * math.pi * turn / self.turns)) for turn in range(self.turns)]
+        return frame, sorted(rotated, key=lambda pose: round(angle_between_rad(pose.xyzw, tool.xyzw), 6))
 
     def _approach(self, out_m: Vector3) -> Approach:
         return Approach(
@@ -139,11 +143,11 @@ class PickPart(State, frozen=True, kw_only=True):
             line_speed_m_s=self.line_speed_m_s,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
-            expected=self._meant_to_touch,
+            expected=self._may_touch,
             kind=self.state_name,
         )
 
-    def _meant_to_touch(self, pair: TouchingPair) -> bool:
+    def _may_touch(self, pair: TouchingPair) -> bool:
         return self.part in (pair.first, pair.second)
 
     async def _close(self, ctx: Context) -> SequenceEnd | None:
@@ -165,10 +169,10 @@ class PickPart(State, frozen=True, kw_only=True):
 
     async def _lift(self, ctx: Context, approach: Approach, grasp: Pose) -> SequenceEnd | None:
         held = SequenceStep(check_held_state(self.robot, self.tool, self.part), {"lost": "missed"})
-        over = translate_pose(grasp, (0.0, 0.0, self.lift_m))
-        return await approach.straight_to(ctx, over) or await run_steps(ctx, [held])
+        lifted = translate_pose(grasp, (0.0, 0.0, self.lift_m))
+        return await approach.straight_to(ctx, lifted) or await run_steps(ctx, [held])
 
-    async def _let_go(self, ctx: Context) -> SequenceEnd | None:
+    async def _release(self, ctx: Context) -> SequenceEnd | None:
         steps = [
             SequenceStep(release_state(self.robot, self.tool, ""), _FAILED),
             SequenceStep(Detach(part=self.part), _FAILED),
@@ -177,5 +181,5 @@ class PickPart(State, frozen=True, kw_only=True):
         return await run_steps(ctx, [*steps, unload] if self.mass_kg else steps)
 
 
-def _turned(angle_rad: float) -> Pose:
+def _rotation(angle_rad: float) -> Pose:
     return Pose(xyz=(0.0, 0.0, 0.0), xyzw=(0.0, 0.0, math.sin(angle_rad / 2), math.cos(angle_rad / 2)))

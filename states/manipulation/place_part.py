@@ -1,4 +1,4 @@
-"""manipulation.PlacePart: puts down the part that an arm holds."""
+"""manipulation.PlacePart: places the part that an arm holds."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _FAILED = {"failed": "failed"}
 
 
 class PlacePart(State, frozen=True, kw_only=True):
-    """Move free of collisions over the place, straight down, open the tool, and straight back.
+    """Move collision-free to the pre-approach pose and straight to the target, open the tool, and retreat straight.
 
-    With `target_of: part` the part itself comes to stand at the target, however the tool holds it. It may touch what
-    it is put down on over the last 5 mm of its way; where it would come deeper, or touch anything before, it is
-    `blocked` with both names before that. `missed` when the part was lost on the way, `unreachable` and `blocked` as
-    in `manipulation.PickPart`; then the arm still holds it. The arm knows of no load afterwards.
+    With `target_of: part` the part itself ends at the target, however the tool holds it. Over the last 5 mm of the
+    line the part may touch what it is placed on; a deeper or earlier contact is `blocked` in advance, and the
+    `reason` names both bodies. `missed` when the part is lost on the path; `unreachable` and `blocked` as in
+    `manipulation.PickPart`, with the part still held. Afterwards the load of the arm is 0 kg.
     """
 
     state_name: ClassVar[str] = "manipulation.PlacePart"
@@ -44,9 +44,9 @@ class PlacePart(State, frozen=True, kw_only=True):
 
     robot: RobotName
     part: PartName
-    target: Annotated[ShownPoseTarget, Meta(description="Where to: `{xyz, xyzw, frame}`, or `{entry: name}`")]
+    target: Annotated[ShownPoseTarget, Meta(description="Target pose: `{xyz, xyzw, frame}`, or `{entry: name}`")]
     target_of: Annotated[
-        Literal["tool", "part"], Meta(description="What comes to stand at `target`: tool centre point or part")
+        Literal["tool", "part"], Meta(description="What ends at `target`: the tool centre point or the part")
     ] = "tool"
     tool: ToolKind = "gripper"
     approach: ApproachDirection = None
@@ -58,14 +58,14 @@ class PlacePart(State, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if self.approach is not None and not any(self.approach):
-            raise ValueError("`approach` is no direction")
+            raise ValueError("`approach` must not be a zero vector")
 
     def resources(self) -> tuple[str, ...]:
         """The arm and its tool."""
         return (self.robot, tool_resource(self.robot, self.tool))
 
     async def run(self, ctx: Context) -> Outcome:
-        """Go through the placing."""
+        """Run the steps of the placement."""
         ended = await self._place(ctx)
         if ended is None:
             return Outcome("placed")
@@ -75,18 +75,18 @@ class PlacePart(State, frozen=True, kw_only=True):
         held = [SequenceStep(check_held_state(self.robot, self.tool, self.part), {"lost": "missed"})]
         if ended := await run_steps(ctx, held):
             return ended
-        target = await self._tool_place(ctx)
+        target = await self._tool_target(ctx)
         if isinstance(target, Cause):
             return SequenceEnd("missed", target)
-        frame, place = target
-        approach = self._approach(retreat_vector(place, frame, self.approach, self.approach_m))
-        found = await approach.to(ctx, [place], before=held)
-        if isinstance(found, SequenceEnd):
-            return found
-        return await run_steps(ctx, self._letting_go()) or await approach.straight_out(ctx, place)
+        frame, tool_pose = target
+        approach = self._approach(retreat_vector(tool_pose, frame, self.approach, self.approach_m))
+        reached = await approach.to(ctx, [tool_pose], before=held)
+        if isinstance(reached, SequenceEnd):
+            return reached
+        return await run_steps(ctx, self._release_steps()) or await approach.straight_out(ctx, tool_pose)
 
-    async def _tool_place(self, ctx: Context) -> tuple[Pose, Pose] | Cause:
-        """Return the frame that the target is given in, and the pose of the tool there, both in the world."""
+    async def _tool_target(self, ctx: Context) -> tuple[Pose, Pose] | Cause:
+        """Return the frame of the target, and the pose of the tool at the target, both in the world."""
         given = await resolve_pose(ctx, self.target, NO_OFFSET)
         frame = await frame_in_world(ctx, given.frame)
         target = compose_poses(frame, given)
@@ -107,16 +107,16 @@ class PlacePart(State, frozen=True, kw_only=True):
             line_speed_m_s=self.line_speed_m_s,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
-            expected=self._stands_on,
+            expected=self._is_support_contact,
             kind=self.state_name,
         )
 
-    def _stands_on(self, pair: TouchingPair) -> bool:
-        """Tell whether a pair is the part and what it stands on: no link of an arm, and no deeper than contact is."""
+    def _is_support_contact(self, pair: TouchingPair) -> bool:
+        """Tell whether a pair is the part and its support: no link of an arm, and at most `CONTACT_M` deep."""
         other = pair.second if pair.first == self.part else pair.first
         return self.part in (pair.first, pair.second) and "/" not in other and pair.depth_m <= CONTACT_M
 
-    def _letting_go(self) -> list[SequenceStep]:
+    def _release_steps(self) -> list[SequenceStep]:
         return [
             SequenceStep(release_state(self.robot, self.tool, self.part), _FAILED),
             SequenceStep(Detach(part=self.part), _FAILED),

@@ -1,4 +1,4 @@
-"""Goes through the steps of a composed state until one ends in a way that ends them all."""
+"""Runs the steps of a composed state until one of them ends the sequence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from states.motion.planned_motion_result import inner_cause_text
 
 @dataclass(frozen=True)
 class SequenceStep:
-    """A state to go through; `ends` says for which of its outcomes the whole ends, and with which outcome."""
+    """A state to run; `ends` maps each of its outcomes that ends the sequence to the outcome of the sequence."""
 
     state: State
     ends: Mapping[str, str]
@@ -21,19 +21,19 @@ class SequenceStep:
 
 @dataclass(frozen=True)
 class SequenceEnd:
-    """The outcome that the whole ends with, and why."""
+    """The outcome of a sequence that ended early, and its cause."""
 
     outcome: str
     cause: Cause | None
 
     def under(self, what: str, *, where: str, kind: str) -> Outcome:
-        """Return the outcome with its reason, and `what` was not achieved on top of the causes."""
+        """Return the outcome with its reason; `what` becomes the outermost cause."""
         cause = wrap_cause(what, self.cause, where=where, kind=kind)
         return Outcome(self.outcome, {"reason": inner_cause_text(cause)}, cause)
 
 
 async def run_steps(ctx: Context, steps: Iterable[SequenceStep]) -> SequenceEnd | None:
-    """Run states one after the other; None when none of them ended the whole."""
+    """Run states in sequence; None if no step ended the sequence early."""
     for step in steps:
         outcome = await step.state.run(ctx)
         if outcome.name in step.ends:

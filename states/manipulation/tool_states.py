@@ -1,4 +1,4 @@
-"""What the kinds of tools do when a part is taken and let go, in one set of words."""
+"""States to release and check a part, by kind of tool."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from states.magnet.off import Off as MagnetOff
 ToolKind = Annotated[
     Literal["gripper", "magnet", "hand"],
     Meta(
-        description="What holds: two fingers, a magnet, or a hand of one motor",
+        description="Kind of tool: gripper with two fingers, magnet, or hand with one motor",
         extra_json_schema={"cell_name": "tool", "of": "robot"},
     ),
 ]
@@ -29,7 +29,7 @@ def tool_resource(robot: str, tool: ToolKind) -> str:
 
 
 def release_state(robot: str, tool: ToolKind, part: str) -> State:
-    """Return the state that opens the tool, or switches it off; it fails with `failed`."""
+    """Return the state that opens the tool or switches it off; its failure outcome is `failed`."""
     match tool:
         case "gripper":
             return GripperOpen(gripper=robot, part=part)
@@ -40,7 +40,7 @@ def release_state(robot: str, tool: ToolKind, part: str) -> State:
 
 
 def check_held_state(robot: str, tool: ToolKind, part: str) -> State:
-    """Return the state that asks whether the tool holds its part: `held` or `lost`."""
+    """Return the state that checks whether the tool holds its part: `held` or `lost`."""
     match tool:
         case "gripper":
             return GripperCheckHeld(gripper=robot, part=part)

@@ -1,4 +1,4 @@
-"""motion.ExecutePlan: goes a way that was planned before."""
+"""motion.ExecutePlan: executes a path that was planned before."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from states.motion.planned_motion_target import WatchPath
 
 
 class ExecutePlan(State, frozen=True, kw_only=True):
-    """Go the way `plan` that `motion.PlanMotion` found; the arm stands where it begins.
+    """Execute the path `plan` of `motion.PlanMotion`; the arm must stand at its start.
 
-    What changes on the way is avoided as in `motion.MoveFree`, and planner, margin and orientation are for that.
-    `blocked` and `failed` write the `reason`.
+    If the planning scene changes during the motion, the arm replans as in `motion.MoveFree`, with the planner, margin
+    and orientation given here. `blocked` and `failed` write the `reason`.
     """
 
     state_name: ClassVar[str] = "motion.ExecutePlan"
@@ -53,6 +53,6 @@ class ExecutePlan(State, frozen=True, kw_only=True):
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
-        what = f"{self.robot} did not go its planned way to the end"
+        what = f"{self.robot} did not execute its planned path to the end"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("blocked" if is_blocked_timeout(end) else "failed", {"reason": inner_cause_text(cause)}, cause)

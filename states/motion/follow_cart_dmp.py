@@ -17,7 +17,7 @@ from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, reso
 class FollowCartDmp(State, frozen=True, kw_only=True):
     """Move the tool centre point along a Cartesian dynamic movement primitive.
 
-    `goal` ends the motion elsewhere than the primitive does, in its manner.
+    `goal` replaces the goal pose of the primitive and keeps the shape of its motion.
     """
 
     state_name: ClassVar[str] = "motion.FollowCartDmp"
@@ -33,14 +33,14 @@ class FollowCartDmp(State, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         if self.goal is None and self.goal_offset_m != NO_OFFSET:
-            raise ValueError("`goal_offset_m` is added to `goal`: give that too")
+            raise ValueError("`goal_offset_m` requires `goal`")
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Go to the start if asked to, follow the primitive, and judge the end."""
+        """Move to the start if `approach_speed` is given, follow the primitive, and return the outcome."""
         dmp = await resolve_cart_dmp(ctx, self.dmp, time_scale=self.time_scale)
         target = None if self.goal is None else await resolve_pose(ctx, self.goal, self.goal_offset_m)
         if self.approach_speed is not None:

@@ -17,7 +17,7 @@ from states.motion.primitive import ApproachSpeed, JointDmpEntry, TimeScale, res
 class FollowJointDmp(State, frozen=True, kw_only=True):
     """Move an arm along a joint-space dynamic movement primitive, such as one learned from a demonstration.
 
-    `goal` ends the motion elsewhere than the primitive does, in its manner.
+    `goal` replaces the goal joints of the primitive and keeps the shape of its motion.
     """
 
     state_name: ClassVar[str] = "motion.FollowJointDmp"
@@ -35,7 +35,7 @@ class FollowJointDmp(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Go to the start if asked to, follow the primitive, and judge the end."""
+        """Move to the start if `approach_speed` is given, follow the primitive, and return the outcome."""
         dmp = await resolve_joint_dmp(ctx, self.dmp, time_scale=self.time_scale)
         target = () if self.goal is None else await resolve_joints(ctx, self.goal)
         if self.approach_speed is not None:

@@ -1,4 +1,4 @@
-"""motion.FollowRecording: moves an arm as it was led."""
+"""motion.FollowRecording: moves an arm along a recorded motion."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from states.motion.primitive import ApproachSpeed, RecordingEntry, TimeScale
 
 
 class FollowRecording(State, frozen=True, kw_only=True):
-    """Move an arm along a recorded motion: a joint-space movement primitive is learned from it, and followed.
+    """Move an arm along a recorded motion: learn a joint-space movement primitive from it and follow that.
 
-    Record it again, and the next run moves otherwise.
+    The recording is read when the state runs: a new recording of the same name changes the next run.
     """
 
     state_name: ClassVar[str] = "motion.FollowRecording"
@@ -37,7 +37,7 @@ class FollowRecording(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Learn, go to the start if asked to, follow, and judge the end."""
+        """Learn, move to the start if `approach_speed` is given, follow, and return the outcome."""
         name = self.recording.entry
         try:
             learned = await ctx.call(LearnJointDmp(entry=name), to=self.robot)

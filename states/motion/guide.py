@@ -1,4 +1,4 @@
-"""motion.Guide: lets an arm be led by hand, and records where."""
+"""motion.Guide: lets a person guide an arm by hand and records the trajectory."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from states.motion.motion_target import RobotName
 
 
 class Guide(State, frozen=True, kw_only=True):
-    """Let the arm float until somebody calls `<robot>/finish_guiding`, or for `duration_s`.
+    """Make the arm compliant for hand guiding until `<robot>/finish_guiding` is called, or for `duration_s`.
 
-    With `record` the way is written to the store as a `trajectory` entry of that name. Writes how
-    many samples it has, 0 without a record.
+    With `record` the trajectory is written to the store as a `trajectory` entry of that name. Writes the number of
+    samples, 0 without a record.
     """
 
     state_name: ClassVar[str] = "motion.Guide"
@@ -31,7 +31,7 @@ class Guide(State, frozen=True, kw_only=True):
     record: Annotated[
         str,
         Meta(
-            description="Name of the entry that is written; nothing is recorded without",
+            description="Name of the entry to write; empty records nothing",
             extra_json_schema={"new_entry": "trajectory"},
         ),
     ] = ""
@@ -43,11 +43,11 @@ class Guide(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and wait until the arm holds itself again."""
+        """Send the goal and wait until the arm holds its position again."""
         goal = GuideArm(damping=self.damping, duration_s=self.duration_s, record=self.record, sample_s=self.sample_s)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded" and end.result is not None:
             return Outcome("finished", {"samples": end.result.samples})
-        what = f"{self.robot} was not guided to an end"
+        what = f"{self.robot} did not finish guiding"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("failed", cause=cause)

@@ -1,4 +1,4 @@
-"""motion.LearnJointDmp and motion.LearnCartDmp: turn a recorded motion into a movement primitive."""
+"""motion.LearnJointDmp and motion.LearnCartDmp: learn a movement primitive from a recorded motion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Recording = Annotated[
 class LearnJointDmp(State, frozen=True, kw_only=True):
     """Learn a joint-space movement primitive from a recorded motion and store it as an entry of kind `dmp`.
 
-    Outputs how far it is from the recording: the worst joint at the worst time, and the mean over all.
+    Writes the fit error against the recording: `max_rad` over all joints and times, and `rms_rad`.
     """
 
     state_name: ClassVar[str] = "motion.LearnJointDmp"
@@ -43,14 +43,14 @@ class LearnJointDmp(State, frozen=True, kw_only=True):
         str,
         Meta(
             min_length=1,
-            description="Name of the entry of kind `dmp` that is written",
+            description="Name of the entry of kind `dmp` to write",
             extra_json_schema={"new_entry": "dmp"},
         ),
     ]
-    kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 lets the fit decide")] = 0
+    kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 chooses it from the fit")] = 0
 
     async def run(self, ctx: Context) -> Outcome:
-        """Learn and store; a recording that nothing can be learned from is an outcome."""
+        """Learn and store; a recording that cannot be learned from gives the outcome `failed`."""
         try:
             learned = await ctx.call(dmp.LearnJointDmp(entry=self.recording, N=self.kernels), to=self.robot)
         except SkillFailed as error:
@@ -64,7 +64,7 @@ class LearnJointDmp(State, frozen=True, kw_only=True):
 class LearnCartDmp(State, frozen=True, kw_only=True):
     """Learn a Cartesian movement primitive from a recorded motion and store it as an entry of kind `cart_dmp`.
 
-    Outputs how far it is from the recording at the worst time.
+    Writes the maximum fit error against the recording, in position and orientation.
     """
 
     state_name: ClassVar[str] = "motion.LearnCartDmp"
@@ -79,14 +79,14 @@ class LearnCartDmp(State, frozen=True, kw_only=True):
         str,
         Meta(
             min_length=1,
-            description="Name of the entry of kind `cart_dmp` that is written",
+            description="Name of the entry of kind `cart_dmp` to write",
             extra_json_schema={"new_entry": "cart_dmp"},
         ),
     ]
-    kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 lets the fit decide")] = 0
+    kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 chooses it from the fit")] = 0
 
     async def run(self, ctx: Context) -> Outcome:
-        """Learn and store; a recording that nothing can be learned from is an outcome."""
+        """Learn and store; a recording that cannot be learned from gives the outcome `failed`."""
         try:
             learned = await ctx.call(dmp.LearnCartDmp(entry=self.recording, N=self.kernels), to=self.robot)
         except SkillFailed as error:

@@ -1,4 +1,4 @@
-"""How long a straight minimum-jerk motion takes when its greatest speed is given."""
+"""Duration of a straight minimum-jerk motion for a given maximum speed."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ import math
 from engine.messages import Pose
 
 PEAK_TO_MEAN = 15 / 8
-"""Greatest over mean speed of a minimum-jerk motion."""
+"""Ratio of maximum to mean speed of a minimum-jerk motion."""
 TURN_RAD_S = 1.0
-"""Greatest turning speed, where turning takes longer than the way."""
+"""Maximum angular speed; it limits the motion if the rotation takes longer than the translation."""
 SHORTEST_S = 0.1
 
 
 def line_duration_s(start: Pose, end: Pose, *, speed_m_s: float) -> float:
-    """Return the travel time between two poses of one frame, at most `speed_m_s` and `TURN_RAD_S` fast."""
-    way_s = math.dist(start.xyz, end.xyz) * PEAK_TO_MEAN / speed_m_s
-    turn_s = _angle_rad(start, end) * PEAK_TO_MEAN / TURN_RAD_S
-    return max(way_s, turn_s, SHORTEST_S)
+    """Return the travel time between two poses of one frame, limited by `speed_m_s` and `TURN_RAD_S`."""
+    translation_s = math.dist(start.xyz, end.xyz) * PEAK_TO_MEAN / speed_m_s
+    rotation_s = _angle_rad(start, end) * PEAK_TO_MEAN / TURN_RAD_S
+    return max(translation_s, rotation_s, SHORTEST_S)
 
 
 def _angle_rad(start: Pose, end: Pose) -> float:

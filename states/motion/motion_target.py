@@ -1,6 +1,6 @@
-"""Where a motion goes: given in the behavior, or read from the store when the state runs.
+"""Target of a motion: given in the behavior, or read from the store when the state runs.
 
-Because an entry is read at run time, overwriting it changes the motion and not the behavior.
+An entry is read at run time: overwriting it changes the motion without changing the behavior.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ RobotName = Annotated[
     str, Meta(min_length=1, description="The arm that moves", extra_json_schema={"cell_name": "robot"})
 ]
 Offset = Annotated[
-    Vector3, Meta(description="Added to the target, along the axes of the world", extra_json_schema={"unit": "m"})
+    Vector3, Meta(description="Offset added to the target, along the world axes", extra_json_schema={"unit": "m"})
 ]
 NO_OFFSET: Vector3 = (0.0, 0.0, 0.0)
 RetractDistance = Annotated[
@@ -29,7 +29,7 @@ RetractDistance = Annotated[
     Meta(
         ge=0,
         le=1,
-        description="How far retracted_pose the target, against the z axis that the tool has there",
+        description="Retract distance from the target, along the negative z axis of the tool at the target",
         extra_json_schema={"unit": "m"},
     ),
 ]
@@ -51,7 +51,7 @@ JointTarget = (
 
 
 class PoseTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pose of the tool centre point, metres and x y z w in `frame`; or the entry of kind `pose` of a name."""
+    """A pose of the tool centre point in `frame`, in metres and as a quaternion x y z w; or a `pose` entry by name."""
 
     entry: Annotated[str, Meta(description="Name of the entry in the store", extra_json_schema={"entry": "pose"})] = ""
     xyz: Annotated[Vector3, Meta(extra_json_schema={"unit": "m"})] | None = None
@@ -64,26 +64,26 @@ class PoseTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class ShownPoseTarget(PoseTarget, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A pose that may be given in the frame of any body that the cell shows, such as a part or a link of an arm."""
+    """A pose in the frame of any body of the cell, such as a part or a link of an arm."""
 
     frame: Annotated[str, Meta(extra_json_schema={"cell_name": "frame"})] = "world"
 
 
 def joints_label(target: JointTarget) -> str:
-    """Name a joint target in a message."""
+    """Return the name of a joint target for a message."""
     if isinstance(target, EntryTarget):
         return f"joints entry {target.entry}"
     return f"joints ({', '.join(f'{angle:.3g}' for angle in target)})"
 
 
 def pose_label(target: PoseTarget | None, offset_m: Vector3) -> str:
-    """Name a pose target and its offset in a message; None is where the arm is."""
-    shift = "" if offset_m == NO_OFFSET else f" {_written(offset_m)} off"
+    """Return the name of a pose target and its offset for a message; None means the start pose of the motion."""
+    shift = "" if offset_m == NO_OFFSET else f" offset by {_format_xyz(offset_m)}"
     if target is None:
-        return f"the place{shift} where it was"
+        return f"its start pose{shift}"
     if target.entry:
         return f"pose entry {target.entry}{shift}"
-    return f"pose {_written(target.xyz or NO_OFFSET)}{shift}"
+    return f"pose {_format_xyz(target.xyz or NO_OFFSET)}{shift}"
 
 
 async def resolve_joints(ctx: Context, target: JointTarget) -> tuple[float, ...]:
@@ -99,7 +99,7 @@ async def resolve_joints(ctx: Context, target: JointTarget) -> tuple[float, ...]
 
 
 async def resolve_pose(ctx: Context, target: PoseTarget, offset_m: Vector3) -> Pose:
-    """Return the pose of a target, moved by `offset_m` in the world frame.
+    """Return the pose of a target, translated by `offset_m` in the world frame.
 
     Raises:
         EntryNotFound: the store has no such entry of kind `pose`.
@@ -113,23 +113,27 @@ async def resolve_pose(ctx: Context, target: PoseTarget, offset_m: Vector3) -> P
 
 
 def retracted_pose(pose: Pose, back_m: float) -> Pose:
-    """Move a pose of the tool against its own z axis."""
+    """Return a tool pose translated by `back_m` along its own negative z axis."""
     return translate_pose(pose, rotate_vector(pose.xyzw, (0.0, 0.0, -back_m))) if back_m else pose
 
 
 def offset_pose(pose: Pose, offset_m: Vector3, *, where: str) -> Pose:
-    """Move a pose along the axes of the world."""
+    """Return a pose translated along the world axes.
+
+    Raises:
+        StateError: the pose is given in another frame than the world.
+    """
     if offset_m == NO_OFFSET:
         return pose
     if pose.frame != "world":
         raise StateError(
-            f"`offset_m` is along the world's axes, but the target is given in frame {pose.frame}",
+            f"`offset_m` is along the world axes, but the target is given in frame {pose.frame}",
             where=where,
-            hint="give the target in the world frame, or leave the offset out",
+            hint="give the target in the world frame, or omit the offset",
         )
     x, y, z = (value + shift for value, shift in zip(pose.xyz, offset_m, strict=True))
     return Pose(xyz=(x, y, z), xyzw=pose.xyzw, frame=pose.frame)
 
 
-def _written(xyz_m: Vector3) -> str:
+def _format_xyz(xyz_m: Vector3) -> str:
     return f"({', '.join(f'{value:.3f}' for value in xyz_m)}) m"

@@ -1,4 +1,4 @@
-"""How states that move an arm are undone: back to the configuration in which their motion began."""
+"""Undo of states that move an arm: the arm returns to the start configuration of the motion."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ MotionResult = JointMotionResult | CartMotionResult
 
 
 def finished_motions(done: ActivationRecord, goal: type[Action[Any, Any]]) -> Iterator[MotionResult]:
-    """Go through the motions of an activation, the newest first.
+    """Yield the motions of an activation, newest first.
 
     Raises:
-        StateError: the events do not tell where one began.
+        StateError: the start configuration of a motion was not recorded.
     """
     for _, result in accepted_goals(done, goal):
         if not isinstance(result, MotionResult) or not result.start:
@@ -30,7 +30,7 @@ def finished_motions(done: ActivationRecord, goal: type[Action[Any, Any]]) -> It
 
 
 def motion_undo_problem(done: ActivationRecord, goal: type[Action[Any, Any]]) -> str:
-    """Return why the motions of an activation cannot be undone; empty where they can."""
+    """Return why the motions of an activation cannot be undone; empty if they can."""
     try:
         for _ in finished_motions(done, goal):
             pass
@@ -42,25 +42,25 @@ def motion_undo_problem(done: ActivationRecord, goal: type[Action[Any, Any]]) ->
 async def move_joints_back(
     ctx: Context, done: ActivationRecord, goal: type[Action[Any, Any]], *, robot: str, speed: float
 ) -> None:
-    """Move an arm to where the motions of an activation began, in joint space.
+    """Move an arm in joint space to the start of the motions of an activation.
 
     Raises:
-        StateError: it did not get there; the cause is the device's.
+        StateError: the arm did not reach it; the cause is the device's.
     """
     for motion in finished_motions(done, goal):
         await perform_undo_motion(ctx, JointTrapVel(joints=motion.start, speed=speed), robot=robot)
 
 
 async def perform_undo_motion(ctx: Context, goal: Action[Any, Any], *, robot: str) -> None:
-    """Carry out a motion that must succeed.
+    """Perform a motion that must succeed.
 
     Raises:
-        StateError: it did not; says why.
+        StateError: the motion failed; the message holds the device's cause.
     """
     end = await ctx.perform(goal, to=robot)
     if end.status == "succeeded":
         return
-    what = f"{robot} did not get back to where its motion began"
+    what = f"{robot} did not return to the start of its motion"
     cause = goal_cause(what, goal, end, to=robot, where=ctx.path, kind="undo")
     below = f": {cause.because.message}" if cause.because is not None else ""
     raise StateError(f"{cause.message}{below}", where=ctx.path)

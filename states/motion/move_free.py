@@ -1,4 +1,4 @@
-"""motion.MoveFree: moves an arm around whatever stands in its way."""
+"""motion.MoveFree: moves an arm along a collision-free path."""
 
 from __future__ import annotations
 
@@ -32,17 +32,19 @@ from states.motion.static_target import static_joint_target, static_pose_target
 
 Start = Annotated[
     MotionStart | None,
-    Meta(description="A taught motion to whose start to go: `{dmp: name}`, `{trajectory: name}` …"),
+    Meta(
+        description="Taught motion whose start is the target: `{dmp: name}`, `{cart_dmp: name}`, `{trajectory: name}`"
+    ),
 ]
 
 
 class MoveFree(State, frozen=True, kw_only=True):
-    """Move to `joints` or `pose` along a way that touches nothing of the planning scene and nothing the cameras see.
+    """Plan a path free of collisions with the planning scene and what the cameras see, and execute it.
 
-    Or to where a taught motion begins (`start_of`); with `back_m` only to in front of the target.
+    The target is `joints`, `pose` or the start of a taught motion (`start_of`); `back_m` stops before the target.
 
-    What comes into the way is gone around, or waited for: `blocked` after `patience_s` of that. `no_way`
-    when start, goal or limits leave none; then nothing has moved. All but `reached` write the `reason`.
+    If an obstacle blocks the path, the arm replans or waits: `blocked` after `patience_s` of waiting. `no_way` when
+    start, goal or limits allow no path; the arm has not moved then. All outcomes but `reached` write the `reason`.
     """
 
     state_name: ClassVar[str] = "motion.MoveFree"
@@ -78,7 +80,7 @@ class MoveFree(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The target, but where it lies in front of joints."""
+        """The target; nothing for a retracted joint target, which depends on the arm's kinematics."""
         if self.joints is not None:
             return () if self.back_m else static_joint_target(self.robot, self.joints, stored, parameter="joints")
         return static_pose_target(
@@ -92,7 +94,7 @@ class MoveFree(State, frozen=True, kw_only=True):
         )
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         options = planning.PlanOptions(
             planner=self.planner,
             time_s=self.time_s,
@@ -104,14 +106,14 @@ class MoveFree(State, frozen=True, kw_only=True):
         try:
             target = await self._target(ctx)
         except SkillFailed as error:
-            cause = wrap_cause(self._missed(), cause_of(error), where=ctx.path, kind=self.state_name)
+            cause = wrap_cause(self._failure(), cause_of(error), where=ctx.path, kind=self.state_name)
             return Outcome("no_way", {"reason": inner_cause_text(cause)}, cause)
         adaptation = planning.Adaptation(watch=self.watch, patience_s=self.patience_s)
         goal = planning.MoveFree(target=target, options=options, adaptation=adaptation)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
-        cause = goal_cause(self._missed(), goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        cause = goal_cause(self._failure(), goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         name = "no_way" if end.status == "rejected" else "blocked" if is_blocked_timeout(end) else "failed"
         return Outcome(name, {"reason": inner_cause_text(cause)}, cause)
 
@@ -122,7 +124,7 @@ class MoveFree(State, frozen=True, kw_only=True):
             target = await resolve_target(ctx, self.joints, self.pose, self.offset_m, self.match)
         return await retracted_target(ctx, self.robot, target, self.back_m) if self.back_m else target
 
-    def _missed(self) -> str:
+    def _failure(self) -> str:
         start = self.start_of
         where = start.label if start is not None else target_label(self.joints, self.pose, self.offset_m)
         back = f"{self.back_m:.3g} m before " if self.back_m else ""

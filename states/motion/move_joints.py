@@ -16,7 +16,7 @@ from states.motion.static_target import static_joint_target
 
 
 class MoveJoints(State, frozen=True, kw_only=True):
-    """Move an arm in joint space, all joints in phase, with a trapezoidal velocity profile."""
+    """Move an arm in joint space, all joints synchronized, with a trapezoidal velocity profile."""
 
     state_name: ClassVar[str] = "motion.MoveJoints"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
@@ -35,7 +35,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
         return static_joint_target(self.robot, self.target, stored, parameter="target")
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         goal = JointTrapVel(joints=await resolve_joints(ctx, self.target), speed=self.speed)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
@@ -45,9 +45,9 @@ class MoveJoints(State, frozen=True, kw_only=True):
         return Outcome("failed", cause=cause)
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """Where the motion began has to be known."""
+        """Undo needs the recorded start configuration."""
         return motion_undo_problem(done, JointTrapVel)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Move back to the joints at which the motion began, at the same speed."""
+        """Move back to the start configuration at the same speed."""
         await move_joints_back(ctx, done, JointTrapVel, robot=self.robot, speed=self.speed)

@@ -34,8 +34,8 @@ from states.motion.static_target import static_joint_target, static_pose_target
 class MoveLinear(State, frozen=True, kw_only=True):
     """Move the tool centre point on a straight line, with minimum jerk and SLERP.
 
-    To the pose `target`, or to where the tool is with `joints`. Without either the line starts where the tool is and
-    goes by `offset_m`: `[0, 0, 0.1]` lifts; or by `back_m`.
+    The goal is the pose `target`, or the pose of the tool at `joints`. Without either, the motion is relative to the
+    current pose: by `offset_m` (`[0, 0, 0.1]` lifts) or by `back_m`.
     """
 
     state_name: ClassVar[str] = "motion.MoveLinear"
@@ -66,7 +66,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The end of the line, where it does not go from joints, or from where the arm is."""
+        """The end of the line, if it does not depend on the arm's kinematics or its current pose."""
         if self.joints is not None and self.offset_m == NO_OFFSET and not self.back_m:
             return static_joint_target(self.robot, self.joints, stored, parameter="joints")
         return static_pose_target(
@@ -74,7 +74,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
         )
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         goal = await self._goal(ctx)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
@@ -84,11 +84,11 @@ class MoveLinear(State, frozen=True, kw_only=True):
         return Outcome("failed", cause=cause)
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """Where the line began has to be known."""
+        """Undo needs the recorded start configuration."""
         return motion_undo_problem(done, CartLinTask)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Move back on a straight line to where the motion began, in as much time."""
+        """Move back on a straight line to the start of the motion, in the same time."""
         for motion in finished_motions(done, CartLinTask):
             pose = await ctx.call(ForwardKinematics(joints=motion.start), to=self.robot)
             await perform_undo_motion(
@@ -96,11 +96,11 @@ class MoveLinear(State, frozen=True, kw_only=True):
             )
 
     def _time_back_s(self, motion: MotionResult, pose: Pose) -> float:
-        """Return the time that the line took, or was given; a pause in it does not count."""
+        """Return the duration of the line, measured or given; pauses do not count."""
         if self.duration_s is not None:
             return min(self.duration_s, max(motion.duration_s, SHORTEST_S))
-        here = motion.pose if isinstance(motion, CartMotionResult) else pose
-        return line_duration_s(here, pose, speed_m_s=self.speed_m_s or 1.0)
+        end = motion.pose if isinstance(motion, CartMotionResult) else pose
+        return line_duration_s(end, pose, speed_m_s=self.speed_m_s or 1.0)
 
     def _label(self) -> str:
         back = f"{self.back_m:.3g} m before " if self.back_m else ""
@@ -114,17 +114,17 @@ class MoveLinear(State, frozen=True, kw_only=True):
         if self.target is not None:
             pose = await resolve_pose(ctx, self.target, self.offset_m)
         else:
-            there = start
+            pose = start
             if self.joints is not None:
-                there = await ctx.call(ForwardKinematics(joints=await resolve_joints(ctx, self.joints)), to=self.robot)
-            pose = offset_pose(there, self.offset_m, where=ctx.path)
+                pose = await ctx.call(ForwardKinematics(joints=await resolve_joints(ctx, self.joints)), to=self.robot)
+            pose = offset_pose(pose, self.offset_m, where=ctx.path)
         pose = retracted_pose(pose, self.back_m)
         return CartLinTask(pose=pose, duration_s=self.duration_s or self._travel_time_s(start, pose, ctx.path))
 
     def _travel_time_s(self, start: Pose, end: Pose, where: str) -> float:
         if start.frame != end.frame:
             raise StateError(
-                f"the speed to a target in frame {end.frame} cannot be kept: the tool is known in {start.frame}",
+                f"`speed_m_s` needs target and tool in one frame, not {end.frame} and {start.frame}",
                 where=where,
                 hint="give `duration_s` instead of `speed_m_s`",
             )

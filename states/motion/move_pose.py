@@ -1,4 +1,4 @@
-"""motion.MovePose: moves the tool of an arm to a pose by a joint-space profile."""
+"""motion.MovePose: moves the tool of an arm to a pose by joint interpolation."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from states.motion.static_target import static_pose_target
 
 
 class MovePose(State, frozen=True, kw_only=True):
-    """Move the tool centre point to a pose; the path is straight in joint space, not in the cell.
+    """Move the tool centre point to a pose; the path is straight in joint space, not in Cartesian space.
 
-    Arms of fewer than six joints reach hardly any whole pose: with `match: position` or `axis` the rest comes as it
-    comes.
+    Arms with fewer than six joints reach few full poses: `match: position` or `axis` leaves the remaining degrees of
+    freedom unconstrained.
     """
 
     state_name: ClassVar[str] = "motion.MovePose"
@@ -43,7 +43,7 @@ class MovePose(State, frozen=True, kw_only=True):
         )
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         pose = await resolve_pose(ctx, self.target, self.offset_m)
         goal = CartTrapVel(pose=pose, speed=self.speed, match=self.match)
         end = await ctx.perform(goal, to=self.robot)
@@ -54,9 +54,9 @@ class MovePose(State, frozen=True, kw_only=True):
         return Outcome("failed", cause=cause)
 
     def cannot_undo(self, done: ActivationRecord) -> str:
-        """Where the motion began has to be known."""
+        """Undo needs the recorded start configuration."""
         return motion_undo_problem(done, CartTrapVel)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Move back to the joints at which the motion began, at the same speed."""
+        """Move back to the start configuration at the same speed."""
         await move_joints_back(ctx, done, CartTrapVel, robot=self.robot, speed=self.speed)

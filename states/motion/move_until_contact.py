@@ -1,4 +1,4 @@
-"""motion.MoveUntilContact: moves the tool straight on until it touches something."""
+"""motion.MoveUntilContact: moves the tool on a straight line until contact."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from states.motion.motion_target import RobotName
 
 
 class MoveUntilContact(State, frozen=True, kw_only=True):
-    """Move the tool along `direction` until the environment pushes back with `force_n`.
+    """Move the tool along `direction` until the contact force reaches `force_n`.
 
-    `no_contact` when nothing was met on the whole way. Writes the way made and the force at its end.
+    `no_contact` when there is no contact within `distance_m`. Writes the travelled distance and the force at its end.
     """
 
     state_name: ClassVar[str] = "motion.MoveUntilContact"
@@ -31,7 +31,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("travelled_m", "force_n")}
 
     robot: RobotName
-    direction: Annotated[Vector3, Meta(description="Which way; `[0, 0, -1]` is down in the world")]
+    direction: Annotated[Vector3, Meta(description="Direction of motion; `[0, 0, -1]` is down in the world frame")]
     distance_m: MaxDistance
     frame: Axes = "world"
     speed_m_s: ApproachSpeed = 0.02
@@ -42,7 +42,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Send the goal and judge its end."""
+        """Send the goal and return the outcome of its end."""
         goal = contact.MoveUntilContact(
             direction=self.direction,
             distance_m=self.distance_m,
@@ -51,7 +51,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
             force_n=self.force_n,
         )
         end = await ctx.perform(goal, to=self.robot)
-        what = f"{self.robot} met nothing within {self.distance_m:.3f} m"
+        what = f"{self.robot} detected no contact within {self.distance_m:.3f} m"
         if end.status != "succeeded" or end.result is None:
             cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
             return Outcome("failed", cause=cause)
@@ -59,7 +59,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
         if end.result.contact:
             return Outcome("contact", outputs)
         because = Cause(
-            message=f"the force against the way was {end.result.force_n:.1f} N at its end, {self.force_n:.1f} N count",
+            message=f"the contact force at the end was {end.result.force_n:.1f} N, threshold {self.force_n:.1f} N",
             where=f"{self.robot}/{goal.skill_name()}",
         )
         return Outcome("no_contact", outputs, wrap_cause(what, because, where=ctx.path, kind=self.state_name))

@@ -1,4 +1,4 @@
-"""motion.PlanMotion: finds a way that touches nothing and shows it, without going it."""
+"""motion.PlanMotion: plans a collision-free path and shows it, without executing it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from states.motion.planned_motion_target import GoalJoints, GoalPose, Seed, requ
 from states.motion.static_target import static_joint_target, static_pose_target
 
 _REFUSED = ("GoalRejected", "SkillFailed")
-"""The planner's answer; everything else is that it could not be asked."""
+"""Kinds of cause that mean that the planner found no path; any other kind is a failed request."""
 
 
 class PlanMotion(State, frozen=True, kw_only=True):
-    """Find a way to `joints` or `pose` that touches nothing of the planning scene, and show it in the 3D view.
+    """Plan a path to `joints` or `pose` free of collisions with the planning scene, and show it in the 3D view.
 
-    The arm does not move. Writes the way as `plan`, for `motion.ExecutePlan`; `no_way` writes why there is
-    none as `reason`: what is touched at the start or the goal, or that the search ended without one.
+    The arm does not move. Writes the path as `plan`, for `motion.ExecutePlan`. `no_way` writes the `reason`: the
+    collision at the start or the goal, or that the search ended without a path.
     """
 
     state_name: ClassVar[str] = "motion.PlanMotion"
@@ -62,7 +62,7 @@ class PlanMotion(State, frozen=True, kw_only=True):
         )
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the planner and judge its answer."""
+        """Send the request to the planner and return the outcome of its result."""
         options = planning.PlanOptions(
             planner=self.planner,
             time_s=self.time_s,
@@ -76,7 +76,7 @@ class PlanMotion(State, frozen=True, kw_only=True):
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded" and end.result is not None:
             return Outcome("planned", {"plan": end.result})
-        what = f"no way of {self.robot} to {target_label(self.joints, self.pose, self.offset_m)} was planned"
+        what = f"no path of {self.robot} to {target_label(self.joints, self.pose, self.offset_m)} was planned"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         refused = end.cause is not None and end.cause.kind in _REFUSED
         return Outcome("no_way" if refused else "failed", {"reason": inner_cause_text(cause)}, cause)

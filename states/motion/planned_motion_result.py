@@ -1,4 +1,4 @@
-"""Judges how a collision-free motion ended, in the words of its states."""
+"""Interprets the end of a collision-free motion for its states."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from engine.state import ActionEnd
 
 
 def inner_cause_text(cause: Cause) -> str:
-    """Return what lies below the outermost link of a chain in one line, what was measured first."""
-    below = [link.message for link in links_from_root(cause)[:-1]]
-    return ", so ".join(below) or cause.message
+    """Return the links below the outermost link of a chain in one line, root cause first."""
+    inner = [link.message for link in links_from_root(cause)[:-1]]
+    return ", so ".join(inner) or cause.message
 
 
 def is_blocked_timeout(end: ActionEnd[FreeMotionResult]) -> bool:
-    """Tell whether a motion was given up because its way did not get free in time."""
+    """Tell whether a motion was aborted because its path stayed blocked until the timeout."""
     return end.status == "aborted" and end.result is not None and bool(end.result.blocked)

@@ -1,4 +1,4 @@
-"""Where a collision-free motion goes: joints or a pose, given in the behavior or read when the state runs."""
+"""Target of a collision-free motion: joints or a pose, given in the behavior or read when the state runs."""
 
 from __future__ import annotations
 
@@ -24,17 +24,15 @@ GoalJoints = Annotated[JointTarget | None, Meta(description="Joint angles in rad
 GoalPose = Annotated[
     PoseTarget | None, Meta(description="Pose of the tool centre point: `{xyz, xyzw, frame}`, or `{entry: name}`")
 ]
-Seed = Annotated[int, Meta(description="Seed of the search: the same one finds the same way")]
+Seed = Annotated[int, Meta(description="Seed of the search; the same seed gives the same path")]
 WatchPath = Annotated[
     bool,
-    Meta(
-        description="Re-check the remaining path against the planning scene in motion; without it obstacles are ignored"
-    ),
+    Meta(description="Check the remaining path during the motion; without it, new obstacles are ignored"),
 ]
 
 
 def require_one(joints: JointTarget | None, pose: PoseTarget | None) -> None:
-    """Refuse parameters that name no target, or two.
+    """Require exactly one target.
 
     Raises:
         ValueError: both or none are given.
@@ -44,14 +42,14 @@ def require_one(joints: JointTarget | None, pose: PoseTarget | None) -> None:
 
 
 def target_label(joints: JointTarget | None, pose: PoseTarget | None, offset_m: Offset) -> str:
-    """Name the target in a message."""
+    """Return the name of the target for a message."""
     return joints_label(joints) if joints is not None else pose_label(pose, offset_m)
 
 
 async def resolve_target(
     ctx: Context, joints: JointTarget | None, pose: PoseTarget | None, offset_m: Offset, match: PoseMatch
 ) -> MotionTarget:
-    """Return the target as it is at this moment.
+    """Return the current value of the target.
 
     Raises:
         EntryNotFound: the store has no such entry.
@@ -63,13 +61,13 @@ async def resolve_target(
 
 
 async def retracted_target(ctx: Context, robot: str, target: MotionTarget, back_m: float) -> MotionTarget:
-    """Return where the tool is `back_m` before a target; of joints, with the arm standing as it does there.
+    """Return the target retracted by `back_m`; a joint target keeps its arm configuration.
 
     Raises:
-        SkillFailed: the arm does not reach there.
+        SkillFailed: the arm does not reach the retracted pose.
     """
     if target.pose is not None:
         return MotionTarget(pose=retracted_pose(target.pose, back_m), match=target.match)
-    there = retracted_pose(await ctx.call(ForwardKinematics(joints=target.joints), to=robot), back_m)
-    found = await ctx.call(InverseKinematics(pose=there, seed=target.joints), to=robot)
-    return MotionTarget(joints=found.joints)
+    retracted = retracted_pose(await ctx.call(ForwardKinematics(joints=target.joints), to=robot), back_m)
+    solution = await ctx.call(InverseKinematics(pose=retracted, seed=target.joints), to=robot)
+    return MotionTarget(joints=solution.joints)

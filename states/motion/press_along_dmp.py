@@ -1,4 +1,4 @@
-"""motion.PressAlongDmp: moves the tool along a Cartesian movement primitive while it presses as wanted, and learns."""
+"""motion.PressAlongDmp: moves the tool along a Cartesian movement primitive under force control, and learns."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _KIND = "cart_offsets"
 class PressAlongDmp(State, frozen=True, kw_only=True):
     """Move the tool along a Cartesian movement primitive and control the force on it by admittance.
 
-    What a pass learns is kept as the entry `learned` of kind `cart_offsets`, and used by the next one.
+    Each pass writes the learned offsets to the entry `learned` of kind `cart_offsets`; the next pass starts from them.
     """
 
     state_name: ClassVar[str] = "motion.PressAlongDmp"
@@ -39,13 +39,17 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     dmp: Annotated[CartDmpEntry, Meta(description="`{entry: name}` of kind `cart_dmp`")]
     force_n: Annotated[
         Vector3,
-        Meta(description="Wanted force of the environment on the tool, task frame", extra_json_schema={"unit": "N"}),
+        Meta(description="Desired force of the environment on the tool, task frame", extra_json_schema={"unit": "N"}),
     ]
-    torque_nm: Annotated[Vector3, Meta(description="Wanted torque", extra_json_schema={"unit": "N*m"})] = (0, 0, 0)
-    compliance: Annotated[Compliance, Meta(description="How forces deviate the path, and along which axes")] = (
+    torque_nm: Annotated[Vector3, Meta(description="Desired torque, task frame", extra_json_schema={"unit": "N*m"})] = (
+        0,
+        0,
+        0,
+    )
+    compliance: Annotated[Compliance, Meta(description="Compliance of the path to force errors, per axis")] = (
         Compliance()
     )
-    slow_per_n: Annotated[float, Meta(ge=0, description="How much a newton of force error slows the motion")] = 0.0
+    slow_per_n: Annotated[float, Meta(ge=0, description="Slow-down of the motion per newton of force error")] = 0.0
     learned: Annotated[str, Meta(description="Entry of kind `cart_offsets` to read and write; empty for none")] = ""
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
@@ -55,7 +59,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Go to the start if asked to, press along the primitive, keep what was learned, and judge the end."""
+        """Move to the start if `approach_speed` is given, press along the primitive, and store the learned offsets."""
         goal = await self._goal(ctx)
         if self.approach_speed is not None:
             approach = CartTrapVel(pose=goal.dmp.start, speed=self.approach_speed)

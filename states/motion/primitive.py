@@ -1,4 +1,4 @@
-"""Which movement primitive a motion follows: a named entry, read when the state runs, slowed down and approached."""
+"""Movement primitive of a motion: a named entry, read when the state runs, with time scale and approach."""
 
 from __future__ import annotations
 
@@ -17,16 +17,19 @@ from engine.state import Context
 from engine.store.entry_kinds import decode_entry
 
 TimeScale = Annotated[
-    float, Meta(gt=0, le=100, description="How many times the primitive's own duration tau the motion takes")
+    float, Meta(gt=0, le=100, description="Duration of the motion as a multiple of the primitive's duration tau")
 ]
 ApproachSpeed = Annotated[
     Speed | None,
-    Meta(description="First go to the primitive's start at this share of the joint speeds; none to refuse"),
+    Meta(
+        description="Fraction of the joint speed limits for the motion to the start; "
+        "without it, the arm must stand at the start"
+    ),
 ]
 
 
 class JointDmpEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The joint DMP that the named entry holds when the state runs."""
+    """The joint DMP in the named entry, read when the state runs."""
 
     entry: Annotated[
         str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "dmp"})
@@ -34,7 +37,7 @@ class JointDmpEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class CartDmpEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The Cartesian DMP that the named entry holds when the state runs."""
+    """The Cartesian DMP in the named entry, read when the state runs."""
 
     entry: Annotated[
         str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "cart_dmp"})
@@ -42,7 +45,7 @@ class CartDmpEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class MotionStart(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where the motion begins that the named entry holds when the state runs: one of these kinds."""
+    """The start of the motion in the named entry, read when the state runs; give exactly one kind."""
 
     dmp: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"entry": "dmp"})] = ""
     cart_dmp: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"entry": "cart_dmp"})] = ""
@@ -54,13 +57,13 @@ class MotionStart(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     @property
     def label(self) -> str:
-        """Its name in a message."""
+        """The name of the start for a message."""
         kind, name = next((kind, name) for kind, name in msgspec.structs.asdict(self).items() if name)
         return f"the start of {kind} entry {name}"
 
 
 class RecordingEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The recorded motion that the named entry holds when the state runs."""
+    """The recorded motion in the named entry, read when the state runs."""
 
     entry: Annotated[
         str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "trajectory"})
@@ -68,7 +71,7 @@ class RecordingEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
 
 
 async def resolve_start(ctx: Context, start: MotionStart) -> MotionTarget:
-    """Return where a taught motion begins.
+    """Return the start of a taught motion.
 
     Raises:
         EntryNotFound: the store has no such entry.
@@ -80,29 +83,28 @@ async def resolve_start(ctx: Context, start: MotionStart) -> MotionTarget:
             pose=(await resolve_cart_dmp(ctx, CartDmpEntry(entry=start.cart_dmp), time_scale=1.0)).start
         )
     record = await ctx.call(ReadEntry(kind="trajectory", name=start.trajectory), to="store")
-    led = decode_entry(record, Trajectory)
-    if led.joints:
-        return MotionTarget(joints=led.joints[0])
-    x, y, z, *turn = led.poses[0]
-    qx, qy, qz, qw = turn
-    return MotionTarget(pose=Pose(xyz=(x, y, z), xyzw=(qx, qy, qz, qw), frame=led.frame))
+    trajectory = decode_entry(record, Trajectory)
+    if trajectory.joints:
+        return MotionTarget(joints=trajectory.joints[0])
+    x, y, z, qx, qy, qz, qw = trajectory.poses[0]
+    return MotionTarget(pose=Pose(xyz=(x, y, z), xyzw=(qx, qy, qz, qw), frame=trajectory.frame))
 
 
 async def resolve_joint_dmp(ctx: Context, dmp: JointDmpEntry, *, time_scale: float) -> JointDmp:
-    """Return the primitive of an entry of kind `dmp`, `time_scale` times as long.
+    """Return the primitive of an entry of kind `dmp`, its duration multiplied by `time_scale`.
 
     Raises:
         EntryNotFound: the store has no such entry.
     """
-    found = decode_entry(await ctx.call(ReadEntry(kind="dmp", name=dmp.entry), to="store"), JointDmp)
-    return msgspec.structs.replace(found, tau=found.tau * time_scale)
+    primitive = decode_entry(await ctx.call(ReadEntry(kind="dmp", name=dmp.entry), to="store"), JointDmp)
+    return msgspec.structs.replace(primitive, tau=primitive.tau * time_scale)
 
 
 async def resolve_cart_dmp(ctx: Context, dmp: CartDmpEntry, *, time_scale: float) -> CartDmp:
-    """Return the primitive of an entry of kind `cart_dmp`, `time_scale` times as long.
+    """Return the primitive of an entry of kind `cart_dmp`, its duration multiplied by `time_scale`.
 
     Raises:
         EntryNotFound: the store has no such entry.
     """
-    found = decode_entry(await ctx.call(ReadEntry(kind="cart_dmp", name=dmp.entry), to="store"), CartDmp)
-    return msgspec.structs.replace(found, tau=found.tau * time_scale)
+    primitive = decode_entry(await ctx.call(ReadEntry(kind="cart_dmp", name=dmp.entry), to="store"), CartDmp)
+    return msgspec.structs.replace(primitive, tau=primitive.tau * time_scale)

@@ -1,4 +1,4 @@
-"""motion.Recover: lets an arm that has stopped by itself go on."""
+"""motion.Recover: recovers an arm from a reflex stop."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.motion.motion_target import RobotName
 
 
 class Recover(State, frozen=True, kw_only=True):
-    """End the reflex of an arm: it holds itself where it stands and takes goals again. Without one nothing happens."""
+    """Recover an arm from its reflex stop: it holds its position and accepts goals. No effect without a reflex."""
 
     state_name: ClassVar[str] = "motion.Recover"
     outcomes: ClassVar[tuple[str, ...]] = ("recovered", "failed")
@@ -24,7 +24,7 @@ class Recover(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm."""
+        """Call the service of the arm."""
         what = f"{self.robot} did not recover"
         return await call_or_fail(
             ctx, RecoverFromError(), to=self.robot, done="recovered", what=what, kind=self.state_name

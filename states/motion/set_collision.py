@@ -1,4 +1,4 @@
-"""motion.SetCollision: says what an arm takes for a collision."""
+"""motion.SetCollision: sets the collision thresholds of an arm."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ Force = Annotated[float, Meta(gt=0, description="External force at the tool", ex
 
 
 class SetCollision(State, frozen=True, kw_only=True):
-    """Let the arm stop by itself at more external torque or force than this; without either it never does."""
+    """Set the external torque or force above which the arm stops; without either, it never stops on contact."""
 
     state_name: ClassVar[str] = "motion.SetCollision"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 
     robot: RobotName
-    torque_nm: Annotated[JointRow, Meta(description="External torque in N m, one a joint; `[]` for never")] = ()
+    torque_nm: Annotated[JointRow, Meta(description="External torque in N m, one per joint; `[]` disables it")] = ()
     force_n: Force | None = None
 
     def resources(self) -> tuple[str, ...]:
@@ -30,7 +30,7 @@ class SetCollision(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm."""
+        """Call the service of the arm."""
         request = SetCollisionBehavior(torque_nm=self.torque_nm, force_n=self.force_n)
-        what = f"{self.robot} did not take other collision thresholds"
+        what = f"{self.robot} did not set its collision thresholds"
         return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

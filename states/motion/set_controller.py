@@ -1,4 +1,4 @@
-"""motion.SetController: chooses the law that holds an arm at its set point."""
+"""motion.SetController: selects the control law that holds an arm at its set point."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from states.motion.motion_target import RobotName
 
 
 class SetController(State, frozen=True, kw_only=True):
-    """Hold the arm by joint impedance or by Cartesian impedance from now on; it does not jump."""
+    """Switch the arm to joint impedance or Cartesian impedance control; the switch is bumpless."""
 
     state_name: ClassVar[str] = "motion.SetController"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 
     robot: RobotName
-    controller: Annotated[ControllerName, Meta(description="The control law")]
+    controller: Annotated[ControllerName, Meta(description="Control law")]
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm."""
+        """Call the service of the arm."""
         request = arm_control.SetController(controller=self.controller)
-        what = f"{self.robot} is not held by {self.controller.replace('_', ' ')}"
+        what = f"{self.robot} did not switch to {self.controller.replace('_', ' ')}"
         return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

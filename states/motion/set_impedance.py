@@ -1,4 +1,4 @@
-"""motion.SetImpedance: makes an arm stiffer or softer, its joints or its tool."""
+"""motion.SetImpedance: sets the stiffness of the joints or the tool of an arm."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from states.motion.motion_target import RobotName
 
 
 class SetImpedance(State, frozen=True, kw_only=True):
-    """Set the stiffness of the joints (`joints`), or of the tool (`tool`); damping follows from it.
+    """Set the stiffness of the joints (`joints`) or of the tool (`tool`); the damping follows from it.
 
-    It takes effect while the controller of its kind is chosen, see `motion.SetController`.
+    It takes effect while the matching controller is active, see `motion.SetController`.
     """
 
     state_name: ClassVar[str] = "motion.SetImpedance"
@@ -31,8 +31,12 @@ class SetImpedance(State, frozen=True, kw_only=True):
     success: ClassVar[tuple[str, ...]] = ("set",)
 
     robot: RobotName
-    joints: Annotated[JointRow | None, Meta(description="N m/rad, one a joint; `[]` for the nominal ones")] = None
-    tool: Annotated[Six | None, Meta(description="N/m along x, y, z of the base, then N m/rad about them")] = None
+    joints: Annotated[
+        JointRow | None, Meta(description="Stiffness in N m/rad, one per joint; `[]` for the nominal values")
+    ] = None
+    tool: Annotated[
+        Six | None, Meta(description="Stiffness in N/m along x, y, z of the base, then in N m/rad about them")
+    ] = None
     damping_ratio: Damping = 1.0
 
     def __post_init__(self) -> None:
@@ -44,8 +48,8 @@ class SetImpedance(State, frozen=True, kw_only=True):
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm."""
-        what = f"{self.robot} did not take another stiffness"
+        """Call the service of the arm."""
+        what = f"{self.robot} did not set its stiffness"
         return await call_or_fail(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
 
     def _request(self) -> Service[ControlSettings]:

@@ -1,4 +1,4 @@
-"""motion.SetLoad: tells an arm what it carries."""
+"""motion.SetLoad: sets the payload of an arm."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from states.motion.motion_target import RobotName
 
 
 class SetLoad(State, frozen=True, kw_only=True):
-    """Let the arm compensate the weight of what its tool carries; 0 kg when it carries nothing any more."""
+    """Set the payload that the arm compensates; 0 kg for no payload."""
 
     state_name: ClassVar[str] = "motion.SetLoad"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
@@ -23,16 +23,18 @@ class SetLoad(State, frozen=True, kw_only=True):
 
     robot: RobotName
     mass_kg: Mass
-    com_m: Annotated[
-        Vector3, Meta(description="Centre of its mass in the tool link", extra_json_schema={"unit": "m"})
-    ] = (0.0, 0.0, 0.0)
+    com_m: Annotated[Vector3, Meta(description="Centre of mass in the tool link", extra_json_schema={"unit": "m"})] = (
+        0.0,
+        0.0,
+        0.0,
+    )
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm."""
+        """Call the service of the arm."""
         request = arm_control.SetLoad(mass_kg=self.mass_kg, com_m=self.com_m)
         what = f"{self.robot} does not compensate a load of {self.mass_kg:.2f} kg"
         return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

@@ -1,4 +1,4 @@
-"""motion.SetSpeed: slows all motions of an arm down, or lets them run at their own speed again."""
+"""motion.SetSpeed: sets the speed override of an arm."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.motion.motion_target import RobotName
 
 
 class SetSpeed(State, frozen=True, kw_only=True):
-    """Let all motions of the arm run at a share of their own speed from now on, the one under way included."""
+    """Set the speed override: all motions of the arm, the active one included, run at this fraction of their speed."""
 
     state_name: ClassVar[str] = "motion.SetSpeed"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
@@ -21,7 +21,7 @@ class SetSpeed(State, frozen=True, kw_only=True):
     share: Share
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the arm; it needs not be held by this branch."""
+        """Call the service of the arm; it needs no lease."""
         request = SetSpeedOverride(share=self.share)
-        what = f"{self.robot} does not run at {self.share:.0%} of its speed"
+        what = f"{self.robot} did not set its speed override to {self.share:.0%}"
         return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

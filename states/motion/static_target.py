@@ -1,4 +1,4 @@
-"""Where motions will take an arm, as far as the behavior and the seed of the store say it before a run."""
+"""Targets of motions that are known before a run, from the behavior and the seed of the store."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.motion.motion_target import NO_OFFSET, EntryTarget, JointTarget, Pos
 def static_joint_target(
     robot: str, target: JointTarget | None, stored: StoredTargets, *, parameter: str
 ) -> tuple[ArmTarget, ...]:
-    """Return the joint target that a state will have; nothing where it has none or it is not known yet."""
+    """Return the joint target of a state; nothing if there is none or it is not known before the run."""
     joints = stored.joints(target.entry) if isinstance(target, EntryTarget) else target
     return (ArmTarget(robot=robot, parameter=parameter, joints=joints),) if joints else ()
 
@@ -26,12 +26,12 @@ def static_pose_target(
     back_m: float = 0.0,
     match: PoseMatch = "pose",
 ) -> tuple[ArmTarget, ...]:
-    """Return the pose that a state will have for a target; nothing where it has none or it is not known yet."""
+    """Return the pose target of a state; nothing if there is none or it is not known before the run."""
     pose = _pose(target, stored)
     if pose is None or (offset_m != NO_OFFSET and pose.frame != "world"):
         return ()
-    there = retracted_pose(offset_pose(pose, offset_m, where=parameter), back_m)
-    return (ArmTarget(robot=robot, parameter=parameter, pose=there, match=match),)
+    retracted = retracted_pose(offset_pose(pose, offset_m, where=parameter), back_m)
+    return (ArmTarget(robot=robot, parameter=parameter, pose=retracted, match=match),)
 
 
 def _pose(target: PoseTarget | None, stored: StoredTargets) -> Pose | None:

@@ -1,1 +1,1 @@
-"""States that tell the planning scene what is in the way, what is carried and what may touch."""
+"""States that change the planning scene: obstacles, attached parts and allowed contacts."""

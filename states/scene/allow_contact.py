@@ -1,4 +1,4 @@
-"""scene.AllowContact: says whether two things may touch."""
+"""scene.AllowContact: allows or forbids contact between two bodies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from states.scene.scene_parameter_types import CELL, TouchingName
 
 
 class AllowContact(State, frozen=True, kw_only=True):
-    """Let two things touch from now on, or no more: an arm and a soft mat, a tool and what it works on."""
+    """Allow or forbid contact between two bodies, such as an arm and a soft mat, or a tool and its workpiece."""
 
     state_name: ClassVar[str] = "scene.AllowContact"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
@@ -21,10 +21,10 @@ class AllowContact(State, frozen=True, kw_only=True):
 
     first: TouchingName
     second: TouchingName
-    allowed: Annotated[bool, Meta(description="Whether they may touch")] = True
+    allowed: Annotated[bool, Meta(description="True to allow contact, false to forbid it")] = True
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
+        """Call the service of the cell."""
         request = planning_scene.AllowContact(first=self.first, second=self.second, allowed=self.allowed)
-        what = f"whether {self.first} and {self.second} may touch was not changed"
+        what = f"the allowed contact between {self.first} and {self.second} was not changed"
         return await call_or_fail(ctx, request, to=CELL, done="set", what=what, kind=self.state_name)

@@ -1,4 +1,4 @@
-"""scene.Attach: lets a part of the planning scene move along with an arm."""
+"""scene.Attach: attaches a part of the planning scene to an arm."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from states.scene.scene_parameter_types import CELL, CarriedName
 
 
 class Attach(State, frozen=True, kw_only=True):
-    """Plan with a part as with a piece of the arm that holds it, from where it is relative to the tool now.
+    """Attach a part to the arm that holds it, at its current pose relative to the tool; planning includes it.
 
-    It may touch the tool, and what it lies on until it is lifted.
+    The part may touch the tool, and its support until it is lifted.
     """
 
     state_name: ClassVar[str] = "scene.Attach"
@@ -28,18 +28,18 @@ class Attach(State, frozen=True, kw_only=True):
     link: Annotated[
         str,
         Meta(
-            description="The link that holds it; the tool's by default",
+            description="Link that holds the part; the tool link by default",
             extra_json_schema={"cell_name": "link", "of": "robot"},
         ),
     ] = ""
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
+        """Call the service of the cell."""
         request = AttachPart(part=self.part, robot=self.robot, link=self.link)
         what = f"part {self.part} was not attached to {self.robot}"
         return await call_or_fail(ctx, request, to=CELL, done="attached", what=what, kind=self.state_name)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
-        """Let the part stay where it is again; another arm that held it before does not get it back."""
+        """Detach the part at its current pose; it is not attached again to an arm that held it before."""
         if done.outcome != "failed":
             await ctx.call(DetachPart(part=self.part), to=CELL)

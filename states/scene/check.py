@@ -1,4 +1,4 @@
-"""scene.Check: tells what an arm touches, or would touch, and how near it is to the rest."""
+"""scene.Check: checks an arm for collisions and reports its clearance."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from states.scene.scene_parameter_types import CELL
 
 
 class Check(State, frozen=True, kw_only=True):
-    """Ask what an arm touches where it stands, or at `joints`: `free` when nothing is nearer than `margin_m`.
+    """Check an arm for collisions at its current joints or at `joints`: `free` if the clearance is at least `margin_m`.
 
-    Writes the distance to what is nearest, and the pairs that touch as `first with second`.
+    Writes the distance to the nearest body, and the pairs in contact as `first with second`.
     """
 
     state_name: ClassVar[str] = "scene.Check"
@@ -32,30 +32,30 @@ class Check(State, frozen=True, kw_only=True):
 
     robot: RobotName
     joints: Annotated[
-        JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`; as it stands by default")
+        JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`; the current ones by default")
     ] = None
     margin_m: Margin = 0.0
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell and judge its report."""
+        """Call the service of the cell and return the outcome of its report."""
         joints = await resolve_joints(ctx, self.joints) if self.joints is not None else ()
         request = CheckCollision(robot=self.robot, joints=joints)
         try:
             report = await ctx.call(request, to=CELL)
         except SkillFailed as error:
-            what = f"what {self.robot} touches was not found out"
+            what = f"{self.robot} was not checked for collisions"
             return Outcome("failed", cause=wrap_cause(what, cause_of(error), where=ctx.path, kind=self.state_name))
         pairs = [f"{pair.first} with {pair.second}" for pair in report.touching]
         outputs: dict[str, object] = {"distance_m": report.distance_m, "touching": pairs}
         if not pairs and report.distance_m >= self.margin_m:
             return Outcome("free", outputs)
-        because = Cause(message=self._words(report, pairs), where=f"{CELL}/{request.skill_name()}")
+        because = Cause(message=self._describe(report, pairs), where=f"{CELL}/{request.skill_name()}")
         posture = f" at {joints_label(self.joints)}" if self.joints is not None else ""
         message = f"{self.robot} is not free{posture}"
         return Outcome("touching", outputs, wrap_cause(message, because, where=ctx.path, kind=self.state_name))
 
-    def _words(self, report: CollisionReport, pairs: list[str]) -> str:
+    def _describe(self, report: CollisionReport, pairs: list[str]) -> str:
         if pairs:
             return f"{', '.join(pairs)} touch"
         first, second = report.nearest
-        return f"{first} is {report.distance_m * 1e3:.1f} mm from {second}, {self.margin_m * 1e3:.1f} mm are asked for"
+        return f"{first} is {report.distance_m * 1e3:.1f} mm from {second}, {self.margin_m * 1e3:.1f} mm required"

@@ -1,4 +1,4 @@
-"""scene.Detach: lets a part of the planning scene stay where it is."""
+"""scene.Detach: detaches a part of the planning scene from its arm."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.scene.scene_parameter_types import CELL, CarriedName
 
 
 class Detach(State, frozen=True, kw_only=True):
-    """Plan no more with a part as held: it stays in the scene where it is. One that nobody holds is no failure."""
+    """Detach a part from its arm: it stays in the scene at its current pose. No effect if the part is not attached."""
 
     state_name: ClassVar[str] = "scene.Detach"
     outcomes: ClassVar[tuple[str, ...]] = ("detached", "failed")
@@ -20,7 +20,7 @@ class Detach(State, frozen=True, kw_only=True):
     part: CarriedName
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
+        """Call the service of the cell."""
         what = f"part {self.part} was not detached"
         return await call_or_fail(
             ctx, DetachPart(part=self.part), to=CELL, done="detached", what=what, kind=self.state_name

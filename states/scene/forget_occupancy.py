@@ -1,4 +1,4 @@
-"""scene.ForgetOccupancy: empties the map of what the cameras have seen."""
+"""scene.ForgetOccupancy: clears the occupancy map."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from states.scene.scene_parameter_types import CELL
 
 
 class ForgetOccupancy(State, frozen=True, kw_only=True):
-    """Forget what the cameras have seen: places that are hidden now count as free. What is in view is seen again."""
+    """Clear the occupancy map of the cameras: hidden space counts as free; visible obstacles are mapped again."""
 
     state_name: ClassVar[str] = "scene.ForgetOccupancy"
     outcomes: ClassVar[tuple[str, ...]] = ("forgotten", "failed")
     success: ClassVar[tuple[str, ...]] = ("forgotten",)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
-        what = "what the cameras have seen was not forgotten"
+        """Call the service of the cell."""
+        what = "the occupancy map was not cleared"
         request = planning_scene.ForgetOccupancy()
         return await call_or_fail(ctx, request, to=CELL, done="forgotten", what=what, kind=self.state_name)

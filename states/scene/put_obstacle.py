@@ -1,4 +1,4 @@
-"""scene.PutObstacle: puts an obstacle into the planning scene."""
+"""scene.PutObstacle: adds an obstacle to the planning scene."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from states.scene.shape_parameter_types import Lengths, ShapeName, shape_of
 
 
 class PutObstacle(State, frozen=True, kw_only=True):
-    """Let arms keep off a box, cylinder, sphere or capsule, from now on; it takes the place of one of the same name.
+    """Add a box, cylinder, sphere or capsule to the planning scene; it replaces an obstacle of the same name.
 
-    Arms under way go around it. It is in the planning scene alone: nothing appears in the world.
+    Moving arms replan around it. It exists in the planning scene only, not in the simulated world.
     """
 
     state_name: ClassVar[str] = "scene.PutObstacle"
@@ -28,14 +28,14 @@ class PutObstacle(State, frozen=True, kw_only=True):
     name: NewObstacleName
     shape: ShapeName = "box"
     size_m: Lengths
-    at: Annotated[Placement, Meta(description="Where its centre is in the world: `{xyz, rpy}`")]
+    at: Annotated[Placement, Meta(description="Pose of its centre in the world: `{xyz, rpy}`")]
 
     def __post_init__(self) -> None:
         shape_of(self.shape, self.size_m)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
+        """Call the service of the cell."""
         obstacle = Obstacle.of(self.name, shape_of(self.shape, self.size_m), self.at.pose())
         request = planning_scene.PutObstacle(obstacle=obstacle)
-        what = f"obstacle {self.name} was not put into the scene"
+        what = f"obstacle {self.name} was not added to the planning scene"
         return await call_or_fail(ctx, request, to=CELL, done="put", what=what, kind=self.state_name)

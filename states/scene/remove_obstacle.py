@@ -1,4 +1,4 @@
-"""scene.RemoveObstacle: takes an obstacle out of the planning scene."""
+"""scene.RemoveObstacle: removes an obstacle from the planning scene."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from states.scene.scene_parameter_types import CELL, ObstacleName
 
 
 class RemoveObstacle(State, frozen=True, kw_only=True):
-    """Take away an obstacle that `scene.PutObstacle` put; waiting arms go on. One already gone is no failure."""
+    """Remove an obstacle that `scene.PutObstacle` added; waiting arms resume. No effect if there is none."""
 
     state_name: ClassVar[str] = "scene.RemoveObstacle"
     outcomes: ClassVar[tuple[str, ...]] = ("removed", "failed")
@@ -20,7 +20,7 @@ class RemoveObstacle(State, frozen=True, kw_only=True):
     name: ObstacleName
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the cell."""
+        """Call the service of the cell."""
         request = planning_scene.RemoveObstacle(name=self.name)
-        what = f"obstacle {self.name} was not taken out of the scene"
+        what = f"obstacle {self.name} was not removed from the planning scene"
         return await call_or_fail(ctx, request, to=CELL, done="removed", what=what, kind=self.state_name)

@@ -1,4 +1,4 @@
-"""How states name the planning scene and what is in it."""
+"""Parameter types for the planning scene and its bodies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import Meta
 
 CELL = "cell"
-"""The bus namespace that answers for the planning scene."""
+"""Bus namespace of the planning scene services."""
 
 ObstacleName = Annotated[
     str, Meta(min_length=1, description="Name of the obstacle", extra_json_schema={"cell_name": "obstacle"})
@@ -22,7 +22,7 @@ CarriedName = Annotated[
     str,
     Meta(
         min_length=1,
-        description="Name of the part, or of an obstacle that was put",
+        description="Name of the part, or of an obstacle that `scene.PutObstacle` added",
         extra_json_schema={"cell_name": "scene_part"},
     ),
 ]
@@ -30,7 +30,7 @@ TouchingName = Annotated[
     str,
     Meta(
         min_length=1,
-        description="An obstacle, a part, an arm, or a link of it as `arm/link`",
+        description="Obstacle, part, arm, or link of an arm as `arm/link`",
         extra_json_schema={"cell_name": "body"},
     ),
 ]

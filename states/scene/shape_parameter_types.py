@@ -1,4 +1,4 @@
-"""Shapes as behaviors write them, the way fixtures of a cell are written: a word and its full lengths."""
+"""Shapes as behaviors and fixtures of a cell write them: a name and full lengths."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from msgspec import Meta
 from engine.messages.shapes import Box, Capsule, Cylinder, Shape, Sphere
 
 ShapeName = Annotated[
-    Literal["box", "cylinder", "sphere", "capsule"], Meta(description="What it is, or what is around it")
+    Literal["box", "cylinder", "sphere", "capsule"], Meta(description="Shape of the obstacle, or its bounding shape")
 ]
 Lengths = Annotated[
     tuple[Annotated[float, Meta(gt=0)], ...],
     Meta(
-        description="Edges of a box; diameter and length of a cylinder or capsule, whole; diameter of a sphere",
+        description="Edges of a box; diameter and overall length of a cylinder or capsule; diameter of a sphere",
         extra_json_schema={"unit": "m"},
     ),
 ]
 
-_DUE: Mapping[str, str] = {
+_REQUIRED_LENGTHS: Mapping[str, str] = {
     "box": "its edges x, y and z",
     "cylinder": "its diameter and length",
     "sphere": "its diameter",
-    "capsule": "its diameter and length, which is no less",
+    "capsule": "its diameter and its length of at least the diameter",
 }
 
 
 def shape_of(name: str, size_m: tuple[float, ...]) -> Shape:
-    """Return the shape of these full lengths in metres.
+    """Return the shape with these full lengths in metres.
 
     Raises:
-        ValueError: other lengths are due; says which.
+        ValueError: the shape needs other lengths; the message names them.
     """
     match name, size_m:
         case "box", (x, y, z):
@@ -44,4 +44,4 @@ def shape_of(name: str, size_m: tuple[float, ...]) -> Shape:
         case "capsule", (diameter, length) if length >= diameter:
             return Capsule(radius_m=diameter / 2, length_m=length - diameter)
         case _:
-            raise ValueError(f"`size_m` of a {name} is {_DUE[name]}")
+            raise ValueError(f"`size_m` of a {name} is {_REQUIRED_LENGTHS[name]}")

@@ -27,7 +27,7 @@ class ReadEntry(State, frozen=True, kw_only=True):
     name: Annotated[str, Meta(description="Name of the entry")]
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the store; a missing entry is an outcome, a failing store an error."""
+        """Read from the store; a missing entry gives the outcome `missing`, a store failure raises an error."""
         try:
             record = await ctx.call(entries.ReadEntry(kind=self.kind, name=self.name), to="store")
         except EntryNotFound as error:

@@ -16,8 +16,8 @@ from engine.state import Context, Outcome, State
 class WriteEntry(State, frozen=True, kw_only=True):
     """Write `value` as a named entry.
 
-    With `expected_revision` (as `store.ReadEntry` gave it; 0 for "there is none yet") the entry is
-    written only when nobody else changed it in between, else the outcome is `conflict`.
+    With `expected_revision` (from `store.ReadEntry`; 0 for a new entry) the entry is written only if it has that
+    revision, else the outcome is `conflict`.
     """
 
     state_name: ClassVar[str] = "store.WriteEntry"
@@ -30,11 +30,11 @@ class WriteEntry(State, frozen=True, kw_only=True):
     name: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"new_entry_of": "kind"})]
 
     async def run(self, ctx: Context, *, value: dict[str, object], expected_revision: int | None = None) -> Outcome:
-        """Write; a value the store refuses is an error."""
+        """Write to the store; a value that the store refuses raises an error."""
         request = entries.WriteEntry(kind=self.kind, name=self.name, value=value, expected_revision=expected_revision)
         try:
             record = await ctx.call(request, to="store")
         except EntryConflict as error:
-            message = f"{self.kind} entry {self.name} was changed by somebody else"
+            message = f"{self.kind} entry {self.name} was changed by another writer"
             return Outcome("conflict", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         return Outcome("written", {"revision": record.revision})

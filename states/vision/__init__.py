@@ -1,1 +1,1 @@
-"""States that ask what the cameras of a cell see."""
+"""States that detect objects with the cameras of a cell."""

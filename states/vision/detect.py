@@ -1,4 +1,4 @@
-"""vision.Detect: asks the detector of a camera what it finds."""
+"""vision.Detect: detects objects with the detector of a camera."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Detect(State, frozen=True, kw_only=True):
-    """Look for things in the next image of a camera; the best is the one with the highest score.
+    """Detect objects in the next image of a camera; the best detection has the highest score.
 
-    Writes `detections`, all that were found, the best first, with their poses in the world, and `pose` and `label`
-    of the best.
+    Writes all `detections`, best first, with their poses in the world, and `pose` and `label` of the best.
     """
 
     state_name: ClassVar[str] = "vision.Detect"
@@ -37,42 +36,42 @@ class Detect(State, frozen=True, kw_only=True):
         str,
         Meta(
             min_length=1,
-            description="Name of the camera; it needs `detect` in the cell",
+            description="Name of the camera; its cell entry needs `detect`",
             extra_json_schema={"cell_name": "detector"},
         ),
     ]
     label: Annotated[
         str,
         Meta(
-            description="What to look for; anything where it is empty",
+            description="Label to detect; empty for any",
             extra_json_schema={"cell_name": "label", "of": "camera"},
         ),
     ] = ""
     minimal_score: Score = 0.5
 
     async def run(self, ctx: Context) -> Outcome:
-        """Ask the camera; one that gives no images is an outcome, one that detects nothing at all an error."""
+        """Call the detector; no image gives the outcome `failed`, a camera without a detector raises an error."""
         request = DetectObjects(labels=(self.label,) if self.label else (), minimal_score=self.minimal_score)
         what = self.label or "anything"
         try:
-            found = await ctx.call(request, to=self.camera)
+            result = await ctx.call(request, to=self.camera)
         except SkillFailed as error:
-            message = f"{self.camera} did not look for {what}"
+            message = f"{self.camera} could not detect {what}"
             return Outcome("failed", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
-        seen = _in_world(found)
-        if not seen:
+        detections = _in_world(result)
+        if not detections:
             because = Cause(
-                message=f"nothing of that kind is seen with a score of {self.minimal_score:.2f} or more",
+                message=f"no detection has a score of {self.minimal_score:.2f} or more",
                 where=f"{self.camera}/{request.skill_name()}",
             )
-            message = f"{self.camera} does not find {what}"
+            message = f"{self.camera} did not detect {what}"
             cause = wrap_cause(message, because, where=ctx.path, kind=self.state_name)
             return Outcome("not_found", {"detections": []}, cause)
-        best = seen[0]
-        return Outcome("found", {"detections": seen, "pose": best.pose, "label": best.label})
+        best = detections[0]
+        return Outcome("found", {"detections": detections, "pose": best.pose, "label": best.label})
 
 
-def _in_world(found: Detections) -> list[Detection]:
-    """Return the detections, the best first, where they are in the world."""
-    turned = [msgspec.structs.replace(each, pose=found.in_world(each)) for each in found.detections]
-    return sorted(turned, key=lambda each: -each.score)
+def _in_world(result: Detections) -> list[Detection]:
+    """Return the detections, best first, with poses in the world."""
+    detections = [msgspec.structs.replace(each, pose=result.in_world(each)) for each in result.detections]
+    return sorted(detections, key=lambda each: -each.score)

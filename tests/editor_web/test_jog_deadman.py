@@ -108,7 +108,7 @@ async def test_what_is_far_too_fast_or_of_nobody_is_refused(site: TeachSite) -> 
     async with site.socket() as socket:
         await begun(socket)
         await send(socket, k="go", velocity=[0.0, 0.0, 3.0, 0.0, 0.0, 0.0])
-        assert "at 0.25 at most" in (await until(socket, "refused"))["message"]
+        assert "exceeds the limit of 0.25" in (await until(socket, "refused"))["message"]
         await send(socket, k="jog", arm="middle", space="tool")
         assert (await until(socket, "refused"))["what"] == "jog"
 

@@ -1,1 +1,1 @@
-"""The layers of the 3D view: each draws one kind of thing from the latest messages."""
+"""The layers of the 3D view: each draws one kind of object from the latest messages."""

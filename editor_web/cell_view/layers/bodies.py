@@ -26,17 +26,17 @@ _TOUCHING: Rgb = (220, 38, 38)
 
 
 def body_node(frame: str, arms: frozenset[str], *, under: str = "") -> str:
-    """Return the node of a frame. Bodies of neither an arm nor the cell itself are those of people."""
+    """Return the scene node of a frame. Bodies that belong neither to an arm nor to the cell itself are people."""
     owner, slash, _ = frame.partition("/")
     is_person = bool(arms and slash) and owner not in arms
-    # A slash would nest the frame below another one, and poses are all in the world.
+    # A slash would nest the frame below another one, but all poses are in the world frame.
     return f"{root_of('people', under=under) if is_person else under + CELL}/{frame.replace('/', '.')}"
 
 
 class BodyLayer:
-    """Draws `cell/scene` and moves it by `cell/frames`; of one page, floor and point of view stay as they are.
+    """Draws `cell/scene` and moves it by `cell/frames`; on the canvas of one page, floor and camera stay unchanged.
 
-    What a blocked way would let touch each other is red.
+    Bodies that would collide on a blocked path are red.
     """
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
@@ -52,7 +52,7 @@ class BodyLayer:
         self._marked: frozenset[str] = frozenset()
 
     def draw(self, newest: LatestMessages) -> None:
-        """Draw what has changed."""
+        """Draw the changes."""
         scene, poses, arms = newest.scene, newest.frames, frozenset(newest.descriptions)
         if scene is not None and (scene is not self._scene or arms != self._arms):
             self._scene, self._arms, self._poses = scene, arms, None
@@ -80,17 +80,17 @@ class BodyLayer:
             try:
                 shape = add_geometry(self._server, f"{self._node(geometry.frame)}/{index}", geometry)
             except (FlexcellError, ValueError) as error:
-                # One shape that cannot be drawn must not hide the rest of the cell.
+                # One invalid shape must not hide the rest of the cell.
                 _log.warning("%s is not drawn: %s", geometry.name, error)
                 continue
-            # A link of an arm is known by its frame; a fixture of several bodies has them as `name/0`, `name/1`.
+            # A link of an arm is identified by its frame; a fixture with several bodies has `name/0`, `name/1`.
             is_link = geometry.frame.partition("/")[0] in self._arms
             name = geometry.frame if is_link else geometry.name.partition("/")[0]
             self._shapes.append((name, shape, colour_of(geometry)))
         self._add_axes(newest, known)
 
     def _mark(self, names: frozenset[str]) -> None:
-        """Colour the bodies that a blocked way would let touch, and give the others their own colours again."""
+        """Colour the bodies that would collide on a blocked path, and restore the colours of the others."""
         changed, self._marked = self._marked ^ names, names
         if not changed:
             return
@@ -103,7 +103,7 @@ class BodyLayer:
         return body_node(frame, self._arms, under=self._under)
 
     def _add_axes(self, newest: LatestMessages, known: Mapping[str, WorldPose]) -> None:
-        """Show the frames that people speak of: the world's, the tools' and the parts'."""
+        """Show the frames of the world, the tools and the parts."""
         tools = {each.tool_frame for each in newest.descriptions.values()}
         for name in ("world", *(n for n in known if n in tools or "/" not in n)):
             node = f"{root_of('frames', under=self._under)}/{name.replace('/', '.')}"

@@ -1,6 +1,6 @@
-"""Depth cameras in the 3D view: a frustum where each stands, with its newest image in colours of distance.
+"""Depth cameras in the 3D view: a frustum at each camera pose, with its latest image coloured by distance.
 
-What a detector finds is framed and labelled in it.
+Detections are framed and labelled in the image.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ _UNMEASURED = (40, 40, 40)
 
 
 def depth_picture(image: DepthImage) -> NDArray[np.uint8]:
-    """Return the image in colours (rows x columns x 3), near ones warm and far ones cold, at most 240 wide.
+    """Return the image in colours (rows x columns x 3), warm for near and cold for far, at most 240 pixels wide.
 
     Raises:
-        ValueError: there are not as many distances as pixels.
+        ValueError: the number of distances is not the number of pixels.
     """
     width, height = image.intrinsics.width_px, image.intrinsics.height_px
     depth_m = np.frombuffer(image.depth_m, dtype=np.float32)
     if len(depth_m) != width * height or len(depth_m) == 0:
-        raise ValueError(f"{len(depth_m)} distances cannot be an image of {width} x {height}")
+        raise ValueError(f"{len(depth_m)} distances do not match an image of {width} x {height}")
     step = math.ceil(width / _WIDTH_PX)
     small = depth_m.reshape(height, width)[::step, ::step]
     measured = np.isfinite(small) & (small > 0.0)
@@ -49,7 +49,7 @@ def depth_picture(image: DepthImage) -> NDArray[np.uint8]:
         return np.full((*small.shape, 3), _UNMEASURED, dtype=np.uint8)
     near_m, far_m = float(small[measured].min()), float(small[measured].max())
     share = (np.where(measured, small, far_m) - near_m) / max(far_m - near_m, 1e-6)
-    # The colours of 256 steps, looked up: interpolating each pixel costs ten times as much.
+    # A lookup table of 256 colours: interpolating each pixel costs ten times as much.
     table = ramp(_NEAR_TO_FAR, np.linspace(0.0, 1.0, 256))
     shades = table[(share * 255).astype(np.uint8)]
     shades[~measured] = _UNMEASURED
@@ -57,7 +57,7 @@ def depth_picture(image: DepthImage) -> NDArray[np.uint8]:
 
 
 class CameraLayer:
-    """Draws a frustum for each camera, and its newest image in it, at most five times a second."""
+    """Draws a frustum with the latest image for each camera, at most five times a second."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
@@ -65,14 +65,15 @@ class CameraLayer:
         self._cameras: dict[str, _Camera] = {}
 
     def draw(self, newest: LatestMessages, now_s: float) -> float | None:
-        """Draw what has changed; returns when to call again where it is too early now."""
+        """Draw the changes; return the time of the next call if it is too early now."""
         due: list[float] = []
         for name in {**newest.cameras, **newest.depths}:
             camera = self._cameras.setdefault(name, _Camera(self._server, name, node=f"{self._root}/{name}"))
-            found = newest.detections.get(name)
-            if found is not None and not is_fresh(found, newest.frames):
-                found = None
-            if (next_s := camera.draw(newest.cameras.get(name), newest.depths.get(name), found, now_s)) is not None:
+            detections = newest.detections.get(name)
+            if detections is not None and not is_fresh(detections, newest.frames):
+                detections = None
+            next_s = camera.draw(newest.cameras.get(name), newest.depths.get(name), detections, now_s)
+            if next_s is not None:
                 due.append(next_s)
         return min(due, default=None)
 
@@ -88,15 +89,15 @@ class _Camera:
         self._next_s = 0.0
 
     def draw(
-        self, info: CameraInfo | None, image: DepthImage | None, found: Detections | None, now_s: float
+        self, info: CameraInfo | None, image: DepthImage | None, detections: Detections | None, now_s: float
     ) -> float | None:
-        if all(new is drawn for new, drawn in zip((info, image, found), self._drawn, strict=True)):
+        if all(new is drawn for new, drawn in zip((info, image, detections), self._drawn, strict=True)):
             return None
         if now_s < self._next_s:
             return self._next_s
-        self._drawn, self._next_s = (info, image, found), now_s + PERIOD_S
-        seen = image if image is not None else info
-        if seen is None:
+        self._drawn, self._next_s = (info, image, detections), now_s + PERIOD_S
+        source = image if image is not None else info
+        if source is None:
             return None
         try:
             shades = depth_picture(image) if image is not None else None
@@ -104,10 +105,10 @@ class _Camera:
             _log.warning("the image of %s is not drawn: %s", self._name, error)
             return None
         with self._server.atomic():
-            handle = self._frustum(seen.intrinsics)
-            handle.position, handle.wxyz = seen.pose.xyz, wxyz(seen.pose.xyzw)
+            handle = self._frustum(source.intrinsics)
+            handle.position, handle.wxyz = source.pose.xyz, wxyz(source.pose.xyzw)
             if shades is not None:
-                handle.image = draw_labels(shades, found) if found is not None else shades
+                handle.image = draw_labels(shades, detections) if detections is not None else shades
         return None
 
     def _frustum(self, lens: CameraIntrinsics) -> viser.CameraFrustumHandle:

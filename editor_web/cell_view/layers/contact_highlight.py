@@ -1,4 +1,4 @@
-"""Which bodies a blocked way would let touch each other: those that its reason names."""
+"""Bodies that would collide on a blocked path: those that its reason names."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping
 from engine.skills.planning import PathPreview
 
 
-def bodies_in_contact(ways: Mapping[str, PathPreview], names: Iterable[str]) -> frozenset[str]:
-    """Return those of the names that stand in the reason of a blocked way, as words of their own."""
-    reasons = [way.reason for way in ways.values() if way.state == "blocked" and way.reason]
+def bodies_in_contact(previews: Mapping[str, PathPreview], names: Iterable[str]) -> frozenset[str]:
+    """Return the names that occur as whole words in the reason of a blocked path."""
+    reasons = [preview.reason for preview in previews.values() if preview.state == "blocked" and preview.reason]
     if not reasons:
         return frozenset()
     return frozenset(name for name in names if any(_names(reason, name) for reason in reasons))

@@ -1,4 +1,4 @@
-"""What detectors find, in the 3D view: an oriented box for each, with its label and score, coloured by its label."""
+"""Detections in the 3D view: an oriented box for each, with label and score, coloured by label."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from engine.skills.vision import Detection, Detections
 _Anchor = Literal["bottom-center", "top-center"]
 _OPACITY = 0.22
 _LINE_PX = 2.5
-# What is drawn over the part that was found must not flicker against it.
+# The box is drawn over the detected part and must not flicker against it.
 _SWELL = 1.03
 _ABOVE_M = 0.012
-# What two cameras see of one thing is written above and below one point: that stays apart however near one looks.
+# Labels of two cameras for one object are above and below one point, which separates them at every zoom.
 _ANCHORS: tuple[_Anchor, ...] = ("bottom-center", "top-center")
 _BESIDE_M = 0.05
 _LABEL_SCALE = 0.85
 _AHEAD_S = 0.5
 
 
-def is_fresh(found: Detections, frames: FramePoses | None) -> bool:
-    """Return whether detections tell of the moment that the cell's frames are of; both are by the world's clock."""
-    return frames is None or -_AHEAD_S <= frames.time_s - found.time_s <= found.fresh_s
+def is_fresh(detections: Detections, frames: FramePoses | None) -> bool:
+    """Return whether detections are current at the time of the cell's frames; both have the world's clock."""
+    return frames is None or -_AHEAD_S <= frames.time_s - detections.time_s <= detections.fresh_s
 
 
 def box_edges(size_m: Vector3) -> NDArray[np.float32]:
@@ -51,7 +51,7 @@ def box_edges(size_m: Vector3) -> NDArray[np.float32]:
 
 
 class DetectionLayer:
-    """Draws the newest detections of each camera, and takes them away once they are of another moment."""
+    """Draws the latest detections of each camera, and removes them when they are out of date."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
@@ -59,13 +59,13 @@ class DetectionLayer:
         self._cameras: dict[str, _Boxes] = {}
 
     def draw(self, newest: LatestMessages) -> None:
-        """Draw what has changed."""
+        """Draw the changes."""
         several = len(newest.detections) > 1
-        for row, (name, found) in enumerate(newest.detections.items()):
+        for row, (name, detections) in enumerate(newest.detections.items()):
             if name not in self._cameras:
                 self._cameras[name] = _Boxes(self._server, f"{self._root}/{name}", row=row)
             by = f" · {name}" if several else ""
-            self._cameras[name].draw(found if is_fresh(found, newest.frames) else None, by=by)
+            self._cameras[name].draw(detections if is_fresh(detections, newest.frames) else None, by=by)
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class _Box:
 
 
 class _Boxes:
-    """Of one camera."""
+    """The boxes of one camera."""
 
     def __init__(self, server: Canvas, node: str, *, row: int) -> None:
         self._server = server
@@ -90,28 +90,28 @@ class _Boxes:
         self._drawn: tuple[Detections | None, str] = (None, "")
         self._boxes: dict[str, _Box] = {}
 
-    def draw(self, found: Detections | None, *, by: str) -> None:
-        """Draw these and no others; `by` is written behind each."""
-        if found is self._drawn[0] and by == self._drawn[1]:
+    def draw(self, detections: Detections | None, *, by: str) -> None:
+        """Draw exactly these detections; `by` is appended to each label."""
+        if detections is self._drawn[0] and by == self._drawn[1]:
             return
-        self._drawn = (found, by)
+        self._drawn = (detections, by)
         with self._server.atomic():
             drawn: set[str] = set()
-            for detection in found.detections if found is not None else ():
+            for detection in detections.detections if detections is not None else ():
                 name = _free_name(detection.label, drawn)
                 drawn.add(name)
-                assert found is not None
-                self._place(name, found, detection, by=by)
+                assert detections is not None
+                self._place(name, detections, detection, by=by)
             for name in self._boxes.keys() - drawn:
                 self._boxes.pop(name).remove()
 
-    def _place(self, name: str, found: Detections, detection: Detection, *, by: str) -> None:
+    def _place(self, name: str, detections: Detections, detection: Detection, *, by: str) -> None:
         box = self._boxes.get(name)
         if box is None or box.size_m != detection.size_m:
             if box is not None:
                 box.remove()
             box = self._boxes[name] = self._new(name, detection)
-        pose = found.in_world(detection)
+        pose = detections.in_world(detection)
         box.frame.position, box.frame.wxyz = pose.xyz, wxyz(pose.xyzw)
         x, y, _ = pose.xyz
         top_m = max(z for _, _, z in msgspec.structs.replace(detection, pose=pose).vertices_m)
@@ -144,6 +144,6 @@ class _Boxes:
 
 
 def _free_name(label: str, taken: set[str]) -> str:
-    """Return a name of a node for something of this label: the best keep theirs from image to image."""
+    """Return a free node name for a label: the best detections keep their names from image to image."""
     start = "".join(each if each.isalnum() else "_" for each in label)
     return next(name for number in range(len(taken) + 1) if (name := f"{start}.{number}") not in taken)

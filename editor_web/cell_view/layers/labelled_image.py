@@ -1,4 +1,4 @@
-"""What detectors find, drawn into the image of their camera: a rectangle around each, with label and score."""
+"""Detections in the image of their camera: a rectangle around each, with label and score."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from editor_web.cell_view.rendering.colours import colour_of_name
 from editor_web.cell_view.rendering.geometry import Rgb
 from engine.skills.vision import Detections, Rectangle
 
-# Smaller images are enlarged, or nobody could read the words.
+# Smaller images are enlarged to keep the labels readable.
 _LEAST_WIDTH_PX = 320
 _FONT_PX = 11
 _LINE_PX = 2
 _PAD_PX = 2
 _LIGHT_INK, _DARK_INK = (255, 255, 255), (0, 0, 0)
-# Above this brightness, dark words are read better.
+# Above this brightness, dark text is more readable.
 _BRIGHT = 120.0
 
 
 def label_text(label: str, score: float) -> str:
-    """Return what is written at a detection."""
+    """Return the label text of a detection."""
     return f"{label} {score:.2f}"
 
 
-def draw_labels(shades: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
-    """Return the image (rows x columns x 3), enlarged where it is small, with a rectangle around what was found in it.
+def draw_labels(shades: NDArray[np.uint8], detections: Detections) -> NDArray[np.uint8]:
+    """Return the image (rows x columns x 3), enlarged if small, with a rectangle around each detection.
 
-    What was found without a rectangle is left out.
+    Detections without a rectangle are omitted.
     """
     scale = math.ceil(_LEAST_WIDTH_PX / shades.shape[1])
     picture = Image.fromarray(np.repeat(np.repeat(shades, scale, axis=0), scale, axis=1))
     draw, font = ImageDraw.Draw(picture), ImageFont.load_default(_FONT_PX)
-    # The best are first, and are to be on top.
-    for detection in reversed(found.detections):
+    # The best detections are first in the list and drawn on top.
+    for detection in reversed(detections.detections):
         if detection.rectangle_px is None:
             continue
-        box = _scaled(detection.rectangle_px, found.image_px, picture.size)
+        box = _scaled(detection.rectangle_px, detections.image_px, picture.size)
         colour = colour_of_name(detection.label)
         draw.rectangle(box, outline=colour, width=_LINE_PX)
         text = label_text(detection.label, detection.score)
@@ -52,13 +52,13 @@ def draw_labels(shades: NDArray[np.uint8], found: Detections) -> NDArray[np.uint
 
 
 def _ink(ground: Rgb) -> Rgb:
-    """Return the colour of words on a ground."""
+    """Return the text colour for a background."""
     red, green, blue = ground
     return _DARK_INK if 0.299 * red + 0.587 * green + 0.114 * blue > _BRIGHT else _LIGHT_INK
 
 
 def _scaled(rectangle: Rectangle, of_px: tuple[int, int], to_px: tuple[int, int]) -> Rectangle:
-    """Return a rectangle, whose pixels are included, of an image of one size in one of another."""
+    """Return a rectangle, bounds inclusive, scaled from an image of one size to another."""
     across, down = to_px[0] / of_px[0], to_px[1] / of_px[1]
     left, top, right, bottom = rectangle
     return (left * across, top * down, (right + 1.0) * across - 1.0, (bottom + 1.0) * down - 1.0)

@@ -1,4 +1,4 @@
-"""The planning scene in the 3D view: obstacles that were put into it, and parts that arms hold, translucent."""
+"""The planning scene in the 3D view: added obstacles and held parts, translucent."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _OPACITY = 0.35
 
 @dataclass(frozen=True, kw_only=True)
 class _Shown:
-    """What there is to draw: obstacles, held parts, and the names of those that block a way."""
+    """Objects to draw: obstacles, held parts, and the names of those that block a path."""
 
     obstacles: tuple[Obstacle, ...]
     held: tuple[HeldPart, ...]
@@ -37,7 +37,7 @@ class _Shown:
 
 
 class ObstacleLayer:
-    """Draws `cell/planning_scene`; what `cell/scene` has under the same name is drawn there."""
+    """Draws `cell/planning_scene`, except bodies that `cell/scene` has under the same name."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
@@ -49,7 +49,7 @@ class ObstacleLayer:
         self._poses: FramePoses | None = None
 
     def draw(self, newest: LatestMessages) -> None:
-        """Draw what has changed."""
+        """Draw the changes."""
         state, scene, ways = newest.planning_scene, newest.scene, newest.ways
         if state is None:
             return
@@ -57,7 +57,7 @@ class ObstacleLayer:
         if read is None or read[0] is not state or read[1] is not scene or read[2] is not ways:
             self._read = (state, scene, ways)
             shown = _shown(state, scene, ways)
-            # A part that moves is a change of the scene, and drawn elsewhere.
+            # A moving part changes the scene, but is drawn by the body layer.
             if shown != self._drawn:
                 self._drawn, self._poses = shown, None
                 with self._server.atomic():
@@ -87,7 +87,7 @@ class ObstacleLayer:
             try:
                 add_convex_shape(self._server, f"{node}/{index}", solid, colour=colour, opacity=_OPACITY)
             except ValueError as error:
-                # One shape that cannot be drawn must not hide the others.
+                # One invalid shape must not hide the others.
                 _log.warning("%s is not drawn: %s", name, error)
         return root
 
@@ -103,7 +103,7 @@ class ObstacleLayer:
 
 
 def _shown(state: PlanningSceneState, scene: SceneDescription | None, ways: Mapping[str, PathPreview]) -> _Shown:
-    # A fixture of several bodies has them as `name/0`, `name/1`.
+    # A fixture with several bodies has `name/0`, `name/1`.
     known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
     held = {part.name for part in state.held}
     blocking = bodies_in_contact(ways, [each.name for each in (*state.obstacles, *state.held)])

@@ -1,4 +1,4 @@
-"""The occupied voxels of `cell/occupancy` as squares, coloured by their height; only those that can be seen."""
+"""The occupied voxels of `cell/occupancy` as squares, coloured by height; only voxels on the surface."""
 
 from __future__ import annotations
 
@@ -17,41 +17,41 @@ from engine.messages.sensing import OccupancyGrid
 
 _log = logging.getLogger("flexcell.cell_view")
 PERIOD_S = 0.1
-# viser's size is half an edge; a gap between neighbours lets one see that there are many.
+# viser's size is half an edge; a gap between neighbours makes single voxels visible.
 _POINT_SHARE = 0.46
 _HEIGHTS = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
-"""Viridis: told apart by every kind of eye, and in grey."""
+"""Viridis: distinguishable with colour blindness and in greyscale."""
 _STALE = ((90, 90, 90), (170, 170, 170))
 
 
 def occupied(grid: OccupancyGrid) -> NDArray[np.bool_]:
-    """Return which voxels are taken, in the grid's shape.
+    """Return the occupancy of each voxel, in the grid's shape.
 
     Raises:
-        ValueError: there are not as many bits as the shape says.
+        ValueError: the number of bits does not match the shape.
     """
     count = math.prod(grid.shape)
     bits = np.frombuffer(grid.occupied, dtype=np.uint8)
     if min(grid.shape) < 0 or len(bits) != (count + 7) // 8:
-        raise ValueError(f"{len(bits)} bytes cannot be a grid of {grid.shape} voxels")
+        raise ValueError(f"{len(bits)} bytes do not match a grid of {grid.shape} voxels")
     return np.unpackbits(bits, count=count).astype(np.bool_).reshape(grid.shape)
 
 
-def surface(taken: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the taken voxels of which at least one of the six sides is free; beyond the grid all is free."""
-    inside = taken.copy()
+def surface(filled: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the occupied voxels with at least one free face neighbour; space outside the grid is free."""
+    inside = filled.copy()
     for axis in range(3):
         rows = np.moveaxis(inside, axis, 0)
-        of = np.moveaxis(taken, axis, 0)
+        of = np.moveaxis(filled, axis, 0)
         rows[1:] &= of[:-1]
         rows[:-1] &= of[1:]
         rows[:1] = False
         rows[-1:] = False
-    return taken & ~inside
+    return filled & ~inside
 
 
 class VoxelLayer:
-    """Draws the newest grid, at most ten times a second and only when it has changed; grey when it is out of date."""
+    """Draws the latest grid on changes, at most ten times a second; grey if it is out of date."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
@@ -61,7 +61,7 @@ class VoxelLayer:
         self._next_s = 0.0
 
     def draw(self, newest: LatestMessages, now_s: float) -> float | None:
-        """Draw what has changed; returns when to call again where it is too early now."""
+        """Draw the changes; return the time of the next call if it is too early now."""
         grid, state = newest.occupancy, newest.occupancy_state
         is_stale = state is not None and state.stale_reason != ""
         if grid is None or (self._drawn is not None and self._drawn[0] is grid and self._drawn[1] == is_stale):
@@ -82,7 +82,7 @@ class VoxelLayer:
         shades = ramp(stops, np.linspace(0.0, 1.0, max(1, grid.shape[2])))[places[:, 2]]
         with self._server.atomic():
             if self._handle is None:
-                # Squares, not cubes: in software a browser draws six times as many of them.
+                # Squares, not cubes: with software rendering, a browser draws six times as many.
                 self._handle = self._server.scene.add_point_cloud(
                     self._node, points=points, colors=shades, point_shape="square", precision="float16"
                 )

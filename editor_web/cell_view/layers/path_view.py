@@ -1,4 +1,4 @@
-"""The planned way of each arm: the tool's path as a line, and a ghost of the arm that goes along it."""
+"""The planned path of each arm: the tool's path as a line, and a ghost of the arm that moves along it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from engine.skills.planning import PathPreview
 
 _log = logging.getLogger("flexcell.cell_view")
 _COLOURS: Mapping[str, Rgb] = {"proposed": (37, 99, 235), "moving": (22, 163, 74), "blocked": (220, 70, 38)}
-# As the page's curves of what is beside each other.
+# The same colours as the page's curves for the places of a comparison.
 _PLACE_COLOURS: tuple[Rgb, ...] = ((37, 99, 235), (220, 70, 38), (22, 163, 74), (217, 119, 6), (107, 114, 128))
 _OPACITY = 0.4
 _LINE_PX = 4.0
@@ -31,7 +31,7 @@ TRAVEL_S = 4.0
 REST_S = 1.2
 PERIOD_S = 1.0 / 15.0
 GhostPreviews = Mapping[tuple[str, int], PathPreview]
-"""What somebody looks at, by the name of its arm and its place beside others."""
+"""Previews by the name of the arm and the place in a comparison."""
 
 
 class PathLayer:
@@ -40,43 +40,43 @@ class PathLayer:
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
         self._root = root_of("ways", under=under)
-        self._arms: dict[str, _ArmWay] = {}
+        self._arms: dict[str, _ArmPathDrawing] = {}
 
     def draw(self, newest: LatestMessages, now_s: float, *, is_shown: bool) -> float | None:
-        """Draw what has changed; returns when to call again where a ghost moves and somebody looks."""
+        """Draw the changes; return the time of the next call if a ghost moves and is shown."""
         due: list[float] = []
         for name, preview in newest.ways.items():
             if name not in self._arms:
-                self._arms[name] = _ArmWay(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
-            way = self._arms[name]
-            way.draw(preview, newest, now_s)
-            if is_shown and (next_s := way.animate(now_s)) is not None:
+                self._arms[name] = _ArmPathDrawing(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
+            drawing = self._arms[name]
+            drawing.draw(preview, newest, now_s)
+            if is_shown and (next_s := drawing.animate(now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
 
 
 class GhostLayer:
-    """Draws what somebody looks at, each place in its colour, also where planned ways are hidden."""
+    """Draws the previews of a page, each place in its colour, even if planned paths are hidden."""
 
     def __init__(self, server: Canvas) -> None:
         self._server = server
-        self._arms: dict[tuple[str, int], _ArmWay] = {}
+        self._arms: dict[tuple[str, int], _ArmPathDrawing] = {}
 
     def draw(self, shown: GhostPreviews, newest: LatestMessages, now_s: float) -> float | None:
-        """Draw what has changed; returns when to call again where a ghost moves."""
+        """Draw the changes; return the time of the next call if a ghost moves."""
         due: list[float] = []
         for key, preview in shown.items():
             if key not in self._arms:
                 name, place = key
                 colours = {"proposed": _PLACE_COLOURS[place % len(_PLACE_COLOURS)]}
-                self._arms[key] = _ArmWay(self._server, name, node=f"{TAUGHT}/{name}.{place}", colours=colours)
+                self._arms[key] = _ArmPathDrawing(self._server, name, node=f"{TAUGHT}/{name}.{place}", colours=colours)
             self._arms[key].draw(preview, newest, now_s)
             if (next_s := self._arms[key].animate(now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
 
 
-class _ArmWay:
+class _ArmPathDrawing:
     def __init__(self, server: Canvas, name: str, *, node: str, colours: Mapping[str, Rgb]) -> None:
         self._colours = colours
         self._server = server
@@ -94,19 +94,19 @@ class _ArmWay:
         is_another_arm = self._arm is None or self._arm[0] is not scene or self._arm[1] is not description
         if preview is self._preview and not is_another_arm:
             return
-        is_another_way = self._preview is None or self._preview.joints != preview.joints
+        is_another_path = self._preview is None or self._preview.joints != preview.joints
         self._preview, self._arm = preview, (scene, description)
         with self._server.atomic():
             self._draw_line(preview)
             if is_another_arm:
                 self._drop_ghost()
             self._draw_ghost(preview, newest)
-        if is_another_way:
+        if is_another_path:
             self._began_s = now_s
         self._next_s = now_s
 
     def animate(self, now_s: float) -> float | None:
-        """Move the ghost of a proposed way along it, over and over; returns when to call again."""
+        """Animate the ghost along a proposed path in a loop; return the time of the next call."""
         preview, ghost = self._preview, self._ghost
         if preview is None or ghost is None or preview.state != "proposed" or len(preview.joints) < 2:
             return None
@@ -149,7 +149,7 @@ class _ArmWay:
         if self._ghost is None:
             self._ghost = self._new_ghost(newest)
         if self._ghost is not None:
-            self._ghost.see(newest)
+            self._ghost.update_tool(newest)
             self._ghost.place(preview.joint_names, preview.joints[-1])
             self._ghost.paint(colour)
             self._ghost.root.visible = True
@@ -161,7 +161,7 @@ class _ArmWay:
         try:
             return _Ghost(self._server, f"{self._node}/ghost", newest.scene, description)
         except (FlexcellError, ValueError) as error:
-            # The line alone still tells much of the way.
+            # The line alone still shows the path.
             _log.warning("the ghost of %s is not drawn: %s", self._name, error)
             return None
 
@@ -182,7 +182,7 @@ class _Ghost:
         self.root = server.scene.add_frame(node, show_axes=False)
         self._frames: dict[str, viser.FrameHandle] = {}
         self._bodies: list[GeometryHandle] = []
-        # What stands still is there already, and would flicker against itself.
+        # Links that do not move are drawn already; copies of them would flicker.
         moved = self._linkage.moved_by(description.joint_names)
         for index, geometry in enumerate(scene.geometries):
             owner, _, link = geometry.frame.partition("/")
@@ -193,8 +193,8 @@ class _Ghost:
                 self._frames[link] = server.scene.add_frame(below, show_axes=False)
             self._bodies.append(add_geometry(server, f"{below}/{index}", geometry, opacity=_OPACITY))
 
-    def see(self, newest: LatestMessages) -> None:
-        """Take the fingers of the tool as they are now."""
+    def update_tool(self, newest: LatestMessages) -> None:
+        """Take over the current pose of the tool's fingers."""
         prefix = f"{self._arm}/"
         poses = poses_by_frame(newest.frames).items()
         self._seen = {
@@ -202,7 +202,7 @@ class _Ghost:
         }
 
     def place(self, names: tuple[str, ...], joints: tuple[float, ...]) -> None:
-        """Stand at these joints."""
+        """Move to these joints."""
         links = self._linkage.links(self._base, dict(zip(names, joints, strict=False)), seen=self._seen)
         for link, handle in self._frames.items():
             if link in links:
@@ -210,20 +210,20 @@ class _Ghost:
                 handle.position, handle.wxyz = pose.xyz, pose.wxyz
 
     def paint(self, colour: Rgb) -> None:
-        """Take on a colour."""
+        """Set the colour."""
         for body in self._bodies:
             body.color = colour
 
 
 def interpolate_joints(joints: tuple[tuple[float, ...], ...], share: float) -> tuple[float, ...]:
-    """Return the configuration at a share, 0 to 1, of the way through `joints`, measured by the joint that turns most.
+    """Return the configuration at a fraction, 0 to 1, of the path `joints`, measured by the joint that moves most.
 
-    Of a way that goes nowhere it is the last one.
+    A path without motion gives its last configuration.
     """
     rows = np.asarray(joints, dtype=np.float64)
-    gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(rows, axis=0)).max(axis=1))])
-    if gone[-1] == 0.0 or not math.isfinite(gone[-1]):
+    distance = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(rows, axis=0)).max(axis=1))])
+    if distance[-1] == 0.0 or not math.isfinite(distance[-1]):
         return joints[-1]
-    at = share * float(gone[-1])
-    turned: list[NDArray[np.float64]] = list(rows.T)
-    return tuple(float(np.interp(at, gone, values)) for values in turned)
+    at = share * float(distance[-1])
+    columns: list[NDArray[np.float64]] = list(rows.T)
+    return tuple(float(np.interp(at, distance, values)) for values in columns)

@@ -1,4 +1,4 @@
-"""Everything that is drawn, each kind by itself: for everybody as it is now, or for one page as it was."""
+"""All layers of the 3D view: the live scene for all pages, or a past scene for one page."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from editor_web.cell_view.rendering.layer_groups import LayerGroup
 
 
 class SceneLayers:
-    """All kinds of things on one canvas, below the node `under`."""
+    """All layers on one canvas, below the node `under`."""
 
     def __init__(self, canvas: Canvas, *, under: str = "") -> None:
         self._bodies = BodyLayer(canvas, under=under)
@@ -27,7 +27,7 @@ class SceneLayers:
         self._detections = DetectionLayer(canvas, under=under)
 
     def all(self, newest: LatestMessages, shown: frozenset[LayerGroup]) -> float | None:
-        """Draw what has changed; returns when, on the steady clock, to draw again without a new message."""
+        """Draw the changes; return the monotonic time at which to draw again without a new message."""
         now_s = time.monotonic()
         self._bodies.draw(newest)
         self._obstacles.draw(newest)

@@ -1,1 +1,1 @@
-"""What viser draws with: the gateway to its server, canvases, layer groups, transforms, geometry and colours."""
+"""Rendering with viser: the gateway to its server, canvases, layer groups, transforms, geometry and colours."""

@@ -1,4 +1,4 @@
-"""Where things are drawn: in the scene that everybody sees, or in that of one connected page only."""
+"""Canvas of the layers: the scene of all pages, or the scene of one connected page."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import viser
 
 Canvas = viser.ViserServer | viser.ClientHandle
 CELL = "/cell"
-"""The node that the bodies of the cell are below."""
+"""Parent node of the bodies of the cell."""
 TAUGHT = "/taught"
-"""The node that what somebody looks at is below, whatever else is shown or hidden."""
+"""Parent node of the previews of a page, independent of the visible groups."""
 PAST = "/past"
-"""The node that everything of a past moment is below, beside the live nodes."""
+"""Parent node of a past scene, beside the live nodes."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Stops = Sequence[tuple[int, int, int]]
-# Told apart by most eyes, on light and dark grounds (after Okabe and Ito, and Tol).
+# Distinguishable with colour blindness, on light and dark backgrounds (after Okabe and Ito, and Tol).
 _NAMED = (
     (0, 158, 115),
     (230, 159, 0),
@@ -23,12 +23,12 @@ _NAMED = (
 
 
 def ramp(stops: Stops, share: NDArray[np.floating]) -> NDArray[np.uint8]:
-    """Return the colours (… x 3) at shares 0 to 1 of the way along evenly spaced stops; others are clipped."""
+    """Return the colours (… x 3) at fractions 0 to 1 along evenly spaced stops; other values are clipped."""
     at = np.linspace(0.0, 1.0, len(stops))
     channels = [np.interp(share, at, [stop[channel] for stop in stops]) for channel in range(3)]
     return np.stack(channels, axis=-1).round().astype(np.uint8)
 
 
 def colour_of_name(name: str) -> tuple[int, int, int]:
-    """Return the colour that stands for a name, everywhere and always the same; other names may share it."""
+    """Return the colour of a name, always the same one; other names may share it."""
     return _NAMED[zlib.crc32(name.encode()) % len(_NAMED)]

@@ -15,15 +15,15 @@ from engine.messages.shapes import Box, Capsule, Cylinder, Hull, Solid, Sphere
 
 _RINGS = 8
 _SIDES = 24
-# What is drawn over the same part must not flicker against it.
+# A shape drawn over the same part must not flicker against it.
 _SWELL = 1.01
 
 
 def add_convex_shape(server: Canvas, name: str, solid: Solid, *, colour: Rgb, opacity: float) -> GeometryHandle:
-    """Draw one solid below the node that `name` is below, translucent.
+    """Draw one solid at the node `name`, translucent.
 
     Raises:
-        ValueError: a hull's points do not make a body.
+        ValueError: the points of a hull do not span a volume.
     """
     common: dict[str, Any] = {
         "color": colour,
@@ -63,12 +63,12 @@ def capsule(radius_m: float, length_m: float) -> tuple[NDArray[np.float32], NDAr
 
 
 def hull(points_m: tuple[Vector3, ...]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Return vertices (n x 3) and faces (m x 3) of the convex hull of points; faces are turned either way.
+    """Return vertices (n x 3) and faces (m x 3) of the convex hull of points; face orientation is arbitrary.
 
     Raises:
         ValueError: the points lie in one plane.
     """
-    # scipy takes most of a second to import, and most cells have no hulls.
+    # Importing scipy takes most of a second, and most cells have no hulls.
     from scipy.spatial import ConvexHull, QhullError
 
     vertices = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""The geometries of `cell/scene` in viser, and how large they are."""
+"""The geometries of `cell/scene` in viser, and their bounding boxes."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def add_geometry(
     tint: Rgb | None = None,
     opacity: float | None = None,
 ) -> GeometryHandle:
-    """Draw one geometry under the node that `name` is below; `tint` and `opacity` make a ghost of it.
+    """Draw one geometry at the node `name`; `tint` and `opacity` draw it as a ghost.
 
     Raises:
         FlexcellError: its kind is unknown.
-        ValueError: its numbers do not make a shape.
+        ValueError: its dimensions are not valid.
     """
     alpha = geometry.rgba[3]
-    # The options are the same for each kind of shape; viser types them separately.
+    # The options are the same for every kind of shape; viser types them separately.
     common: dict[str, Any] = {
         "color": colour_of(geometry) if tint is None else tint,
         "opacity": opacity if opacity is not None else None if alpha >= 1.0 else alpha,
-        # A ghost that stands where the body is must not flicker against it.
+        # A ghost at the pose of the body must not flicker against it.
         "scale": 1.0 if opacity is None else _SWELL,
         "cast_shadow": opacity is None,
         "receive_shadow": opacity is None,

@@ -1,4 +1,4 @@
-"""The newest message of each kind: written by the event loop's thread, read by the thread that draws."""
+"""The latest message of each kind: written by the event loop's thread, read by the drawing thread."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from engine.skills.vision import Detections
 
 
 class LatestMessages:
-    """One reference for each, the newest wins; `arrived` is set with every message.
+    """One reference per kind, the latest message wins; `arrived` is set with every message.
 
     `descriptions`, `ways`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
-    frozen: whoever reads one sees it whole.
+    frozen, so that a reader always sees a complete one.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class LatestMessages:
         self.detections: dict[str, Detections] = {}
 
     def put(self, name: str, message: object) -> None:
-        """Keep a message; `name` is that of its arm or camera, where it has one."""
+        """Store a message; `name` is that of its arm or camera, if it has one."""
         match message:
             case SceneDescription():
                 self.scene = message

@@ -1,7 +1,7 @@
-"""What can be shown and hidden in the 3D view, by each page for itself.
+"""Layer groups that each page shows or hides in its 3D view.
 
-A group is one node of the scene with everything of its kind below. viser shows a node that a client has of its
-own in the place of the server's node of that name, so each client has its own groups, visible or not.
+A group is one scene node with all objects of its kind below it. A client's own node replaces the server's node of the
+same name in viser, so each client has its own visible or hidden groups.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ _KEPT_PAGES = 200
 
 
 def root_of(group: LayerGroup, *, under: str = "") -> str:
-    """Return the name of the node that everything of a group is below, itself below the node `under`."""
+    """Return the name of the root node of a group, below the node `under`."""
     return f"{under}/{group}"
 
 
 class ClientLayerGroups:
-    """Which groups each connected client shows, of the present or of a past moment.
+    """The groups that each connected client shows, of the live scene or of a past one.
 
     Args:
-        server: Of the clients.
-        changed: Called, on any thread, when what the clients show together may be another now.
+        server: The viser server of the clients.
+        changed: Called, on any thread, when the set of all shown groups may have changed.
     """
 
     def __init__(self, server: viser.ViserServer, *, changed: Callable[[], None]) -> None:
@@ -46,13 +46,13 @@ class ClientLayerGroups:
 
     @property
     def shown(self) -> frozenset[LayerGroup]:
-        """The groups that at least one client shows now, as they are now."""
+        """The live groups that at least one client shows now."""
         with self._lock:
             pages = {roots.page for roots in self._roots.values()} - self._past
             return frozenset[LayerGroup]().union(*(self._choice(page) for page in pages))
 
     def show(self, page: str, groups: frozenset[LayerGroup]) -> None:
-        """Let the clients of a page, present and to come, show these groups and no others."""
+        """Show exactly these groups in the current and future clients of a page."""
         with self._lock:
             self._choices.pop(page, None)
             self._choices[page] = groups
@@ -63,12 +63,12 @@ class ClientLayerGroups:
 
     @property
     def past(self) -> frozenset[str]:
-        """The pages that show a past moment."""
+        """The pages that show a past scene."""
         with self._lock:
             return self._past
 
     def clear_past(self, client_id: int) -> None:
-        """Remove whatever a client has below `/past`."""
+        """Remove all nodes of a client below `/past`."""
         with self._lock:
             roots = self._roots.get(client_id)
             if roots is not None:
@@ -76,7 +76,7 @@ class ClientLayerGroups:
                 self._update(roots.page)
 
     def show_past(self, pages: frozenset[str]) -> None:
-        """Let the clients of these pages show what is below `/past`, and all others what is live."""
+        """Show the nodes below `/past` in the clients of these pages, and the live nodes in all others."""
         with self._lock:
             changed, self._past = self._past ^ pages, pages
             for page in changed:
@@ -106,7 +106,7 @@ class ClientLayerGroups:
 
 
 class _Roots:
-    """One client's own nodes above everything that it can show or hide."""
+    """One client's own root nodes of everything that it can show or hide."""
 
     def __init__(self, client: viser.ClientHandle, page: str) -> None:
         self.page = page
@@ -116,12 +116,12 @@ class _Roots:
         self._past, self._past_groups = _past_roots(client.scene)
 
     def clear_past(self) -> None:
-        """Remove whatever there is below `/past`."""
+        """Remove all nodes below `/past`."""
         self._past.remove()
         self._past, self._past_groups = _past_roots(self._scene)
 
     def show(self, groups: frozenset[LayerGroup], *, is_past: bool) -> None:
-        """Show these groups, and the bodies of the cell with what somebody looks at."""
+        """Show these groups, the bodies of the cell, and the previews."""
         for node in self._live:
             _set_visible(node, not is_past)
         _set_visible(self._past, is_past)

@@ -1,4 +1,4 @@
-"""Poses as the 3D view needs them: quaternions in viser's order, rotations and rigid transforms as matrices."""
+"""Poses for the 3D view: quaternions in viser's order, rotations and rigid transforms as matrices."""
 
 from __future__ import annotations
 
@@ -55,18 +55,18 @@ def rotation(xyzw: Quaternion) -> Matrix:
 
 def matrix_of_pose(pose: Pose | WorldPose) -> Matrix:
     """Return a pose as a 4 x 4 transform."""
-    made = np.eye(4)
-    made[:3, :3] = rotation(pose.xyzw)
-    made[:3, 3] = pose.xyz
-    return made
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation(pose.xyzw)
+    matrix[:3, 3] = pose.xyz
+    return matrix
 
 
 def inverse(transform: Matrix) -> Matrix:
     """Return the inverse of a rigid 4 x 4 transform."""
-    made = np.eye(4)
-    made[:3, :3] = transform[:3, :3].T
-    made[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
-    return made
+    matrix = np.eye(4)
+    matrix[:3, :3] = transform[:3, :3].T
+    matrix[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
+    return matrix
 
 
 def pose_of_matrix(transform: Matrix) -> WorldPose:

@@ -1,4 +1,4 @@
-"""Where the links of an arm are at given joints, from the URDF that the arm publishes of itself."""
+"""Forward kinematics of an arm's links from the URDF that the arm publishes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class UrdfTree:
         self._joints = _from_the_root(self.root, joints)
 
     def moved_by(self, joints: Collection[str]) -> frozenset[str]:
-        """Return the links that stand elsewhere when these joints do."""
+        """Return the links that these joints move."""
         moved: set[str] = set()
         for joint in self._joints:
             if joint.name in joints or joint.parent in moved:
@@ -71,17 +71,17 @@ class UrdfTree:
 
         Args:
             base: The frame of the root link in the world.
-            joints: Values by joint name; what is not in it stays relative to its parent as it was `seen`, else at 0.
-            seen: Frames of links in the world at some other time.
+            joints: Values by joint name; other joints keep the relative pose in `seen`, else they are at 0.
+            seen: Measured frames of links in the world, possibly at another time.
         """
-        found = {self.root: base}
+        frames = {self.root: base}
         for joint in self._joints:
-            parent = found[joint.parent]
+            parent = frames[joint.parent]
             if joint.name not in joints and joint.parent in seen and joint.child in seen:
-                found[joint.child] = parent @ inverse(seen[joint.parent]) @ seen[joint.child]
+                frames[joint.child] = parent @ inverse(seen[joint.parent]) @ seen[joint.child]
             else:
-                found[joint.child] = parent @ joint.at(joints.get(joint.name, 0.0))
-        return found
+                frames[joint.child] = parent @ joint.at(joints.get(joint.name, 0.0))
+        return frames
 
 
 def _joint(element: ET.Element) -> UrdfJoint:
@@ -103,7 +103,7 @@ def _joint(element: ET.Element) -> UrdfJoint:
 
 
 def _from_the_root(root: str, joints: list[UrdfJoint]) -> tuple[UrdfJoint, ...]:
-    """Return the joints such that each one's parent comes before it."""
+    """Return the joints in topological order, parents first."""
     below: dict[str, list[UrdfJoint]] = {}
     for joint in joints:
         below.setdefault(joint.parent, []).append(joint)
@@ -113,14 +113,14 @@ def _from_the_root(root: str, joints: list[UrdfJoint]) -> tuple[UrdfJoint, ...]:
         ordered += found
         links += [joint.child for joint in found]
     if len(ordered) != len(joints):
-        raise FlexcellError("a joint of the arm's description hangs on no link", where=root)
+        raise FlexcellError("a joint of the arm's description has no parent link", where=root)
     return tuple(ordered)
 
 
 def _numbers(text: str) -> Matrix:
     numbers = np.array([float(word) for word in text.split()])
     if numbers.shape != (3,):
-        raise FlexcellError(f"three numbers are due where the arm's description has {text!r}")
+        raise FlexcellError(f"expected three numbers in the arm's description, got {text!r}")
     return numbers
 
 

@@ -1,7 +1,7 @@
-"""viser behind a lock: its page without its own panel, its port only for those who know the key.
+"""viser with access control: its page without its own panel, its port only for clients with the key.
 
-viser runs its own thread and port and asks nobody for a password. It is bound to loopback, and demands a
-secret header that only our proxy sends (`routes/cell.py`). The same header tells which page a connection is of.
+viser runs its own thread and port without authentication. It is bound to loopback, and requires a secret header that
+only the proxy of this server sends (`sockets/cell_proxy.py`). A second header names the page of a connection.
 """
 
 from __future__ import annotations
@@ -24,34 +24,34 @@ KEY_HEADER = "X-Cell-Key"
 PAGE_HEADER = "X-Cell-Page"
 ROLE_HEADER = "X-Cell-Role"
 PAGE: ContextVar[str] = ContextVar("cell_page", default="")
-"""The page that a connection of viser belongs to; set in all that is done for that connection."""
+"""The page of a viser connection; set in the context of that connection."""
 ROLE: ContextVar[str] = ContextVar("cell_role", default="")
-"""What whoever looks at that page may do: a role of `editor_web.security.authentication`."""
+"""The role of the page's session, see `editor_web.security.authentication`."""
 _HIDE_PANEL = (
     b"<style>[data-testid=floating-panel],[data-floating-window],[data-dock-region],div:has([data-dock-root])~.mantine-Paper-root,"
     b".mantine-Notifications-root{display:none!important}</style></head>"
 )
-# What viser's reading of a message raises where it is none of viser's own.
+# Errors that viser raises while reading a message that is not its own.
 _UNREADABLE = (AssertionError, AttributeError, KeyError, TypeError, ValueError, msgspec.DecodeError)
 _UNSUPPORTED_DATA = 1003
 _log = logging.getLogger("flexcell.cell_view")
 
 
 def viser_page() -> bytes:
-    """Return viser's one-file page with its own panel hidden, and with what tells the page around it of the mouse."""
+    """Return viser's one-file page with its panel hidden, and a script that reports mouse events to the parent page."""
     built = Path(viser.__file__).parent / "client" / "build" / "index.html"
-    told = b"<script>" + Path(__file__).with_name("frame_events.js").read_bytes() + b"</script>"
-    return built.read_bytes().replace(b"</head>", told + _HIDE_PANEL, 1)
+    script = b"<script>" + Path(__file__).with_name("frame_events.js").read_bytes() + b"</script>"
+    return built.read_bytes().replace(b"</head>", script + _HIDE_PANEL, 1)
 
 
 def new_viser_server(key: str) -> viser.ViserServer:
-    """Start viser on a loopback port that demands `key`; takes some 20 ms."""
-    # viser greets on stdout, which belongs to the command line's own output; nobody else uses rich's global console.
+    """Start viser on a loopback port that requires `key`; takes about 20 ms."""
+    # viser prints to stdout, which is reserved for the command line's output; nothing else uses rich's global console.
     rich.reconfigure(quiet=True)
     with _locked(key):
-        # 127.0.0.1 can always be bound; viser would wait for ever on an address that cannot.
+        # 127.0.0.1 can always be bound; for an address that cannot, viser would wait without limit.
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    # Any connected page may ask viser to publish itself through a public tunnel: never.
+    # Any connected page may request a public tunnel to viser; it is disabled.
     server.request_share_url = _no_tunnel
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     return server
@@ -64,7 +64,7 @@ def _no_tunnel(verbose: bool = True) -> str | None:
 
 @contextmanager
 def _locked(key: str) -> Generator[None]:
-    """Make the server that viser opens inside demand our header; viser has no option for it."""
+    """Require the key header for the server that viser opens in this context; viser has no option for it."""
     original: Callable[..., Any] = websockets.asyncio.server.serve
 
     def serve(handler: Callable[..., Any], *args: Any, **options: Any) -> Any:

@@ -12,7 +12,7 @@ from engine.event import BranchesPreempted
     ("branches", "said"),
     [
         (("mover", "light"), "preempt mover, light when camera=lost: mover, light"),
-        ((), "preempt mover, light when camera=lost: all of them had ended"),
+        ((), "preempt mover, light when camera=lost: all branches had ended"),
     ],
 )
 def test_a_condition_that_preempts_is_told_with_the_branches_that_it_found_at_work(

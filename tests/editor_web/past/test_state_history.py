@@ -112,4 +112,4 @@ def test_the_values_of_every_moment_are_what_was_told_live(seqs: list[int]) -> N
 
 def test_without_the_behavior_there_are_no_values() -> None:
     """And that is said."""
-    assert UserdataCheckpoints(None).at(RunStateHistory("r"), 3).problem == "nothing tells which behavior was executed"
+    assert UserdataCheckpoints(None).at(RunStateHistory("r"), 3).problem == "the executed behavior is unknown"

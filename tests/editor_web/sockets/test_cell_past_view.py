@@ -106,7 +106,7 @@ async def test_of_many_moments_the_newest_is_shown(serve: Serve, backend: FakeBa
 async def test_a_run_without_a_recording_is_told_in_words(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served, shown(served) as view, past_of(served) as past:
         await ask(past, 1.0, run="other")
-        assert (await told(past, 1.0))["problem"] == "there is no recording of this run"
+        assert (await told(past, 1.0))["problem"] == "this run has no recording"
         assert view.is_seen("/cell/left.fore")
 
 

@@ -89,7 +89,7 @@ async def test_a_message_is_sent_when_it_is_new_and_cut_to_a_size(serve: Serve) 
     async with SkillBus(LoopClock()) as bus:
         topic = bus.topic("cell/blob", Blob)
         async with serve(backend_on(bus)) as served, looking(served) as frame:
-            assert "nothing was published" in (await frame("message", topic="cell/blob"))["problem"]
+            assert "no message was published" in (await frame("message", topic="cell/blob"))["problem"]
             topic.publish(Blob(points=tuple(map(float, range(5000))), image=b"x" * 100_000))
             value = (await frame("message"))["value"]
             assert value["image"] == "100000 bytes"

@@ -77,7 +77,7 @@ def test_a_capture_is_the_recording_beside_what_was_learned(http: httpx.Client, 
     ("query", "words"),
     [
         ({"kind": "dmp", "name": "turning"}, "turning"),
-        ({"kind": "record", "name": "note"}, "a record has no place"),
+        ({"kind": "record", "name": "note"}, "an entry of kind record has no poses"),
         ({"capture": 77}, "there is no capture 77"),
     ],
 )
@@ -109,7 +109,7 @@ def test_what_is_too_fast_or_not_there_is_not_played(http: httpx.Client, body: d
 
 def test_an_arm_that_holds_itself_is_not_pushed(http: httpx.Client) -> None:
     answer = http.post("/push", json={"arm": "left", "force_n": [0, 5, 0], "duration_s": 0.2})
-    assert (answer.status_code, answer.json()["hint"]) == (422, "let it float first")
+    assert (answer.status_code, answer.json()["hint"]) == (422, "start hand guiding first")
 
 
 def test_a_viewer_moves_nothing(site: TeachSite) -> None:

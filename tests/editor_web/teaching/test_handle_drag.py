@@ -329,7 +329,7 @@ async def test_an_arm_that_holds_itself_is_not_pushed(site: TeachSite) -> None:
     async with hand_at(site) as hand:
         await hand.take("push")
         await hand.grab()
-        assert (await hand.told("refused"))["message"] == "the arm holds itself"
+        assert (await hand.told("refused"))["message"] == "the arm is not in hand guiding"
 
 
 async def test_an_arm_that_there_is_not_has_no_handle(site: TeachSite) -> None:

@@ -66,7 +66,7 @@ async def test_a_missing_part_is_named_with_those_there_are() -> None:
 
 
 async def test_a_part_near_a_frame_is_there_and_a_far_one_is_not() -> None:
-    """The distance is measured in space and told."""
+    """The message reports the distance in space."""
     state = ExpectPart(part="hca_north", frame="tray_south", tolerance_m=0.05)
     assert await state.run(cell((0.03, -0.28, 0.03))) == Outcome("there")
     outcome = await state.run(cell((0.06, -0.28, 0.0)))

@@ -1,4 +1,4 @@
-"""Hands are sent into a cell and out of it: what is asked, when the state goes on, how a refusal is told."""
+"""Simulated people: the requests to the cell, the wait for the hand, and the cause of a refusal."""
 
 from __future__ import annotations
 

@@ -54,9 +54,11 @@ async def test_the_fingers_go_back_to_how_they_were(state: State, goal: type[Act
 async def test_what_cannot_be_grasped_again_is_an_error() -> None:
     missed = ActionEnd("succeeded", GraspResult(held=False, width_m=0.0, force_n=0.0, reason="nothing there"), None)
     ctx = FakeContext({"left/gripper/gripper_grasp": missed})
-    with pytest.raises(StateError, match="does not hold again what it held: nothing there"):
+    with pytest.raises(StateError, match="did not grasp again the part that it held: nothing there"):
         await Open(gripper="left").undo(ctx, done(GripperOpen, HOLDING))
 
 
 def test_a_gripper_of_which_nobody_knows_how_it_was_is_not_moved() -> None:
-    assert GRASP.cannot_undo(done(GripperGrasp, None)) == "it is not known how the gripper was before"
+    assert (
+        GRASP.cannot_undo(done(GripperGrasp, None)) == "the state of the gripper before the activation was not recorded"
+    )

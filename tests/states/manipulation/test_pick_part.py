@@ -1,4 +1,4 @@
-"""Taking a part: the order of things, where the tool goes, and how every way of not getting it ends."""
+"""Picking a part: the order of the steps, the poses of the tool, and each failure outcome."""
 
 from __future__ import annotations
 
@@ -140,12 +140,12 @@ async def test_the_arm_is_told_of_its_load_where_the_behavior_knows_it() -> None
         ({"move_free": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"all_inverse_kinematics": SkillFailed("it is 0.3 m too far")}, "unreachable", "it is 0.3 m too far"),
         ({"inverse_kinematics": SkillFailed("over it it is too far")}, "unreachable", "over it it is too far"),
-        ({"inverse_kinematics": near(2.9)}, "unreachable", "the straight way would turn a joint by 2.60 rad"),
+        ({"inverse_kinematics": near(2.9)}, "unreachable", "the straight line would turn a joint by 2.60 rad"),
         ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
-        ({"check_collision": AT_CRATE}, "blocked", "there, arm/finger with crate would touch"),
+        ({"check_collision": AT_CRATE}, "blocked", "at the target, arm/finger with crate would touch"),
         ({"gripper_open": broken_off("aborted", LIMIT)}, "failed", "the gripper of arm did not open"),
-        ({"cart_lin_task": broken_off("aborted", LIMIT)}, "failed", "arm did not go straight to pose"),
+        ({"cart_lin_task": broken_off("aborted", LIMIT)}, "failed", "arm did not move on a straight line to pose"),
         ({"attach_part": SkillFailed("no such part")}, "failed", "part block was not attached to arm"),
     ],
     ids=str,
@@ -153,42 +153,42 @@ async def test_the_arm_is_told_of_its_load_where_the_behavior_knows_it() -> None
 async def test_every_way_of_not_getting_there_has_its_outcome_and_reason(
     changed: dict[str, object], outcome: str, reason: str
 ) -> None:
-    told = await PICK.run(cell(**changed))
-    assert told.name == outcome
-    assert reason in str(told.outputs["reason"])
-    assert told.cause is not None
-    assert told.cause.message == "arm did not pick part block"
-    assert told.cause.kind == "manipulation.PickPart"
+    result = await PICK.run(cell(**changed))
+    assert result.name == outcome
+    assert reason in str(result.outputs["reason"])
+    assert result.cause is not None
+    assert result.cause.message == "arm did not pick part block"
+    assert result.cause.kind == "manipulation.PickPart"
 
 
 async def test_a_missed_part_leaves_the_tool_open_and_the_arm_in_front() -> None:
     ctx = cell(gripper_grasp=held(found=False, reason="the fingers closed to 0.0 mm"))
-    told = await PICK.run(ctx)
-    assert told.name == "missed"
-    assert "the fingers closed to 0.0 mm" in str(told.outputs["reason"])
+    result = await PICK.run(ctx)
+    assert result.name == "missed"
+    assert "the fingers closed to 0.0 mm" in str(result.outputs["reason"])
     assert asked(ctx)[-3:] == ["arm/gripper/gripper_open", "cell/detach_part", "arm/cart_lin_task"]
     assert lines(ctx)[-1] == (0.5, 0.1, 0.3)
 
 
 async def test_a_part_that_cannot_be_lifted_is_let_go_of_where_it_stands() -> None:
     ctx = cell(cart_lin_task=[done(WENT), broken_off("rejected", IN_THE_WAY), done(WENT)])
-    told = await PICK.run(ctx)
-    assert (told.name, "block would touch crate" in str(told.outputs["reason"])) == ("blocked", True)
+    result = await PICK.run(ctx)
+    assert (result.name, "block would touch crate" in str(result.outputs["reason"])) == ("blocked", True)
     assert asked(ctx)[-3:] == ["arm/gripper/gripper_open", "cell/detach_part", "arm/cart_lin_task"]
 
 
 async def test_a_part_that_is_not_there_is_missed_before_anything_moves() -> None:
     ctx = cell()
-    told = await PickPart(robot="arm", part="blok", width_m=0.05).run(ctx)
-    assert (told.name, told.outputs) == ("missed", {"reason": "no such part is in the cell; did you mean block?"})
+    result = await PickPart(robot="arm", part="blok", width_m=0.05).run(ctx)
+    assert (result.name, result.outputs) == ("missed", {"reason": "no such part is in the cell; did you mean block?"})
     assert asked(ctx) == []
 
 
 async def test_a_part_lost_while_it_is_lifted_is_missed_and_no_longer_planned_with() -> None:
     ctx = cell(read_gripper=GripperState(time_s=0.0, width_m=0.0, force_n=0.0, held=False))
-    told = await PickPart(robot="arm", part="block", width_m=0.05, mass_kg=1.0).run(ctx)
-    assert told.name == "missed"
-    assert "arm lost part block" in str(told.outputs["reason"])
+    result = await PickPart(robot="arm", part="block", width_m=0.05, mass_kg=1.0).run(ctx)
+    assert result.name == "missed"
+    assert "arm lost part block" in str(result.outputs["reason"])
     assert ("arm/set_load", SetLoad(mass_kg=0.0)) in ctx.sent
     assert "cell/detach_part" in asked(ctx)
 
@@ -198,7 +198,7 @@ async def test_a_part_lost_while_it_is_lifted_is_missed_and_no_longer_planned_wi
     [
         ({}, "a gripper needs `width_m`"),
         ({"tool": "suction"}, "suction"),
-        ({"tool": "magnet", "approach": [0, 0, 0]}, "`approach` is no direction"),
+        ({"tool": "magnet", "approach": [0, 0, 0]}, "`approach` must not be a zero vector"),
         ({"tool": "magnet", "turns": 0}, "turns"),
     ],
 )

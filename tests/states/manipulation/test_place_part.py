@@ -1,4 +1,4 @@
-"""Putting a part down: the order of things, where the tool goes, and how every way of not getting there ends."""
+"""Placing a part: the order of the steps, the poses of the tool, and each failure outcome."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
         ({"move_free": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
-        ({"check_collision": AT_CRATE}, "blocked", "there, arm/finger with crate would touch"),
+        ({"check_collision": AT_CRATE}, "blocked", "at the target, arm/finger with crate would touch"),
         (
             {"check_collision": touching("crate", "block", 0.015)},
             "blocked",
@@ -82,11 +82,11 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
 async def test_every_way_of_not_getting_there_has_its_outcome_and_reason(
     changed: dict[str, object], outcome: str, reason: str
 ) -> None:
-    told = await PLACE.run(cell(**changed))
-    assert told.name == outcome
-    assert reason in str(told.outputs["reason"])
-    assert told.cause is not None
-    assert told.cause.message == "arm did not place part block"
+    result = await PLACE.run(cell(**changed))
+    assert result.name == outcome
+    assert reason in str(result.outputs["reason"])
+    assert result.cause is not None
+    assert result.cause.message == "arm did not place part block"
 
 
 async def test_a_part_that_is_lost_on_the_way_is_not_put_down() -> None:
@@ -98,5 +98,5 @@ async def test_a_part_that_is_lost_on_the_way_is_not_put_down() -> None:
 
 def test_a_direction_of_no_length_is_refused_with_the_document() -> None:
     given = {"robot": "arm", "part": "block", "target": {"entry": "place"}, "approach": [0, 0, 0]}
-    with pytest.raises(msgspec.ValidationError, match="`approach` is no direction"):
+    with pytest.raises(msgspec.ValidationError, match="`approach` must not be a zero vector"):
         msgspec.convert(given, PlacePart)

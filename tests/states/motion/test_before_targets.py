@@ -136,7 +136,7 @@ async def test_a_straight_line_leads_back_along_the_tool_from_where_it_is() -> N
     assert isinstance(goal, CartLinTask)
     assert goal.pose.xyz == near(0.2, 0.0, 0.3)
     assert outcome.cause is not None
-    assert "0.2 m before the place where it was" in outcome.cause.message
+    assert "0.2 m before its start pose" in outcome.cause.message
 
 
 async def test_a_recording_is_learned_and_followed_when_the_state_runs() -> None:

@@ -252,7 +252,7 @@ async def test_a_recording_that_nothing_is_learned_from_is_an_outcome(
         (FollowJointDmp, {"robot": "l", "dmp": {"entry": ""}}, "dmp"),
         (FollowJointDmp, {"robot": "l", "dmp": {"entry": "a"}, "time_scale": 0}, "time_scale"),
         (FollowJointDmp, {"robot": "l", "dmp": {"entry": "a"}, "approach_speed": 2}, "approach_speed"),
-        (FollowCartDmp, {"robot": "l", "dmp": {"entry": "a"}, "goal_offset_m": [0, 0, 1]}, "give that too"),
+        (FollowCartDmp, {"robot": "l", "dmp": {"entry": "a"}, "goal_offset_m": [0, 0, 1]}, "requires `goal`"),
         (PressAlongDmp, {"robot": "l", "dmp": {"entry": "a"}, "force_n": [0, 1]}, "force_n"),
         (LearnJointDmp, {"robot": "l", "recording": "a", "save_as": "b", "kernels": 185}, "kernels"),
     ],

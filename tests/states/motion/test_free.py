@@ -94,11 +94,11 @@ async def test_entries_are_read_when_the_state_runs(state: type[MoveFree] | type
 async def test_each_end_of_a_free_motion_is_an_outcome_with_its_reason(
     end: ActionEnd[object], outcome: str, reason: str
 ) -> None:
-    told = await MoveFree(robot="arm", joints=(0.5, 1.0)).run(FakeContext({"arm/move_free": end}))
-    assert (told.name, told.outputs) == (outcome, {"reason": reason})
-    assert told.cause is not None
-    assert told.cause.message == f"arm did not reach joints (0.5, 1): move_free was {end.status}"
-    assert told.cause.kind == "motion.MoveFree"
+    result = await MoveFree(robot="arm", joints=(0.5, 1.0)).run(FakeContext({"arm/move_free": end}))
+    assert (result.name, result.outputs) == (outcome, {"reason": reason})
+    assert result.cause is not None
+    assert result.cause.message == f"arm did not reach joints (0.5, 1): move_free was {end.status}"
+    assert result.cause.kind == "motion.MoveFree"
 
 
 async def test_a_planned_way_is_what_comes_out() -> None:
@@ -118,13 +118,15 @@ async def test_a_planned_way_is_what_comes_out() -> None:
     ],
 )
 async def test_a_planner_that_finds_nothing_is_no_planner_that_is_gone(end: ActionEnd[object], outcome: str) -> None:
-    told = await PlanMotion(robot="arm", pose=PoseTarget(entry="", xyz=(1, 0, 0))).run(
+    result = await PlanMotion(robot="arm", pose=PoseTarget(entry="", xyz=(1, 0, 0))).run(
         FakeContext({"arm/plan_motion": end})
     )
-    assert told.name == outcome
-    assert list(told.outputs) == ["reason"]
-    assert told.cause is not None
-    assert told.cause.message.startswith("no way of arm to pose (1.000, 0.000, 0.000) m was planned: plan_motion was")
+    assert result.name == outcome
+    assert list(result.outputs) == ["reason"]
+    assert result.cause is not None
+    assert result.cause.message.startswith(
+        "no path of arm to pose (1.000, 0.000, 0.000) m was planned: plan_motion was"
+    )
 
 
 async def test_a_plan_is_executed_as_it_is_and_with_its_speed() -> None:
@@ -148,8 +150,8 @@ async def test_a_plan_is_executed_as_it_is_and_with_its_speed() -> None:
     ],
 )
 async def test_a_plan_that_is_not_gone_to_its_end_says_why(end: ActionEnd[object], outcome: str) -> None:
-    told = await ExecutePlan(robot="arm").run(FakeContext({"arm/execute_plan": end}), plan=WAY)
-    assert (told.name, list(told.outputs)) == (outcome, ["reason"])
+    result = await ExecutePlan(robot="arm").run(FakeContext({"arm/execute_plan": end}), plan=WAY)
+    assert (result.name, list(result.outputs)) == (outcome, ["reason"])
 
 
 @pytest.mark.parametrize(

@@ -39,8 +39,8 @@ async def test_no_contact_is_another_and_says_how_little_was_felt() -> None:
     outcome = await SEARCH.run(FakeContext({"left/move_until_contact": ended(met=False, force_n=0.2)}))
     assert (outcome.name, outcome.outputs) == ("no_contact", {"travelled_m": 0.03, "force_n": 0.2})
     assert outcome.cause is not None
-    assert outcome.cause.message == "left met nothing within 0.050 m"
-    assert outcome.cause.chain()[-1].message == "the force against the way was 0.2 N at its end, 8.0 N count"
+    assert outcome.cause.message == "left detected no contact within 0.050 m"
+    assert outcome.cause.chain()[-1].message == "the contact force at the end was 0.2 N, threshold 8.0 N"
 
 
 async def test_a_guarded_move_that_fails_gives_the_reason_and_no_outputs() -> None:
@@ -67,7 +67,7 @@ async def test_guiding_that_is_rejected_gives_the_reason() -> None:
     assert (outcome.name, outcome.outputs) == ("failed", {})
     assert outcome.cause is not None
     assert [link.message for link in outcome.cause.chain()] == [
-        "left was not guided to an end: guide_arm was rejected",
+        "left did not finish guiding: guide_arm was rejected",
         "the arm is in direct joint control",
     ]
 

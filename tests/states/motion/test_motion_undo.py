@@ -94,13 +94,13 @@ async def test_a_goal_that_was_rejected_has_moved_nothing() -> None:
 def test_without_the_configuration_at_its_beginning_there_is_no_way_back(status: str) -> None:
     """After a crash in mid-motion, and in journals of versions before this one."""
     old = JointMotionResult(joints=(0.5, 0.5), duration_s=1.0) if status == "succeeded" else None
-    said = JOINTS.cannot_undo(done(JointTrapVel, old, status=status))
-    assert said == "the start configuration of its motion was not recorded"
+    problem = JOINTS.cannot_undo(done(JointTrapVel, old, status=status))
+    assert problem == "the start configuration of its motion was not recorded"
 
 
 async def test_a_way_back_that_fails_says_why() -> None:
     ctx = FakeContext(
         {"left/joint_trap_vel": broken_off("aborted", Cause(message="it touched the tray", where="left"))}
     )
-    with pytest.raises(StateError, match=r"left did not get back to where its motion began.*it touched the tray"):
+    with pytest.raises(StateError, match=r"left did not return to the start of its motion.*it touched the tray"):
         await JOINTS.undo(ctx, JOINTS_DONE)

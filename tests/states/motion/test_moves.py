@@ -123,7 +123,7 @@ async def test_a_failed_pose_motion_names_the_entry_and_its_offset() -> None:
     assert outcome.name == "failed"
     assert outcome.cause is not None
     assert [link.message for link in outcome.cause.chain()] == [
-        "left did not reach pose entry pick (0.000, 0.000, 0.100) m off: cart_trap_vel was rejected",
+        "left did not reach pose entry pick offset by (0.000, 0.000, 0.100) m: cart_trap_vel was rejected",
         "too far",
     ]
 

@@ -87,7 +87,7 @@ def test_shapes_are_written_by_their_full_lengths(name: str, size_m: tuple[float
     [
         ("box", [0.3, 0.2], "`size_m` of a box is its edges x, y and z"),
         ("sphere", [0.3, 0.2], "`size_m` of a sphere is its diameter"),
-        ("capsule", [0.3, 0.2], "its diameter and length, which is no less"),
+        ("capsule", [0.3, 0.2], "its diameter and its length of at least the diameter"),
         ("box", [0.3, 0.2, 0.0], "size_m"),
         ("cone", [0.3, 0.2], "cone"),
     ],
@@ -135,7 +135,7 @@ async def test_nearer_than_the_margin_is_not_free() -> None:
     report = CollisionReport(touching=(), distance_m=0.01, nearest=("arm/link_3", "table"))
     outcome = await Check(robot="arm", margin_m=0.02).run(FakeContext({"cell/check_collision": report}))
     assert outcome.name == "touching"
-    assert "arm/link_3 is 10.0 mm from table, 20.0 mm are asked for" in str(outcome.cause)
+    assert "arm/link_3 is 10.0 mm from table, 20.0 mm required" in str(outcome.cause)
 
 
 async def test_a_check_that_cannot_be_made_is_failed() -> None:

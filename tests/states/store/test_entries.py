@@ -62,7 +62,7 @@ async def test_a_write_that_lost_the_race_is_a_conflict() -> None:
     assert outcome.name == "conflict"
     assert outcome.cause is not None
     assert [link.message for link in outcome.cause.chain()] == [
-        "record entry count was changed by somebody else",
+        "record entry count was changed by another writer",
         "revision 7 is there, revision 6 was expected",
     ]
 

@@ -54,11 +54,11 @@ async def test_without_a_label_anything_will_do() -> None:
 
 
 async def test_what_is_not_there_is_not_found_and_the_cause_says_so() -> None:
-    because = Cause(message="nothing of that kind is seen with a score of 0.50 or more", where=ADDRESS)
+    because = Cause(message="no detection has a score of 0.50 or more", where=ADDRESS)
     assert await Detect(camera="top", label="cup").run(camera()) == Outcome(
         "not_found",
         {"detections": []},
-        Cause(message="top does not find cup", where="root/step", kind="vision.Detect", because=because),
+        Cause(message="top did not detect cup", where="root/step", kind="vision.Detect", because=because),
     )
 
 
@@ -67,7 +67,7 @@ async def test_a_camera_without_images_fails_with_its_reason() -> None:
     outcome = await Detect(camera="top", label="cup").run(context)
     assert (outcome.name, outcome.outputs) == ("failed", {})
     assert outcome.cause is not None
-    assert outcome.cause.message == "top did not look for cup"
+    assert outcome.cause.message == "top could not detect cup"
     assert outcome.cause.because is not None
     assert "its lens is covered" in outcome.cause.because.message
 

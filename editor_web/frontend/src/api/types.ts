@@ -2,7 +2,7 @@
 
 import type { Dict } from '../document/dict'
 
-/** One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that began and ended it. */
+/** One activation of a node, or `count` adjacent ones; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst of several; `seq` and `end_seq` are the events that started and ended it. */
 export interface ActivationInterval {
   readonly start_s: number
   readonly end_s: number | null
@@ -29,7 +29,7 @@ export interface AddNode {
   readonly on_edge?: TransitionRef | null
 }
 
-/** What an arm is: its joints with their limits (rad, rad/s), its tool, and the names of what it can do. */
+/** Description of an arm: its joints with their limits (rad, rad/s), its tool, and the names of its skills. */
 export interface ArmInfo {
   readonly name: string
   readonly model: string
@@ -41,7 +41,7 @@ export interface ArmInfo {
   readonly skills: readonly string[]
 }
 
-/** First frame: the arms and frames of the cell; `can_push` where bodies can be pushed at, as in a simulation. */
+/** First frame: the arms and frames of the cell; `can_push` is true if bodies can be pushed, as in a simulation. */
 export interface ArmInfoFrame {
   readonly k: "arms"
   readonly arms: readonly ArmInfo[]
@@ -49,7 +49,7 @@ export interface ArmInfoFrame {
   readonly frames: readonly string[]
 }
 
-/** What an arm does and where it is: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world. */
+/** Status of an arm: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world. */
 export interface ArmLive {
   readonly mode: string
   readonly activity: string
@@ -59,7 +59,7 @@ export interface ArmLive {
   readonly tool: ToolLive | null
 }
 
-/** The arms that are another than when told last, at most ten times a second. */
+/** The arms whose status has changed, at most ten times a second. */
 export interface ArmsLiveFrame {
   readonly k: "now"
   readonly arms: Dict<ArmLive>
@@ -71,7 +71,7 @@ export interface AutoConnect {
   readonly paths: readonly string[]
 }
 
-/** Outcomes that require less than `level` pass by themselves. */
+/** The autonomy level; outcomes that require less than `level` pass without an answer. */
 export interface AutonomyBody {
   readonly level: "off" | "low" | "high" | "full"
 }
@@ -99,7 +99,7 @@ export interface BehaviorSummaryBody {
   readonly warnings: number
 }
 
-/** Where a run pauses by itself; `path` may hold `*` and `?`, `condition` is an expression over userdata. */
+/** A breakpoint; `path` may contain `*` and `?`, `condition` is an expression over userdata. */
 export interface BreakpointBody {
   readonly path: string
   readonly when?: "before" | "after"
@@ -119,7 +119,7 @@ export interface BreakpointLive {
   readonly enabled: boolean
 }
 
-/** All breakpoints of a run, or of a behavior; they replace those before. */
+/** All breakpoints of a run or a behavior; they replace the previous ones. */
 export interface BreakpointsBody {
   readonly breakpoints: readonly BreakpointBody[]
 }
@@ -130,7 +130,7 @@ export interface BusParameterBody {
   readonly value: unknown
 }
 
-/** From the page: a button of a keyboard or gamepad, to be told on `buttons/<source>/<button>`. */
+/** From the page: a button of a keyboard or gamepad, to publish on `buttons/<source>/<button>`. */
 export interface ButtonInput {
   readonly k: "button"
   readonly source: string
@@ -165,7 +165,7 @@ export interface CartFit {
   readonly cut: TrimInterval
 }
 
-/** Everything that can be put into a behavior. `names` are those of the open cell by kind, which the JSON Schema of a parameter calls `cell_name`: robots, parts, cameras, frames. Those of a tool, link, output or label begin with the name of what has it: `left/panda_hand`. */
+/** Everything that a behavior can use. `names` are the names in the open cell by kind, the `cell_name` in the JSON Schema of a parameter: robots, parts, cameras, frames. A tool, link, output or label has the prefix of its owner: `left/panda_hand`. */
 export interface CatalogueBody {
   readonly states: readonly StateBody[]
   readonly containers: readonly ContainerBody[]
@@ -174,7 +174,7 @@ export interface CatalogueBody {
   readonly names: Dict<readonly string[]>
 }
 
-/** One link of a cause chain: first what was measured, then what followed from it. */
+/** One link of a cause chain; the first link is the root cause. */
 export interface CauseLine {
   readonly message: string
   readonly where: string
@@ -195,13 +195,13 @@ export interface ClearTransition {
   readonly outcome: string
 }
 
-/** Two texts of a document to be compared. */
+/** Two texts of a document to compare. */
 export interface CompareBody {
   readonly before: string
   readonly after: string
 }
 
-/** The document has changed on disk; `merged` has both changes, and is null where they contradict each other. */
+/** The document has changed on disk; `merged` has both changes, null if they conflict. */
 export interface ConflictBody {
   readonly message: string
   readonly where: string
@@ -212,17 +212,17 @@ export interface ConflictBody {
   readonly conflicts: readonly MergeConflictBody[]
 }
 
-/** A request to connect again what is lost of the cell. */
+/** A request to reconnect the lost devices of the cell. */
 export interface ConnectBody {
 }
 
-/** Whether every device of the cell is connected; `reason` says which is lost and why. */
+/** Whether every device of the cell is connected; `reason` names the lost device and why. */
 export interface ConnectionBody {
   readonly connected: boolean
   readonly reason: string
 }
 
-/** A kind of node that holds others; `only_in_tree` says where it may stand. */
+/** A kind of container node; `only_in_tree` restricts it to behavior trees. */
 export interface ContainerBody {
   readonly kind: string
   readonly title: string
@@ -230,7 +230,7 @@ export interface ContainerBody {
   readonly only_in_tree: boolean
 }
 
-/** What an operator sees of a run; `confirmed` once everything that was to be held is at rest. */
+/** The operator's view of a run; `confirmed` is true when everything that a pause holds is at rest. */
 export interface ControlBody {
   readonly paused: boolean
   readonly confirmed: boolean
@@ -247,7 +247,7 @@ export interface ControlBody {
   readonly loss_timeout_s: number
 }
 
-/** The control of a run that is under way. `confirmed` once everything that was to be held is at rest; `operator` is none, attached, detached or lost; `loss_policy` is what happens `loss_timeout_s` after a loss. */
+/** The control state of an active run. `confirmed` is true when everything that a pause holds is at rest; `operator` is none, attached, detached or lost; `loss_policy` applies `loss_timeout_s` after the loss of the operator. */
 export interface ControlLive {
   readonly paused: boolean
   readonly confirmed: boolean
@@ -269,18 +269,18 @@ export interface CopyBody {
   readonly paths: readonly string[]
 }
 
-/** Nodes as YAML, to be pasted anywhere. */
+/** Nodes as YAML, ready to paste. */
 export interface CopyResultBody {
   readonly yaml: string
 }
 
-/** A document that has gone and can be restored; `saved_at` is when its last text was first seen. */
+/** A deleted document that can be restored; `saved_at` is when its last text was first seen. */
 export interface DeletedDocumentBody {
   readonly id: string
   readonly saved_at: number
 }
 
-/** What a behavior is to be proposed from; with `id` it is also written there, as a new document. */
+/** The input of a proposal; with `id` the behavior is also written as a new document. */
 export interface DemonstrationBody {
   readonly steps: readonly DemonstrationStepBody[]
   readonly arm?: string
@@ -292,7 +292,7 @@ export interface DemonstrationBody {
   readonly id?: string
 }
 
-/** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
+/** An entry, or an action `open` or `close` of the tool, in order; without a role, the role is inferred. */
 export interface DemonstrationStepBody {
   readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
   readonly name: string
@@ -300,13 +300,13 @@ export interface DemonstrationStepBody {
   readonly part?: string | null
 }
 
-/** What differs between two versions; `layout_only` when nothing but positions on the canvas does. */
+/** The differences of two versions; `layout_only` is true if only canvas positions differ. */
 export interface DifferenceBody {
   readonly changes: readonly NodeChangeBody[]
   readonly layout_only: boolean
 }
 
-/** A document as it is on disk; `saved_at` is the time of its last change, seconds since 1970. */
+/** A document on disk; `saved_at` is the time of its last change, seconds since 1970. */
 export interface DocumentBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
@@ -318,7 +318,7 @@ export interface DocumentBody {
   readonly saved_at: number
 }
 
-/** What the document itself declares, as written. */
+/** The declarations of the document itself, as written. */
 export interface DocumentInfoBody {
   readonly name: string
   readonly description: string
@@ -329,7 +329,7 @@ export interface DocumentInfoBody {
   readonly success: readonly string[]
 }
 
-/** One node as written: beside what a run shows, all that a form edits, raw; lines and columns count from 1. `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to. `role` is the key by which the part around it knows it, such as `then`. */
+/** One node as written: the fields of a run's graph and all raw fields of the form; lines and columns count from 1. `targets` are its own transitions, outcome to target; `exits` are the outcomes without a transition. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to. `role` is its key in the parent node, such as `then`. */
 export interface DocumentNodeBody {
   readonly path: string
   readonly name: string
@@ -371,19 +371,19 @@ export interface DocumentNodeBody {
   readonly settings: Dict<unknown>
 }
 
-/** Documents that have changed on disk, by id: their hash now, null where they are gone. */
+/** Documents that have changed on disk, by id: their new hash, null if deleted. */
 export interface DocumentsChanged {
   readonly k: "documents"
   readonly changed: Dict<string | null>
 }
 
-/** A text to draw; without `check` the answer comes sooner, and without findings. */
+/** A text to draw; without `check` the response is faster and has no findings. */
 export interface DraftBody {
   readonly text: string
   readonly check: boolean
 }
 
-/** What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read. `checked` is false where it was not asked for findings, which may follow from `findings`. */
+/** The graph and findings of a text; `graph` and `document` are null if the text cannot be read. `checked` is false if the request did not ask for findings; the route `findings` returns them. */
 export interface DraftResultBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
@@ -398,14 +398,14 @@ export interface DuplicateNodes {
   readonly paths: readonly string[]
 }
 
-/** Why no edit was made: `index` says which of them could not be. */
+/** Why no edit was applied: `index` is the edit that failed. */
 export interface EditRefusalBody {
   readonly message: string
   readonly hint: string
   readonly index: number
 }
 
-/** The text after the edits, and the nodes that they made or changed; the text as it was where refused. */
+/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. */
 export interface EditResultBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
@@ -417,7 +417,7 @@ export interface EditResultBody {
   readonly refused: EditRefusalBody | null
 }
 
-/** A text and the edits to make in it, all or none; they are those of `engine.editing.edit`. */
+/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. */
 export interface EditsBody {
   readonly text: string
   readonly check: boolean
@@ -436,7 +436,7 @@ export interface EntryBody {
   readonly tags: readonly string[]
 }
 
-/** The first entries that matched, and how many did. */
+/** The first matching entries, and the total number. */
 export interface EntryPage {
   readonly entries: readonly EntryRow[]
   readonly total: number
@@ -453,20 +453,20 @@ export interface EntryRow {
   readonly changed_unix_ms: number
 }
 
-/** Why a request failed: what, where (a parameter's name, a file, a node path), what to do. */
+/** Why a request failed: message, location (a parameter's name, a file, a node path) and hint. */
 export interface ErrorBody {
   readonly message: string
   readonly where: string
   readonly hint: string
 }
 
-/** A page of a run's events as the journal holds them; ask again with `after=last`. */
+/** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
   readonly events: readonly Dict<unknown>[]
   readonly last: number
 }
 
-/** One link of the chain of causes, what was measured first; `hint` says what to do about it, may be empty. */
+/** One link of the cause chain, root cause first; `hint` tells how to fix it, may be empty. */
 export interface FailureLink {
   readonly message: string
   readonly where: string
@@ -474,7 +474,7 @@ export interface FailureLink {
   readonly hint: string
 }
 
-/** How a node on the way from the root to the origin ended, after event `seq`. */
+/** How a node between the root and the origin ended, after event `seq`. */
 export interface FailureStep {
   readonly path: string
   readonly seq: number
@@ -482,7 +482,7 @@ export interface FailureStep {
   readonly text: string
 }
 
-/** One thing that differs; null where it was not, or is no longer, there. */
+/** One field that differs; null where the field is absent. */
 export interface FieldChangeBody {
   readonly field: string
   readonly before: unknown
@@ -500,13 +500,13 @@ export interface FindingBody {
   readonly hint: string
 }
 
-/** What would mend a finding: the edits to send, and what they do in words. */
+/** A fix of a finding: the edits to send, and a title that describes them. */
 export interface FixBody {
   readonly title: string
   readonly edits: readonly Dict<unknown>[]
 }
 
-/** The fixes of one finding of a text; `code`, `path`, `line` and `message` say of which. */
+/** The fixes of one finding of a text; `code`, `path`, `line` and `message` identify the finding. */
 export interface FixesBody {
   readonly code: string
   readonly path: string
@@ -542,7 +542,7 @@ export interface GroupNodes {
   readonly name?: string | null
 }
 
-/** First frame; another `epoch` than before means that the server was restarted. */
+/** First frame; a changed `epoch` means that the server was restarted. */
 export interface Hello {
   readonly k: "hello"
   readonly version: number
@@ -551,23 +551,23 @@ export interface Hello {
   readonly server_time_s: number
 }
 
-/** What the Helping Hand does; null where there is none. */
+/** Status of the Helping Hand; null if there is none. */
 export interface HelpingHandFrame {
   readonly k: "hand"
   readonly status: TeachStatus | null
 }
 
-/** A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted. */
+/** A request for a hot change; with `preempt`, active nodes that cannot continue are preempted. */
 export interface HotChangeBody {
   readonly preempt: boolean
 }
 
-/** What a hot change did, a line for each difference. */
+/** The result of a hot change, one line per difference. */
 export interface HotChangeResultBody {
   readonly changes: readonly string[]
 }
 
-/** A run of the journal whose engine died; `behavior` is the name of what it executed. */
+/** A run of the journal whose engine ended without ending the run; `behavior` is the name of its behavior. */
 export interface InterruptedRunBody {
   readonly id: string
   readonly behavior: string
@@ -575,14 +575,14 @@ export interface InterruptedRunBody {
   readonly last_seq: number
 }
 
-/** Which arm this page jogs now, empty for none, and what holds it back, in words. */
+/** The arm that this page jogs, empty for none, and what limits its motion, as text. */
 export interface JogStatus {
   readonly k: "jogging"
   readonly arm: string
   readonly held_by: string
 }
 
-/** From the page, ten times a second or more while a key is down: go at this velocity, m/s and rad/s. */
+/** From the page, ten times a second or more while a key is down: move at this velocity, m/s and rad/s. */
 export interface JogVelocity {
   readonly k: "go"
   readonly velocity: readonly number[]
@@ -608,14 +608,14 @@ export interface KeyBody {
   readonly schema: Dict<unknown>
 }
 
-/** One key with all that write and read it. */
+/** One key with all its writers and readers. */
 export interface KeyFlowBody {
   readonly key: string
   readonly writers: readonly KeyWriterBody[]
   readonly readers: readonly KeyReaderBody[]
 }
 
-/** A node that reads a key: `defined` is always, maybe (`way` says how it is not), never, or unreachable. */
+/** A node that reads a key: `defined` is always, maybe (`way` is a path without it), never, or unreachable. */
 export interface KeyReaderBody {
   readonly path: string
   readonly by: string
@@ -633,7 +633,7 @@ export interface KeyWriterBody {
   readonly name: string
 }
 
-/** What changed in the watched run since `after`, the runs and arms that changed, and the run's present control. `dropped` log lines are missing. */
+/** The changes of the watched run since `after`, the changed runs and arms, and the current control of the run. `dropped` is the number of missing log lines. */
 export interface LiveDelta {
   readonly k: "delta"
   readonly run: string
@@ -649,7 +649,7 @@ export interface LiveDelta {
   readonly robots: Dict<RobotLive>
 }
 
-/** Everything of the watched run (empty when none is), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is there while the run is under way. */
+/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active. */
 export interface LiveSnapshot {
   readonly k: "snapshot"
   readonly run: string
@@ -669,7 +669,7 @@ export interface LockBody {
   readonly reason: string
 }
 
-/** A locked node and why, in the words of whoever locked it. */
+/** A locked node and the reason given by the operator. */
 export interface LockLive {
   readonly path: string
   readonly reason: string
@@ -686,18 +686,18 @@ export interface LogLine {
   readonly causes: readonly CauseLine[]
 }
 
-/** A token that logs a browser in once, at `/login?t=<token>`. */
+/** A single-use login token, for `/login?t=<token>`. */
 export interface LoginLinkBody {
   readonly token: string
   readonly expires_in_s: number
 }
 
-/** Whose log-in link is wanted. */
+/** The role of the requested login link. */
 export interface LoginLinkRequest {
   readonly role: "operator" | "viewer"
 }
 
-/** Lines that both sides changed differently; `line` is where they stand in the text that was to be saved. */
+/** Lines that both sides changed differently; `line` is their position in the text to save. */
 export interface MergeConflictBody {
   readonly line: number
   readonly base: string
@@ -705,7 +705,7 @@ export interface MergeConflictBody {
   readonly theirs: string
 }
 
-/** Where a document goes; with `follow`, references to it are written anew. */
+/** The new id of a document; with `follow`, references to it are updated. */
 export interface MoveBody {
   readonly id: string
   readonly follow: boolean
@@ -719,26 +719,26 @@ export interface MoveNodes {
   readonly index?: number | null
 }
 
-/** A document at its new place: whose references follow, and whose could not. */
+/** A moved document: the ids whose references were updated, and those whose references were not. */
 export interface MoveResultBody {
   readonly document: DocumentBody
   readonly followed: readonly string[]
   readonly left: readonly string[]
 }
 
-/** A document to make from a template: machine, sequence or concurrency. */
+/** A document to create from a template: machine, sequence or concurrency. */
 export interface NewDocumentBody {
   readonly id: string
   readonly name?: string
   readonly template?: string
 }
 
-/** Where a document is put, or its copy. */
+/** The new id of a document or of its copy. */
 export interface NewIdBody {
   readonly id: string
 }
 
-/** A node that was added, removed, changed or moved between two versions; the path `document` is the document. */
+/** A node added, removed, changed or moved between two versions; the path `document` is the document itself. */
 export interface NodeChangeBody {
   readonly path: string
   readonly change: string
@@ -746,12 +746,12 @@ export interface NodeChangeBody {
   readonly fields: readonly FieldChangeBody[]
 }
 
-/** The node that a command is about. */
+/** The node that a command addresses. */
 export interface NodeCommandBody {
   readonly path: string
 }
 
-/** One node: idle, active, done, failed or stopped. `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine took last, as `source|outcome`. `plan` is the way that this visit has planned last. */
+/** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `followed` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -763,26 +763,26 @@ export interface NodeLive {
   readonly plan: PlanLive | null
 }
 
-/** A past run or a recording that is opened: what it was, and the behavior as it was when the run began. */
+/** An open past run or recording, with the behavior as of the start of the run. */
 export interface OpenRunBody {
   readonly run: PastRunBody
   readonly behavior: BehaviorBody
 }
 
-/** From the client: I operate this run from now on (empty: none); losing the connection is losing the operator. */
+/** From the client: operate this run (empty: none); a lost connection is a lost operator. */
 export interface OperateRun {
   readonly k: "operate"
   readonly run?: string
 }
 
-/** One value that is set per run, with the JSON Schema of its field. */
+/** One parameter of a run, with the JSON Schema of its value. */
 export interface ParameterBody {
   readonly name: string
   readonly schema: Dict<unknown>
   readonly required: boolean
 }
 
-/** One run of the journal. `running` without an end: it is under way somewhere, or its engine died. `recording` is the path of its recording, empty where there is none; `here` says that it is a run of this server. */
+/** One run of the journal. `running` means that it has no end: it is active, or its engine died. `recording` is the path of its recording, empty if there is none; `here` is true for a run of this server. */
 export interface PastRunBody {
   readonly id: string
   readonly behavior: string
@@ -798,7 +798,7 @@ export interface PastRunBody {
   readonly here: boolean
 }
 
-/** A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before. */
+/** A run after event `seq`: its nodes and the last lines of its log; `dropped` counts the earlier lines. */
 export interface PastRunState {
   readonly seq: number
   readonly time_s: number
@@ -807,7 +807,7 @@ export interface PastRunState {
   readonly dropped: number
 }
 
-/** A page of past runs, newest first, and how many there are of each kind that match the other filters. */
+/** A page of past runs, newest first, and the number of runs of each kind that match the other filters. */
 export interface PastRunsBody {
   readonly runs: readonly PastRunBody[]
   readonly total: number
@@ -823,7 +823,7 @@ export interface PasteNodes {
   readonly index?: number | null
 }
 
-/** The planned way of an arm: `proposed`, `moving` or `blocked`, by what, and since when (of the server's clock). `length_m` is that of the tool's path. */
+/** The planned path of an arm: `proposed`, `moving` or `blocked`, the reason, and its start on the server's clock. `length_m` is the length of the tool's path. */
 export interface PathLive {
   readonly state: string
   readonly reason: string
@@ -831,13 +831,13 @@ export interface PathLive {
   readonly since_s: number
 }
 
-/** The connection lives; a page that does not answer with `Pong` for a while counts as gone. */
+/** Keep-alive; a page that does not answer with `Pong` in time is disconnected. */
 export interface Ping {
   readonly k: "ping"
   readonly server_time_s: number
 }
 
-/** A way that a node has planned: for which arm, how long it takes and is, who found it, and in what time. */
+/** A path that a node has planned: arm, duration, length, planner, and planning time. */
 export interface PlanLive {
   readonly robot: string
   readonly duration_s: number
@@ -846,7 +846,7 @@ export interface PlanLive {
   readonly planning_s: number
 }
 
-/** Carry out an entry (`kind`, `name`) or a capture with an arm, at `speed`: a share of its own, a half at most. */
+/** Play back an entry (`kind`, `name`) or a capture with an arm; `speed` is a fraction of the taught speed. */
 export interface PlayBody {
   readonly arm: string
   readonly speed: number
@@ -856,7 +856,7 @@ export interface PlayBody {
   readonly revision: number
 }
 
-/** How it ended: `succeeded`, `preempted`, `rejected` or `failed`, and why. */
+/** The end of a playback: `succeeded`, `preempted`, `rejected` or `failed`, and the cause. */
 export interface PlaybackResult {
   readonly status: string
   readonly cause: string
@@ -867,7 +867,7 @@ export interface Pong {
   readonly k: "pong"
 }
 
-/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of all that is shown; 1 to 4 are beside that, each in its colour. */
+/** From the page: preview this arm along an entry (`kind`, `name`) or a capture; without an arm, clear the preview. `revision` selects a revision of the entry, 0 the current one. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
 export interface PreviewTaught {
   readonly k: "look"
   readonly arm: string
@@ -878,7 +878,7 @@ export interface PreviewTaught {
   readonly place: number
 }
 
-/** A recording and the primitive learned from it, as the arm would carry them out, and how far they are apart. */
+/** A recording and the primitive learned from it, as the arm would execute them, and their fit errors. */
 export interface PrimitiveComparison {
   readonly demonstration: Trace | null
   readonly primitive: Trace | null
@@ -886,7 +886,7 @@ export interface PrimitiveComparison {
   readonly cart_fit: CartFit | null
 }
 
-/** The behavior as YAML, what it does in words, and what was decided; `id` is where it was written. */
+/** The behavior as YAML, its description as text, and the choices made; `id` is the document it was written to. */
 export interface ProposalBody {
   readonly text: string
   readonly steps: readonly ProposedStepBody[]
@@ -900,7 +900,7 @@ export interface ProposalBody {
   readonly id: string
 }
 
-/** A step with its role, and what a grasp takes: a part, or an empty name for one that nobody named. */
+/** A step with its role, and the part of a grasp; an empty name is an unnamed part. */
 export interface ProposedStepBody {
   readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
   readonly name: string
@@ -908,20 +908,20 @@ export interface ProposedStepBody {
   readonly part: string | null
 }
 
-/** Push at the tool of a simulated arm, along the axes of the world. */
+/** Push the tool of a simulated arm, along the world axes. */
 export interface PushToolBody {
   readonly arm: string
   readonly force_n: readonly [number, number, number]
   readonly duration_s: number
 }
 
-/** A state that a crash found in mid-work: what became of it is for a person to say. */
+/** A state that was active when the engine crashed: a person must tell how it ended. */
 export interface QuestionBody {
   readonly path: string
   readonly outcomes: readonly string[]
 }
 
-/** One recording of the project; `problem` says why it cannot be opened, empty where it can. */
+/** One recording of the project; `problem` tells why it cannot be opened, empty if it can. */
 export interface RecordingBody {
   readonly path: string
   readonly run: string
@@ -932,7 +932,7 @@ export interface RecordingBody {
   readonly problem: string
 }
 
-/** A behavior that another may refer to. */
+/** A behavior that another behavior may refer to. */
 export interface ReferableBehaviorBody {
   readonly id: string
   readonly name: string
@@ -942,14 +942,14 @@ export interface ReferableBehaviorBody {
   readonly parameters: readonly KeyBody[]
 }
 
-/** A behavior that refers to another one, and the nodes that do. */
+/** A behavior that refers to another one, and its referring nodes. */
 export interface ReferrerBody {
   readonly id: string
   readonly name: string
   readonly paths: readonly string[]
 }
 
-/** Something that the page sent was not done; `what` is which. */
+/** A message of the page was refused; `what` is its kind. */
 export interface RefusedFrame {
   readonly k: "refused"
   readonly what: "button" | "jog" | "look"
@@ -970,13 +970,13 @@ export interface RenameNode {
   readonly name: string
 }
 
-/** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
+/** A request to resume an interrupted run: `answers` by path are `rerun` or an outcome. */
 export interface ResumeBody {
   readonly answers?: Dict<string>
   readonly changed?: boolean
 }
 
-/** An interrupted run cannot go on before these questions are answered. */
+/** An interrupted run resumes only after these questions are answered. */
 export interface ResumeQuestionsBody {
   readonly message: string
   readonly where: string
@@ -984,7 +984,7 @@ export interface ResumeQuestionsBody {
   readonly questions: readonly QuestionBody[]
 }
 
-/** One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at. `way` is the way that is planned for it, which the 3D view shows. */
+/** One arm: its mode, its activity, the error of a reflex stop, and its speed override. `way` is its planned path, which the 3D view shows. */
 export interface RobotLive {
   readonly name: string
   readonly mode: string
@@ -995,7 +995,7 @@ export interface RobotLive {
   readonly way: PathLive | null
 }
 
-/** One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`. One that preempts some children has no outcome. */
+/** One rule of a concurrency container: the outcome, and the outcomes of children that it needs, all or `at_least`. A rule that preempts some children has no outcome. */
 export interface RuleBody {
   readonly outcome: string
   readonly when: Dict<string>
@@ -1003,7 +1003,7 @@ export interface RuleBody {
   readonly preempt: readonly string[]
 }
 
-/** One run, under way or over. */
+/** One run, active or ended. */
 export interface RunBody {
   readonly id: string
   readonly behavior: string
@@ -1015,7 +1015,7 @@ export interface RunBody {
   readonly duration_s: number
 }
 
-/** A run that failed: it began at event `seq`, at node `path` (empty where no node did it). `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote. */
+/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `steps` are the nodes from the root to the origin, `around` the requests, answers and writes of the origin. */
 export interface RunFailure {
   readonly seq: number
   readonly time_s: number
@@ -1027,7 +1027,7 @@ export interface RunFailure {
   readonly around: readonly LogLine[]
 }
 
-/** One run in the list of runs; `waits` is asks, paused or locked while it waits for somebody. */
+/** One run in the list of runs; `waits` is asks, paused or locked while it waits for a person. */
 export interface RunOverview {
   readonly id: string
   readonly behavior: string
@@ -1040,26 +1040,26 @@ export interface RunOverview {
   readonly waits: string
 }
 
-/** An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise. */
+/** The event of a journaled run to begin at, at the last entered state unless `path` is given. */
 export interface RunPositionBody {
   readonly run: string
   readonly seq: number
   readonly path?: string | null
 }
 
-/** A text to write, and the hash of the one it was made from. */
+/** A text to write, and the hash of the version it is based on. */
 export interface SaveBody {
   readonly text: string
   readonly base_hash: string
 }
 
-/** What is on disk now. */
+/** The version that is on disk now. */
 export interface SaveResultBody {
   readonly hash: string
   readonly saved_at: number
 }
 
-/** Who is logged in, and what this server has; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null where there is none. */
+/** The role of the session and the features of this server; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, a separate origin; null without a 3D view. */
 export interface SessionBody {
   readonly role: string
   readonly cell_name: string
@@ -1112,14 +1112,14 @@ export interface SetTransition {
   readonly target: string
 }
 
-/** From the client: the 3D view under `/cell/<page>/` shows these groups from now on, and no others. */
+/** From the client: the 3D view under `/cell/<page>/` shows exactly these groups. */
 export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
 }
 
-/** A request to start a run; without a seed the server draws one. */
+/** A request to start a run; without a seed the server chooses one. */
 export interface StartBody {
   readonly behavior: string
   readonly parameters?: Dict<unknown>
@@ -1129,7 +1129,7 @@ export interface StartBody {
   readonly begin?: RunPositionBody | null
 }
 
-/** From the page: make ready to jog this arm, until `rest`. */
+/** From the page: prepare to jog this arm, until `rest`. */
 export interface StartJog {
   readonly k: "jog"
   readonly arm: string
@@ -1142,7 +1142,7 @@ export interface StartResultBody {
   readonly run: string
 }
 
-/** A state that can be put into a behavior. */
+/** A state that a behavior can use. */
 export interface StateBody {
   readonly name: string
   readonly group: string
@@ -1155,12 +1155,12 @@ export interface StateBody {
   readonly outputs: readonly KeyBody[]
 }
 
-/** One step back of a paused run, in the branch of `path` where one is given. */
+/** One step back of a paused run, in the branch of `path` if given. */
 export interface StepBackBody {
   readonly path: string
 }
 
-/** One step of a paused run, in the branch of `path` where one is given. */
+/** One step of a paused run, in the branch of `path` if given. */
 export interface StepBody {
   readonly mode?: "into" | "over" | "out"
   readonly path?: string
@@ -1171,7 +1171,7 @@ export interface StopBody {
   readonly reason?: string
 }
 
-/** Where STOP is taken whatever this server does: POST `{"token": …, "reason": …}` as plain text to `url`. */
+/** The STOP endpoint, independent of this server: POST `{"token": …, "reason": …}` as plain text to `url`. */
 export interface StopEndpointBody {
   readonly url: string
   readonly token: string
@@ -1182,7 +1182,7 @@ export interface StopJog {
   readonly k: "rest"
 }
 
-/** How a run is watched over; see `flexcell run --help` for the same options. */
+/** Supervision options of a run; `flexcell run --help` explains the same options. */
 export interface SupervisionBody {
   readonly autonomy?: "off" | "low" | "high" | "full"
   readonly demand_operator?: boolean
@@ -1192,7 +1192,7 @@ export interface SupervisionBody {
   readonly loss_timeout_s?: number
 }
 
-/** The tags that an entry is to have; `revision` is the one that they were seen on. */
+/** New tags of an entry; `revision` is the revision that they are based on. */
 export interface TagsBody {
   readonly kind: string
   readonly name: string
@@ -1200,14 +1200,14 @@ export interface TagsBody {
   readonly revision: number
 }
 
-/** The targets that an arm of the document's cell cannot be at. `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise. */
+/** The targets that an arm of the document's cell cannot reach. `dropped` is true if the page has sent a newer text; `problem` tells why the targets could not be checked. */
 export interface TargetFindingsBody {
   readonly findings: readonly FindingBody[]
   readonly problem: string
   readonly dropped: boolean
 }
 
-/** A text whose targets are looked at; a newer one of the same page takes the place of those that still wait. */
+/** A text whose targets are checked; a newer request of the same page replaces the pending one. */
 export interface TargetsBody {
   readonly text: string
   readonly page: string
@@ -1222,12 +1222,12 @@ export interface TeachStatus {
   readonly said: string
 }
 
-/** A text that is being edited. */
+/** A text under edit. */
 export interface TextBody {
   readonly text: string
 }
 
-/** A run up to event `seq`, or what of it was begun or ended after the event that was asked for. `merge_intervals` says that spans which lie close together became one: ask for a part of the time to see it exactly. `left_out` marks are not in it. */
+/** A run up to event `seq`, or its intervals that started or ended after the requested event. `merged` means that adjacent intervals were merged: request a shorter time range for the exact ones. `left_out` is the number of dropped markers. */
 export interface Timeline {
   readonly run: string
   readonly seq: number
@@ -1248,13 +1248,13 @@ export interface TimelineMarker {
   readonly text: string
 }
 
-/** The spans of one node, in order; its depth is in its path. */
+/** The intervals of one node, in order; its path gives its depth. */
 export interface TimelineRow {
   readonly path: string
   readonly spans: readonly ActivationInterval[]
 }
 
-/** What the tool measures: opening of a gripper (m) or how far a hand is closed (0 to 100), and what it holds. */
+/** Measured tool state: opening of a gripper (m) or closing of a hand (0 to 100), and whether it holds a part. */
 export interface ToolLive {
   readonly width_m: number | null
   readonly closed_percent: number | null
@@ -1270,7 +1270,7 @@ export interface Trace {
   readonly remark: string
 }
 
-/** An arrow inside a machine. */
+/** A transition inside a machine. */
 export interface TransitionBody {
   readonly source: string
   readonly outcome: string
@@ -1317,7 +1317,7 @@ export interface UngroupNode {
   readonly path: string
 }
 
-/** One version of a document: when it was first seen; `by` is `editor`, or `file` where it was found there. */
+/** One version of a document and when it was first seen; `by` is `editor`, or `file` for a change on disk. */
 export interface VersionBody {
   readonly hash: string
   readonly saved_at: number
@@ -1334,7 +1334,7 @@ export interface VersionTextBody {
   readonly text: string
 }
 
-/** A node that waits at the gate: `before` its entry or `after` its outcome, and for what. */
+/** A node that waits at the gate, `before` its entry or `after` its outcome, with the reasons. */
 export interface WaitingNodeBody {
   readonly path: string
   readonly visit: number
@@ -1353,7 +1353,7 @@ export interface WaitingNodeLive {
   readonly reasons: readonly string[]
 }
 
-/** From the client: show this run from now on (empty: the list of runs only); answered by a snapshot. */
+/** From the client: watch this run (empty: the list of runs only); the response is a snapshot. */
 export interface WatchRun {
   readonly k: "watch"
   readonly run?: string
