@@ -90,7 +90,7 @@ def main() -> None:
     mailbox = _Mailbox(connection)
     planner = ScenePlanner()
     try:
-        _warm_up(planner)
+        warm_up(planner)
         mailbox.send(PlannerReady())
         while True:
             _serve(planner, mailbox, mailbox.next())
@@ -125,7 +125,7 @@ def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> F
         return RequestFailure(number=ask.number, message=error.message, where=where, hint=error.hint or "")
 
 
-def _warm_up(planner: ScenePlanner) -> None:
+def warm_up(planner: ScenePlanner) -> None:
     """Compile and load everything that a first request would wait for."""
     placement = ArmPlacement(name="arm", model="servo_arm", base=Pose(xyz=(0.0, 0.0, 0.0)))
     far = Obstacle.of("far", Box(size_m=(0.1, 0.1, 0.1)), Pose(xyz=(5.0, 0.0, 0.0)))
