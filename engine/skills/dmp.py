@@ -126,7 +126,7 @@ class JointFit(Message, frozen=True, kw_only=True):
     """The error of a learned joint DMP against its recording: RMS, maximum, and at the goal.
 
     `joint` is the index of the joint with the greatest error, from 0. `rms_m` and `max_m` are the resulting errors
-    of the tool centre point, None when the arm is unknown.
+    of the tool centre point, None when it is not known which arm.
     """
 
     kernels: int

@@ -70,7 +70,7 @@ def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop
         expect(entry(page, "lamp")).to_contain_text("never")
         row.click()
         detail = page.get_by_role("region", name="plant/joint_state")
-        expect(detail).to_contain_text("Measured joints of one robot")
+        expect(detail).to_contain_text("Measured joint state of one robot")
         tree = page.get_by_role("list", name="Newest message of plant/joint_state")
         expect(tree).to_contain_text("[0, 0.5]")
         shop.on_loop(lambda: plant.publish(2.0))

@@ -151,7 +151,7 @@ def test_a_cell_that_cannot_be_built_is_reported_once(tmp_path: Path) -> None:
     file.write_text(f"{head}    initial: one\n    states:\n{states}\n", encoding="utf-8")
     (finding,) = findings_of(file, CATALOGUE)
     assert (finding.code, finding.severity, finding.position.line) == ("invalid-cell", "error", 3)
-    assert "no robot model is called pandra" in finding.message
+    assert "there is no robot model pandra" in finding.message
 
 
 @pytest.mark.parametrize(

@@ -214,5 +214,5 @@ def test_labels_of_parts_that_are_not_there_are_refused_with_the_nearest_name(tm
 
 
 def test_the_frame_world_cannot_stand_elsewhere(tmp_path: Path) -> None:
-    with pytest.raises(DocumentError, match="give the frame another name"):
+    with pytest.raises(DocumentError, match="choose another frame name"):
         cell_with(tmp_path, detect="{frame_at: {xyz: [1, 0, 0]}}")

@@ -71,7 +71,7 @@ async def test_a_frozen_world_is_ended_and_its_motions_fail_with_that_cause() ->
         report = await motion.report()
         assert report.end is MotionEnd.FAILED
         assert re.fullmatch(
-            r"the world's process has not stepped for \d\.\d s: it is frozen or starved, and was ended", report.reason
+            r"the world's process has not stepped for \d\.\d s: it is frozen or starved, and was killed", report.reason
         )
         assert world.status is DeviceStatus.FAULT
     assert not alive(pid)

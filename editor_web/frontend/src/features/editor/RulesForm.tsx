@@ -177,11 +177,10 @@ function Preempted({
   onSet: (child: string, isPreempted: boolean) => void
 }) {
   const gone = rule.preempt.filter((name) => !names.includes(name))
+  const text = rule.preempt.length > 0 ? rule.preempt.join(', ') : 'all'
   return (
     <details className="rule-preempts">
-      <summary aria-label={`Preempted by rule ${index + 1}`}>
-        {rule.preempt.length > 0 ? rule.preempt.join(', ') : 'all'}
-      </summary>
+      <summary aria-label={`${text}: preempted by rule ${index + 1}`}>{text}</summary>
       {[...names, ...gone].map((name) => (
         <label key={name}>
           <input
