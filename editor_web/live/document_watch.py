@@ -39,7 +39,15 @@ class DocumentWatch:
         self._task: asyncio.Task[None] | None = None
 
     def open(self) -> None:
-        """Start polling."""
+        """Start polling: later changes are reported, those before the first page too.
+
+        What a page loads may be older than the first scan after it has connected, so scans compare with the last one,
+        however long ago that was.
+        """
+        try:
+            self._seen = self._documents.stamps()
+        except OSError as error:
+            _log.info("could not scan the documents: %s", error)
         self._task = asyncio.create_task(self._poll_documents(), name="document-watch")
 
     async def close(self) -> None:
@@ -63,7 +71,6 @@ class DocumentWatch:
             # Not every file system reports changes, in particular those shared between containers.
             await asyncio.sleep(self._period_s)
             if not self._wanted():
-                self._seen = None
                 continue
             try:
                 changed = await asyncio.to_thread(self.look)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 import websockets.asyncio.client
@@ -27,6 +28,27 @@ def test_a_look_tells_what_has_changed_since_the_last_one(tmp_path: Path) -> Non
     assert watch.look() == {SHIFT_ID: text_hash(SHIFT), "behaviors/other.yaml": text_hash(SHIFT + "# other\n")}
     documents.delete(SHIFT_ID)
     assert watch.look() == {SHIFT_ID: None}
+
+
+async def test_a_change_while_no_page_is_open_is_reported_to_the_next_one(tmp_path: Path) -> None:
+    """A page that connects may have loaded what was there before the change."""
+    documents = DocumentRepository(tmp_path, {})
+    documents.create(SHIFT_ID)
+    asked, changes = asyncio.Event(), asyncio.Queue[Mapping[str, str | None]]()
+    is_open = False
+
+    def wanted() -> bool:
+        asked.set()
+        return is_open
+
+    watch = DocumentWatch(documents, changed=changes.put_nowait, wanted=wanted, period_s=0.001)
+    watch.open()
+    (tmp_path / SHIFT_ID).write_text(SHIFT)
+    async with asyncio.timeout(GUARD_S):
+        await asked.wait()
+        is_open = True
+        assert await changes.get() == {SHIFT_ID: text_hash(SHIFT)}
+    await watch.close()
 
 
 async def test_an_open_page_hears_of_a_change_on_disk(serve: Serve, tmp_path: Path) -> None:
