@@ -211,7 +211,7 @@ def _apt_installed(*packages: str) -> bool:
 
 
 def _fingerprint() -> str:
-    """What the installation depends on: the project file, the locks, the build hook and the front end's sources."""
+    """Return what the installation depends on: project file, locks, build hook and the front end's sources."""
     digest = hashlib.sha256()
     front_end = ROOT / "editor_web" / "frontend"
     sources = [p for p in front_end.rglob("*") if "node_modules" not in p.parts and p.is_file()]
@@ -250,7 +250,7 @@ def _become(command: list[str | Path]) -> int:
     """Go on as `command`, so that Ctrl-C and signals reach it alone and it can bring robots to rest."""
     os.chdir(ROOT)
     if os.name != "nt":
-        os.execv(command[0], [str(part) for part in command])
+        os.execv(command[0], [str(part) for part in command])  # noqa: S606 - our own command
     return subprocess.run(command, check=False).returncode
 
 

@@ -52,7 +52,7 @@ def npm(*arguments: str) -> None:
         RuntimeError: Node is not installed here, or npm failed.
     """
     command, environment = npm_call(*arguments)
-    done = subprocess.run(command, cwd=SOURCE, env=environment, check=False)
+    done = subprocess.run(command, cwd=SOURCE, env=environment, check=False)  # noqa: S603 - npm with our arguments
     if done.returncode != 0:
         raise RuntimeError(f"npm {' '.join(arguments)} failed with code {done.returncode}; its output is above")
 

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Asks whether anything is known against the packages that are locked, Python's and npm's.
 
 Exits with 1 and a list where `.ci/advisories.toml` does not allow what was found. A service that does not answer in
@@ -110,7 +109,7 @@ def npm_advisories(*options: str, limit_s: float = LIMIT_S) -> list[Advisory]:
 
 def main() -> int:
     """Ask both services and print what they say."""
-    exemptions, today = read_exemptions(ALLOWED.read_text(encoding="utf-8")), dt.date.today()
+    exemptions, today = read_exemptions(ALLOWED.read_text(encoding="utf-8")), dt.datetime.now(tz=dt.UTC).date()
     problems = [problem for name, ask in SOURCES.items() for problem in _asked(name, ask, exemptions, today)]
     for problem in problems:
         print(f"  {problem}")
@@ -145,7 +144,7 @@ def _report(command: Sequence[str], environment: dict[str, str], *, limit_s: flo
     except subprocess.TimeoutExpired as error:
         raise NoAnswer from error
     try:
-        return cast(dict[str, Any], json.loads(done.stdout))
+        return cast("dict[str, Any]", json.loads(done.stdout))
     except json.JSONDecodeError as error:
         if NETWORK_FAILURE in done.stderr:
             raise NoAnswer from error

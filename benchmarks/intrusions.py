@@ -134,8 +134,10 @@ def _line(trial: Trial) -> str:
 
 def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:
     lines = [
-        "| group | intrusions | with a contact | contacts | of these in motion | greatest force N "
-        "| reached | waiting while blocked | failed | stuck | stops | other ways | waited p50 s |",
+        (
+            "| group | intrusions | with a contact | contacts | of these in motion | greatest force N "
+            "| reached | waiting while blocked | failed | stuck | stops | other ways | waited p50 s |"
+        ),
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name, trials in groups:

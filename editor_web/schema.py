@@ -58,7 +58,7 @@ def typescript() -> str:
 
 
 def _http_schemas() -> dict[str, Schema]:
-    schemas = cast(dict[str, Schema], app.openapi()["components"]["schemas"])
+    schemas = cast("dict[str, Schema]", app.openapi()["components"]["schemas"])
     return {name: schema for name, schema in schemas.items() if name not in _SERVER_ONLY}
 
 
@@ -138,7 +138,7 @@ def _type(schema: Schema) -> str:
         return _array(schema)
     if schema.get("type") == "object":
         given = schema.get("additionalProperties")
-        inner = cast(Schema, given) if isinstance(given, dict) else {}
+        inner = cast("Schema", given) if isinstance(given, dict) else {}
         return f"Dict<{_type(inner)}>"
     return _SIMPLE.get(str(schema.get("type")), "unknown")
 

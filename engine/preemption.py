@@ -27,9 +27,9 @@ class OverduePolicy:
     """
 
     tell: Callable[[str, float], None]
-    abandon: Callable[[asyncio.Task[Any], float], None] = lambda task, waited_s: None
+    abandon: Callable[[asyncio.Task[Any], float], None] = lambda _task, _waited_s: None
     abandon_after_s: float = math.inf
-    stands_still: Callable[[str], bool] = lambda task: False
+    stands_still: Callable[[str], bool] = lambda _task: False
 
 
 _ASKED: set[asyncio.Task[Any]] = set()

@@ -95,7 +95,7 @@ class World(Robot, Protocol):
     """
 
     def robots(self) -> tuple[Robot, ...]:
-        """The simulated robots and grippers of this world, not yet connected."""
+        """Return the simulated robots and grippers of this world, not yet connected."""
         ...
 
     def snapshot(self) -> bytes:

@@ -132,7 +132,7 @@ class Context(Protocol):
         ...
 
     def random(self) -> float:
-        """A number in [0, 1) from the run's seed."""
+        """Return a number in [0, 1) from the run's seed."""
         ...
 
 

@@ -84,7 +84,7 @@ def _is_in_the_dark(item: pytest.Item) -> bool:
     """Whether a test does in the dark theme what it does in the light one, and there looks at both."""
     if not isinstance(item, pytest.Function) or "dark" not in _values(item):
         return False
-    return "require_accessible" in cast(FunctionType, item.obj).__code__.co_names
+    return "require_accessible" in cast("FunctionType", item.obj).__code__.co_names
 
 
 def _refuse_process(event: str, arguments: tuple[Any, ...]) -> None:

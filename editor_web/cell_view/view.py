@@ -52,7 +52,7 @@ class CellView:
 
     @property
     def port(self) -> int:
-        """viser's loopback port; the view must be open."""
+        """Viser's loopback port; the view must be open."""
         if self._server is None:
             raise FlexcellError("the cell view is not open", hint="open it first")
         return self._server.get_port()

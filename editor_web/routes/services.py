@@ -43,7 +43,7 @@ class Services:
 
 def services_of(connection: HTTPConnection) -> Services:
     """Return the services of the application that serves this request or websocket."""
-    return cast(Services, connection.app.state.services)
+    return cast("Services", connection.app.state.services)
 
 
 def role_of(connection: HTTPConnection) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import resource
 from pathlib import Path
 
@@ -39,4 +38,4 @@ def connection_limit() -> int:
 
 
 def _open_descriptors() -> int:
-    return len(os.listdir(_OPEN_DESCRIPTORS)) if _OPEN_DESCRIPTORS.is_dir() else 64
+    return sum(1 for _ in _OPEN_DESCRIPTORS.iterdir()) if _OPEN_DESCRIPTORS.is_dir() else 64

@@ -56,7 +56,7 @@ class TimedConnection(H11Protocol):
 
     _timer: asyncio.TimerHandle | None = None
     _write_timer: asyncio.TimerHandle | None = None
-    _timed_state: type[h11.IDLE] | type[h11.SEND_BODY] | None = None
+    _timed_state: type[h11.IDLE | h11.SEND_BODY] | None = None
 
     def __init__(
         self,

@@ -11,12 +11,12 @@ from engine.document.node_spec import SLOTS, NodeKind, Status
 
 def sequence(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
     """Run children in order until one fails; with `memory` a succeeded child is not ticked again."""
-    return _group("sequence", children, memory, keys)
+    return _group("sequence", children, memory=memory, keys=keys)
 
 
 def selector(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
     """Run children in order until one succeeds; with `memory` a failed child is not ticked again."""
-    return _group("selector", children, memory, keys)
+    return _group("selector", children, memory=memory, keys=keys)
 
 
 def parallel(
@@ -111,6 +111,6 @@ def guard(
     return new_part("guard", given_keys(child=child, when=when, to=to), **keys)
 
 
-def _group(kind: NodeKind, children: Sequence[TreePart], memory: bool | None, keys: PartKeys) -> TreePart:
+def _group(kind: NodeKind, children: Sequence[TreePart], *, memory: bool | None, keys: PartKeys) -> TreePart:
     what = list(children) if memory is None else {"children": list(children), "memory": memory}
     return new_part(kind, what, **keys)

@@ -191,7 +191,7 @@ class SkillBus:
             self.leases.refuse_foreign(server.commands, holder)
         try:
             response = server.handler(request)
-            return cast(R, await response if inspect.isawaitable(response) else response)
+            return cast("R", await response if inspect.isawaitable(response) else response)
         except FlexcellError:
             raise
         except Exception as error:

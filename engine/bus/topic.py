@@ -156,7 +156,6 @@ class Topic(Generic[M]):
 
     def remove(self, subscription: Subscription[M]) -> None:
         """Remove a subscriber; unknown ones are ignored."""
-
         self._subscriptions = tuple(s for s in self._subscriptions if s is not subscription)
 
     def stream(self, *, size: int = 1000) -> TopicStream[M]:

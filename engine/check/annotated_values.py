@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import groupby
 from typing import Any, cast
 
-import msgspec.inspect as inspect
+from msgspec import inspect
 
 Annotations = Mapping[str, object]
 """The content of `extra_json_schema`: unit, kind of entry, kind of name in the cell."""

@@ -60,7 +60,7 @@ _OPPOSITE: dict[Status, Status] = {"success": "failure", "failure": "success", "
 
 
 def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
-    """A sequence continues after success, a selector after failure, both after a skipped child."""
+    """Return the ends of a sequence, which continues after success, or a selector, after failure; both after a skip."""
     found: set[Status] = set()
     for statuses in ends:
         found |= statuses - {onward, "skipped"}
@@ -75,7 +75,7 @@ def _all_skipped(ends: Sequence[Statuses]) -> Statuses:
 
 
 def _branched(ends: Sequence[Statuses]) -> Statuses:
-    """The first child selects which of the others runs; without a third, the part fails."""
+    """Return the ends of a part whose first child selects which of the others runs; without a third, it fails."""
     condition, then, *otherwise = ends
     found: Statuses = then if "success" in condition else NEVER
     return found | ((otherwise[0] if otherwise else FAILURE) if condition - SUCCESS else NEVER)

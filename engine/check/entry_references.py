@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, cast
 
-import msgspec.inspect as inspect
+from msgspec import inspect
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.annotated_values import annotated_values

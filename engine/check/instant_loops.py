@@ -103,7 +103,7 @@ class InstantOutcomes:
         return frozenset(found)
 
     def _of_tree(self, placed: NodeAt, children: Sequence[NodeAt]) -> frozenset[str]:
-        """A tree is instant when each of its leaves is; other trees are not analysed."""
+        """Return whether a tree is instant: when each of its leaves is; other trees are not analysed."""
         for child in children:
             due = self._subject.statuses[child.path] if child.is_part else self._subject.outcomes.get(child.path, ("",))
             if not self.ends[child.path].issuperset(due):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
-from xml.etree import ElementTree
 
 from engine.errors import FlexcellError
 
@@ -61,11 +61,11 @@ def write_junit(path: Path, suites: Iterable[JunitSuite]) -> None:
 
 def junit_xml(suites: Iterable[JunitSuite]) -> bytes:
     """Return the XML."""
-    root = ElementTree.Element("testsuites", name="flexcell")
+    root = ET.Element("testsuites", name="flexcell")
     for suite in suites:
         _add_suite(root, suite)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    ET.indent(root)
+    return ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
 
 def class_name(path: Path | str) -> str:
@@ -73,8 +73,8 @@ def class_name(path: Path | str) -> str:
     return ".".join(part for part in Path(path).with_suffix("").parts if part not in ("/", ".", ".."))
 
 
-def _add_suite(root: ElementTree.Element, suite: JunitSuite) -> None:
-    element = ElementTree.SubElement(
+def _add_suite(root: ET.Element, suite: JunitSuite) -> None:
+    element = ET.SubElement(
         root,
         "testsuite",
         name=_legal(suite.name),
@@ -86,20 +86,20 @@ def _add_suite(root: ElementTree.Element, suite: JunitSuite) -> None:
         file=_legal(suite.file),
     )
     if suite.properties:
-        properties = ElementTree.SubElement(element, "properties")
+        properties = ET.SubElement(element, "properties")
         for name, value in suite.properties.items():
-            ElementTree.SubElement(properties, "property", name=_legal(name), value=_legal(value))
+            ET.SubElement(properties, "property", name=_legal(name), value=_legal(value))
     for case in suite.cases:
         _add_case(element, case)
 
 
-def _add_case(suite: ElementTree.Element, case: JunitCase) -> None:
-    element = ElementTree.SubElement(
+def _add_case(suite: ET.Element, case: JunitCase) -> None:
+    element = ET.SubElement(
         suite, "testcase", classname=_legal(case.classname), name=_legal(case.name), time=f"{case.time_s:.3f}"
     )
     problem = case.problem
     if problem is not None:
-        report = ElementTree.SubElement(element, problem.kind, type=problem.type, message=_legal(problem.message))
+        report = ET.SubElement(element, problem.kind, type=problem.type, message=_legal(problem.message))
         report.text = _legal(problem.text or problem.message)
 
 

@@ -205,7 +205,7 @@ def _resume(console: OperatorConsole, words: Sequence[str]) -> None:
 
 def _step(console: OperatorConsole, words: Sequence[str]) -> None:
     left = list(words)
-    mode: StepMode = cast(StepMode, left.pop(0)) if left and left[0] in _MODES else "into"
+    mode: StepMode = cast("StepMode", left.pop(0)) if left and left[0] in _MODES else "into"
     console.run.control.step(mode, _one(left, "path") if left else "")
 
 
@@ -335,7 +335,7 @@ def _detach(console: OperatorConsole, words: Sequence[str]) -> None:
     console.run.control.detach_operator()
 
 
-def _help(console: OperatorConsole, words: Sequence[str]) -> None:
+def _help(console: OperatorConsole, _words: Sequence[str]) -> None:
     for command in COMMANDS.values():
         console.say(f"  {command.usage:44}{command.meaning}")
 

@@ -116,6 +116,6 @@ class CoverageCollector:
 
 
 def _shown(file: str) -> str:
-    path = Path(os.path.abspath(file))
+    path = Path(os.path.abspath(file))  # noqa: PTH100 - a link is shown as it was named
     here = Path.cwd()
     return path.relative_to(here).as_posix() if path.is_relative_to(here) else path.as_posix()

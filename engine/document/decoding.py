@@ -8,7 +8,7 @@ from functools import cache
 from typing import TypeVar, cast
 
 import msgspec
-import msgspec.inspect as inspect
+from msgspec import inspect
 
 from engine.document.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
 from engine.document.yaml_source import DataPath, DocumentSource

@@ -177,7 +177,7 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
 
 
 def _policy(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
-    """A policy of a parallel names its children."""
+    """Require that a policy of a parallel names its children."""
     policy = node.parallel.policy if isinstance(node.parallel, ParallelSpec) else ()
     if isinstance(node.parallel, ParallelSpec) and node.parallel.counts:
         yield from _thresholds(behavior, path, node.parallel)
@@ -208,7 +208,7 @@ def _thresholds(behavior: Behavior, path: str, group: ParallelSpec) -> Iterator[
 
 
 def _conditions(behavior: Behavior, path: str, container: ConcurrencySpec) -> Iterator[RuleViolation]:
-    """A condition has one outcome, or `preempt` and `when`; a number in it is `at_least`."""
+    """Require one outcome in a condition, or `preempt` and `when`; a number in it is `at_least`."""
     for index, entry in enumerate(container.conditions):
         keys = ("concurrency", "conditions", index)
         found = _misshapen(entry)
@@ -246,7 +246,7 @@ def _misshapen(entry: Mapping[str, object]) -> tuple[str, str, str] | None:
 def _counts(
     behavior: Behavior, path: str, keys: tuple[str | int, ...], entry: Mapping[str, object]
 ) -> Iterator[RuleViolation]:
-    """A number in a condition is `at_least`, at most the number of children in the condition."""
+    """Require that a number in a condition is `at_least`, and at most the number of children in the condition."""
     for key, written in entry.items():
         if not isinstance(written, dict):
             continue
@@ -268,7 +268,7 @@ def _counts(
 
 
 def _bare(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
-    """A composite or decorator has no key except its kind and a guard."""
+    """Require that a composite or decorator has no key except its kind and a guard."""
     for key in (*WRAPPERS, "on_error", "resume", "success"):
         if key not in (node.kind, "guard") and getattr(node, key):
             where = behavior.key_position(path, key)

@@ -214,7 +214,7 @@ class _Event(Protocol):
 def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     # PyYAML's C parser is untyped: the cast contains it here.
     parser = yaml.CSafeLoader(ChunkedText(text))
-    next_event = cast(Callable[[], _Event | None], parser.get_event)
+    next_event = cast("Callable[[], _Event | None]", parser.get_event)
     try:
         while (event := next_event()) is not None:
             ended = builder.take(event)
@@ -320,7 +320,7 @@ class _Builder:
         plain = event.implicit[0]
         container = self._container
         if type(container) is dict and self._key is None:
-            self._take_key(event, value, plain)
+            self._take_key(event, value, plain=plain)
             return
         if "${" in value:
             self._count_expressions(event, value)
@@ -336,9 +336,9 @@ class _Builder:
         if self._expression_text > MAX_EXPRESSION_TEXT:
             self._refuse(event, f"the texts with expressions have more than {MAX_EXPRESSION_TEXT} characters", hint)
 
-    def _take_key(self, event: _Event, key: str, plain: bool) -> None:
+    def _take_key(self, event: _Event, key: str, *, plain: bool) -> None:
         container = cast("dict[str, object]", self._container)
-        if plain and (key == "" or key == "~"):
+        if plain and key in ("", "~"):
             self._refuse_line(event, "a key is empty", "write a name before the `:`")
         if plain and key == "<<":
             self._refuse_line(event, "the merge key `<<` is not supported", "write the keys in full")

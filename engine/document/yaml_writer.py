@@ -20,7 +20,12 @@ class _Dumper(yaml.CSafeDumper):
         """Write shared values in full; the strict reader refuses aliases."""
         return True
 
-    def represent_mapping(self, tag: str, mapping: Any, flow_style: bool | None = None) -> yaml.MappingNode:
+    def represent_mapping(
+        self,
+        tag: str,
+        mapping: Any,
+        flow_style: bool | None = None,  # noqa: FBT001 - PyYAML's signature
+    ) -> yaml.MappingNode:
         """Write a mapping of plain values on one line if it fits."""
         represent = cast("Callable[..., yaml.MappingNode]", super().represent_mapping)  # pyright: ignore[reportUnknownMemberType]
         node = represent(tag, mapping, flow_style=flow_style)
@@ -28,7 +33,12 @@ class _Dumper(yaml.CSafeDumper):
         node.flow_style = _fits([part for pair in pairs for part in pair])
         return node
 
-    def represent_sequence(self, tag: str, sequence: Any, flow_style: bool | None = None) -> yaml.SequenceNode:
+    def represent_sequence(
+        self,
+        tag: str,
+        sequence: Any,
+        flow_style: bool | None = None,  # noqa: FBT001 - PyYAML's signature
+    ) -> yaml.SequenceNode:
         """Write a list of plain values on one line if it fits, a list of numbers always."""
         represent = cast("Callable[..., yaml.SequenceNode]", super().represent_sequence)  # pyright: ignore[reportUnknownMemberType]
         node = represent(tag, sequence, flow_style=flow_style)

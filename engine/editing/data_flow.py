@@ -63,7 +63,7 @@ def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
     read = tuple(key_reads(subject))
     keys = dict.fromkeys((*(key for key, _ in written), *(each.key for each in read)))
     flow = DataFlow(subject, DefinitionSites(keys))
-    readers = [(each.key, _reader(flow, each, number < _MOST_ROUTES)) for number, each in enumerate(read)]
+    readers = [(each.key, _reader(flow, each, with_way=number < _MOST_ROUTES)) for number, each in enumerate(read)]
     return tuple(
         KeyFlow(
             key=key,
@@ -105,7 +105,7 @@ def _written(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[str, K
         yield key, KeyWriter(path=path, origin="output", name=name)
 
 
-def _reader(flow: DataFlow, read: KeyRead, with_way: bool) -> KeyReader:
+def _reader(flow: DataFlow, read: KeyRead, *, with_way: bool) -> KeyReader:
     path, sites = read.placed.path, flow.sites
     fact = flow.fact_at(read)
     defined: Definedness = "unreachable"

@@ -146,10 +146,10 @@ class _Drawing:
             targets=targets,
             exits=tuple(outcome for outcome in ends.outcomes if wired and outcome not in targets),
             autonomy=_names(data.get("autonomy")),
-            timeout=_measure(data.get("timeout"), ref.kind == "timeout"),
-            retry=_measure(data.get("retry"), ref.kind == "retry"),
-            guard=_measure(data.get("guard"), ref.kind == "guard"),
-            post=_measure(data.get("post"), False),
+            timeout=_measure(data.get("timeout"), decorates=ref.kind == "timeout"),
+            retry=_measure(data.get("retry"), decorates=ref.kind == "retry"),
+            guard=_measure(data.get("guard"), decorates=ref.kind == "guard"),
+            post=_measure(data.get("post"), decorates=False),
             on_error=_optional(data.get("on_error")),
             resume=_optional(data.get("resume")),
             success=texts(data.get("success")),
@@ -216,7 +216,7 @@ def _names(value: object) -> dict[str, str]:
     return {key: each for key, each in _mapping(value).items() if isinstance(each, str)}
 
 
-def _measure(value: object, decorates: bool) -> Plain | None:
+def _measure(value: object, *, decorates: bool) -> Plain | None:
     return cast("Plain", value) if isinstance(value, dict) and not decorates else None
 
 

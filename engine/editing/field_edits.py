@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from typing import cast
 
@@ -105,7 +106,7 @@ def set_field(session: EditSession, edit: SetField) -> None:
     elif edit.field in _OF_NODES and not (edit.field == ref.kind and ref.kind in CONTAINERS):
         _set_own(ref, edit.field, value)
     else:
-        _set_inside(session, ref, edit.field, value)
+        _set_inside(ref, edit.field, value)
     session.mark(ref.data)
     session.stale()
 
@@ -165,7 +166,7 @@ def plain_value(value: object, depth: int = 0) -> object:
         return {str(key): plain_value(each, depth + 1) for key, each in cast("dict[object, object]", value).items()}
     if isinstance(value, list | tuple):
         return [plain_value(each, depth + 1) for each in cast("list[object]", value)]
-    if (isinstance(value, float) and value != value) or value in (float("inf"), float("-inf")):
+    if isinstance(value, float) and not math.isfinite(value):
         raise EditRefused("this is not a finite number")
     if isinstance(value, int) and not isinstance(value, bool) and not -(2**63) <= value < 2**63:
         raise EditRefused("this integer does not fit into 64 bits")
@@ -188,7 +189,7 @@ def _set_own(ref: NodeRef, key: str, value: object) -> None:
     set_entry(ref.data, key, value)
 
 
-def _set_inside(session: EditSession, ref: NodeRef, key: str, value: object) -> None:
+def _set_inside(ref: NodeRef, key: str, value: object) -> None:
     model = _OF_KINDS.get(ref.kind)
     known = {each.encode_name for each in msgspec.structs.fields(model)} - _INSIDE if model is not None else set[str]()
     if model is None or key not in known:

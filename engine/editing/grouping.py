@@ -129,8 +129,7 @@ def _conditions(session: EditSession, refs: list[NodeRef]) -> list[Plain]:
             raise EditRefused(
                 "these nodes have too many combinations of success outcomes for conditions", hint="group fewer nodes"
             )
-        for each in combinations:
-            found.append({next(iter(onward)): dict(zip(good, each, strict=True))})
+        found.extend({next(iter(onward)): dict(zip(good, each, strict=True))} for each in combinations)
     for ref in refs:
         for mapping, key, to in transition_entries(ref.data):
             outcome = key if mapping is ref.data.get("transitions") else to

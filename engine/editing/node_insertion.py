@@ -151,7 +151,7 @@ def insert_nodes(
     for name in nodes:
         names[name] = session.free_name(container, name, names.values())
     for node in nodes.values():
-        drop_unsupported_keys(session, container, node)
+        drop_unsupported_keys(container, node)
     known = {child.name for child in session.outline.children(container)}
     known |= set(session.outcomes_inside(container)) if container.kind in MACHINES else set()
     if container.kind in NAMED:
@@ -165,7 +165,7 @@ def insert_nodes(
         _rewire(session, container, nodes, names, known if foreign else None)
 
 
-def drop_unsupported_keys(session: EditSession, container: NodeRef, node: Plain) -> None:
+def drop_unsupported_keys(container: NodeRef, node: Plain) -> None:
     """Remove the fields of a node that are invalid in a container of this kind."""
     tree = container.kind == "tree" or container.is_part
     kind = kind_of(node, in_tree=True)

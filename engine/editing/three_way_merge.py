@@ -34,7 +34,7 @@ def merge_texts(base: str, ours: str, theirs: str) -> MergeResult:
     at = at_mine = at_yours = 0
     for start, start_mine, start_yours, size in _common(lines, mine, yours):
         was, one, two = lines[at:start], mine[at_mine:start_mine], yours[at_yours:start_yours]
-        if one == two or two == was:
+        if two in (one, was):
             made += one
         elif one == was:
             made += two

@@ -74,4 +74,4 @@ class FaultRule:
         return "a fault before it was applied instead"
 
     def _draw(self, path: str, nth: int) -> float:
-        return random.Random(f"{self._seed}/{self.number}/{path}/{nth}").random()
+        return random.Random(f"{self._seed}/{self.number}/{path}/{nth}").random()  # noqa: S311 - repeatable

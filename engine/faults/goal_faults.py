@@ -15,18 +15,18 @@ _CANCELED: AnyGoalEnd = GoalEnd(GoalStatus.CANCELED, None, None)
 
 
 def pass_through(sent: Goal) -> GoalScript:
-    """The goal ends normally."""
+    """Let the goal end normally."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         return await sent.result()
 
     return play
 
 
 def delay_end(sent: Goal, delay_s: float, clock: Clock) -> GoalScript:
-    """The end is reported late, also after a cancel."""
+    """Report the end late, also after a cancel."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
         await clock.sleep(delay_s)
         return end
@@ -35,7 +35,7 @@ def delay_end(sent: Goal, delay_s: float, clock: Clock) -> GoalScript:
 
 
 def withhold_end(sent: Goal) -> GoalScript:
-    """The end is never reported; a cancel is forwarded and confirmed."""
+    """Report no end; a cancel is forwarded and confirmed."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         await goal.cancel_asked.wait()
@@ -46,9 +46,9 @@ def withhold_end(sent: Goal) -> GoalScript:
 
 
 def ignore_all() -> GoalScript:
-    """The goal never ends, even after a cancel."""
+    """Let the goal never end, even after a cancel."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         endless: asyncio.Future[AnyGoalEnd] = asyncio.get_running_loop().create_future()
         return await endless
 
@@ -56,9 +56,9 @@ def ignore_all() -> GoalScript:
 
 
 def fail_goal(status: GoalStatus, cause: Cause, after_s: float, clock: Clock) -> GoalScript:
-    """The goal ends with this failure, immediately or after a time; the device never received it."""
+    """End the goal with this failure, immediately or after a time; the device never received it."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         if after_s:
             await clock.sleep(after_s)
         return GoalEnd(status, None, cause)
@@ -67,7 +67,7 @@ def fail_goal(status: GoalStatus, cause: Cause, after_s: float, clock: Clock) ->
 
 
 def abort_after(sent: Goal, after_s: float, cause: Cause) -> GoalScript:
-    """The goal is active for a time, then the device stops and reports a failure."""
+    """Let the goal be active for a time; then the device stops and reports a failure."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         try:
@@ -82,7 +82,7 @@ def abort_after(sent: Goal, after_s: float, cause: Cause) -> GoalScript:
 
 
 def lose_request() -> GoalScript:
-    """The device never receives the goal; a cancel has no effect."""
+    """Keep the goal from the device; a cancel has no effect."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         await goal.cancel_asked.wait()
@@ -92,7 +92,7 @@ def lose_request() -> GoalScript:
 
 
 def lose_answer(sent: Goal) -> GoalScript:
-    """The device executes the goal and the result is lost; a cancel returns the result."""
+    """Lose the result of the goal that the device executes; a cancel returns the result."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -105,7 +105,7 @@ def lose_answer(sent: Goal) -> GoalScript:
 def copy_at_once(sent: Goal, copy: Goal) -> GoalScript:
     """Two copies of the goal are active; the end of the first is reported after both have ended."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
         await copy.result()
         return end
@@ -114,7 +114,7 @@ def copy_at_once(sent: Goal, copy: Goal) -> GoalScript:
 
 
 def copy_after_end(sent: Goal, send_again: Callable[[], Goal | None]) -> GoalScript:
-    """The goal is sent again after its end; the first end is reported after both have ended."""
+    """Send the goal again after its end; the first end is reported after both have ended."""
 
     async def play(goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
@@ -128,9 +128,9 @@ def copy_after_end(sent: Goal, send_again: Callable[[], Goal | None]) -> GoalScr
 
 
 def kill_after(sent: Goal, kill: Callable[[], None]) -> GoalScript:
-    """The process is killed when the device has finished, before the end is reported."""
+    """Kill the process when the device has finished, before the end is reported."""
 
-    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+    async def play(_goal: FaultyGoal) -> AnyGoalEnd:
         end = await sent.result()
         kill()
         return end

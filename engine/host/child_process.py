@@ -40,7 +40,9 @@ def start_child(
     }
     command = [sys.executable, "-P", "-c", code, *(str(descriptor) for descriptor in descriptors)]
     try:
-        return subprocess.Popen(command, pass_fds=tuple(descriptors), env=environment, stdin=subprocess.DEVNULL)
+        return subprocess.Popen(  # noqa: S603 - our own code
+            command, pass_fds=tuple(descriptors), env=environment, stdin=subprocess.DEVNULL
+        )
     except OSError as error:
         raise RobotError(f"{what} does not start: {error}", where=sys.executable) from error
 

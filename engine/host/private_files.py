@@ -32,7 +32,7 @@ def make_private_folder(folder: Path) -> None:
         each.mkdir(mode=_FOLDER, exist_ok=True)
     if not folder.is_dir():
         folder.mkdir(exist_ok=True)  # raises the error for an existing file
-    if folder.name == STATE_FOLDER or folder.parent.name == STATE_FOLDER:
+    if STATE_FOLDER in (folder.name, folder.parent.name):
         restrict_to_owner(folder if folder.name == STATE_FOLDER else folder.parent)
 
 

@@ -74,8 +74,9 @@ class SqliteRunJournal:
             return tuple(journal.events(self.run_id))
 
     async def apply_backpressure(self) -> None:
-        """Return at once, or commit when more than `MAX_PENDING_EVENTS` are pending."""
-        if len(self._events) > MAX_PENDING_EVENTS:
+        """Return at once, or commit when more than `MAX_PENDING_EVENTS` are not on disk yet."""
+        # Those that the writer has taken are in memory too.
+        if self._ledger.appended - self._ledger.durable > MAX_PENDING_EVENTS:
             await self.commit()
 
     def append_world_state(self, state: bytes) -> None:

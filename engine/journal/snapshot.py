@@ -201,7 +201,7 @@ class JournalSnapshot:
     def _checksum_before(self, stored: Stored) -> bytes | None:
         """Return the checksum of the row before this one; None when there is no such row or checksum."""
         for table in ("block", "event") if isinstance(stored, EventBlock) else ("event",):
-            query = f"SELECT {self._checksum if table == 'event' else 'checksum'} FROM {table}"
+            query = f"SELECT {self._checksum if table == 'event' else 'checksum'} FROM {table}"  # noqa: S608 - our names
             where = "WHERE run = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
             found = self._connection.execute(f"{query} {where}", (stored.run, stored.seq)).fetchone()
             if found is not None:

@@ -84,7 +84,7 @@ class SessionRecordings:
             return
         virtual = cell.bus.clock.virtual
         try:
-            recording, path = self._open(run.id, start.documents, virtual)
+            recording, path = self._open(run.id, start.documents, virtual=virtual)
             recording.attach(
                 run, cell.bus, started_unix_s=time.time(), inputs=start.inputs, supervision=start.supervision
             )
@@ -96,7 +96,9 @@ class SessionRecordings:
             yield
         finally:
             recording.detach()
-            finishing = asyncio.create_task(self._finish(recording, path, virtual), name=f"recording of {run.id}")
+            finishing = asyncio.create_task(
+                self._finish(recording, path, virtual=virtual), name=f"recording of {run.id}"
+            )
             self._finishing.add(finishing)
             finishing.add_done_callback(self._finishing.discard)
 
@@ -131,7 +133,7 @@ class SessionRecordings:
         self._remove_oldest(room=1)
         return collect_documents(behavior, cell.document)
 
-    def _open(self, run_id: str, documents: RecordedDocuments, virtual: bool) -> tuple[RunRecording, Path]:
+    def _open(self, run_id: str, documents: RecordedDocuments, *, virtual: bool) -> tuple[RunRecording, Path]:
         # A resumed run has a recording already.
         number = max(self._pieces(run_id), default=0) + 1
         path = self.folder / f"{run_id}{'' if number == 1 else f'~{number}'}{_SUFFIX}"
@@ -147,7 +149,7 @@ class SessionRecordings:
         self._used.add(part_file(path))
         return recording, path
 
-    async def _finish(self, recording: RunRecording, path: Path, virtual: bool) -> None:
+    async def _finish(self, recording: RunRecording, path: Path, *, virtual: bool) -> None:
         try:
             await asyncio.to_thread(recording.close)
             if virtual:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -41,7 +40,7 @@ def finalize_recording(part: Path, target: Path) -> None:
         with open_records(part) as records, open_private(fresh) as stream:
             writer = Writer(stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
             _copy(records, writer, ReadBudget(part.stat().st_size))
-        os.replace(fresh, target)
+        fresh.replace(target)
         part.unlink()
     except OSError as error:
         fresh.unlink(missing_ok=True)

@@ -70,7 +70,7 @@ class RecordedSchedule:
         return not self._still
 
     def now_s(self) -> float:
-        """The time of the run."""
+        """Return the time of the run."""
         return self._loop.time() - self._zero_s
 
     def time_for(self, sent_s: float, ended_s: float) -> float:

@@ -111,7 +111,9 @@ class Run:
             bus=bus,
             clock=bus.clock,
             recorder=self._recorder,
-            random=random.Random(seed if checkpoint is None else f"{seed} after {checkpoint.seq}"),
+            random=random.Random(  # noqa: S311 - repeatable by its seed
+                seed if checkpoint is None else f"{seed} after {checkpoint.seq}"
+            ),
             skills=skills or BusPort(bus),
             branch_holds=branch_holds,
             gate=Gate(self._recorder, branch_holds),

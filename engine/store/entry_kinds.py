@@ -49,7 +49,7 @@ class EntryKind:
     The type is a msgspec Struct or a pydantic model. `check` returns the problem, empty when there is none.
     """
 
-    type: type[msgspec.Struct] | type[PydanticModel] | None
+    type: type[msgspec.Struct | PydanticModel] | None
     check: Callable[[msgspec.Struct], str] | None = None
 
 

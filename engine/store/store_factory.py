@@ -33,7 +33,7 @@ async def open_store(
     """
     if not is_mongo_address(str(address)):
         return SqliteStore.open(address, inline=inline)
-    mongo = _mongo(str(address))
+    mongo = _mongo()
     uri, named = (str(address), database) if database is not None else split_database(str(address))
 
     def connect() -> Store:
@@ -43,7 +43,7 @@ async def open_store(
     return connect() if inline else await asyncio.to_thread(connect)
 
 
-def _mongo(address: str) -> Any:
+def _mongo() -> Any:
     try:
         return import_module("engine.store.mongo.mongo_store")
     except ImportError as error:

@@ -31,7 +31,7 @@ class EdgeDetector:
         BusError: the messages have no such field.
     """
 
-    def __init__(self, kind: type[Any], *, field: str, value: bool | int | float | str) -> None:
+    def __init__(self, kind: type[Any], *, field: str, value: bool | float | str) -> None:
         self._field = _field_of(kind, field)
         self._value = value
         self.pressed = False

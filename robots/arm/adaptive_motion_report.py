@@ -23,9 +23,9 @@ class AdaptiveMotionListener(Protocol):
     """Receives phase and path changes of a motion."""
 
     def entered(self, phase: MotionPhase, reason: str) -> None:
-        """The motion has entered another phase."""
+        """Report that the motion has entered another phase."""
         ...
 
     def follows(self, segment: PathSegment) -> None:
-        """The motion follows this path from now on."""
+        """Report that the motion follows this path from now on."""
         ...

@@ -145,7 +145,7 @@ class ArmServer:
         )
 
     def grips(self) -> dict[str, GraspCommand]:
-        """The grasp command that the gripper executes or holds, by the gripper's name; empty without one."""
+        """Return the grasp command that the gripper executes or holds, by the gripper's name; empty without one."""
         gripper = self._gripper
         return {} if gripper is None or gripper.grip is None else {gripper.name: gripper.grip}
 

@@ -58,20 +58,20 @@ class BlockedPathPolicy:
         self._total_s, self._since_s = self.total_s, None
 
     def rest(self) -> None:
-        """The arm has come to rest."""
+        """Take note that the arm has come to rest."""
         self._rest_since_s = self._clock.now_s()
 
     def has_rested(self, *, stops: int) -> bool:
-        """True when the arm has dwelled long enough; the dwell grows while its path is free and blocked in turns."""
+        """Return whether the arm dwelled long enough; the dwell grows while its path is free and blocked in turns."""
         excess = stops - _STOPS_WITHOUT_DWELL
         needed_s = min(_LONGEST_DWELL_S, _DWELL_S * 2.0**excess) if excess > 0 else 0.0
         return self._clock.now_s() - self._rest_since_s >= needed_s
 
     def searched(self, *, took_s: float) -> None:
-        """A search failed: search at most half of the time, with growing pauses."""
+        """Take a failed search: search at most half of the time, with growing pauses."""
         self._search_at_s = self._clock.now_s() + max(self._pause_s, took_s)
         self._pause_s = min(2.0 * self._pause_s, _LONGEST_PAUSE_S)
 
     def something_changed(self) -> None:
-        """A failed search may now succeed: reset the pause; a pause that has begun continues."""
+        """Reset the pause, as a failed search may now succeed; a pause that has begun continues."""
         self._pause_s = _PAUSE_S

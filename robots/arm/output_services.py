@@ -42,22 +42,22 @@ class OutputServices:
             bus.advertise_service(SetLinearAxis, self._set_linear_axis, namespace=name, commands=name)
 
     async def _set_output(self, request: SetOutput) -> SwitchResult:
-        return self._set(request.output, request.value, f"output {request.output}")
+        return self._set(request.output, f"output {request.output}", value=request.value)
 
     async def _set_tool_exchange(self, request: SetToolExchange) -> SwitchResult:
-        return self._set_use("tool_exchange", request.value)
+        return self._set_use("tool_exchange", value=request.value)
 
     async def _set_gripper(self, request: SetGripper) -> SwitchResult:
-        return self._set_use("gripper", request.value)
+        return self._set_use("gripper", value=request.value)
 
     async def _set_linear_axis(self, request: SetLinearAxis) -> SwitchResult:
-        return self._set_use("linear_axis", request.value)
+        return self._set_use("linear_axis", value=request.value)
 
-    def _set_use(self, use: str, value: bool) -> SwitchResult:
+    def _set_use(self, use: str, *, value: bool) -> SwitchResult:
         output = self._uses[use]
-        return self._set(output, value, f"{use.replace('_', ' ')} (output {output})")
+        return self._set(output, f"{use.replace('_', ' ')} (output {output})", value=value)
 
-    def _set(self, output: int, value: bool, words: str) -> SwitchResult:
+    def _set(self, output: int, words: str, *, value: bool) -> SwitchResult:
         try:
             self._port.set(output, on=value)
         except RobotError as error:

@@ -17,7 +17,6 @@ async def follow_joints(
     mode: ArmMode = "moving",
 ) -> JointMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured joints."""
-
     start = runner.set_point()
 
     def publish_feedback(motion: Motion) -> None:

@@ -23,7 +23,7 @@ class ToolKinematics(Protocol):
         ...
 
     def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
-        """The tool pose and the Jacobian, shape (6, n): m/s, then rad/s, in world axes."""
+        """Return the tool pose and the Jacobian, shape (6, n): m/s, then rad/s, in world axes."""
         ...
 
 

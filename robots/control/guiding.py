@@ -45,7 +45,7 @@ class GuidingGenerator(SetpointStream):
         return not self._floating and super().stopped
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
-        """Takes no values."""
+        """Take no values."""
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
         self._floating = True

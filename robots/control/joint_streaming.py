@@ -64,7 +64,7 @@ class JointStreamGenerator(SetpointStream):
         self._since_s = 0.0
 
     def data(self) -> bytes:
-        """The warning as UTF-8 text; empty without clipping."""
+        """Return the warning as UTF-8 text; empty without clipping."""
         return self.warning.encode()
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:

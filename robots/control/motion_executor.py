@@ -140,7 +140,7 @@ class MotionExecutor:
             if following.generator.failure:
                 self.fail(following.generator.failure)
             self._check_path(following, position)
-        return self._judge(following, step_s, position, at_rest)
+        return self._judge(following, step_s, position, at_rest=at_rest)
 
     def _measure_rest(self, step_s: float, velocity: Array) -> bool:
         self._rest_s = self._rest_s + step_s if np.maximum.reduce(np.abs(velocity)) < _REST_RAD_S else 0.0
@@ -169,7 +169,7 @@ class MotionExecutor:
         return f"{self._joints[joint]} is {error_rad:.3f} rad {what}" + (f"; {contact}" if contact else "")
 
     def _judge(
-        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+        self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         generator = following.generator
         if following.resume_pending and generator.moving:
@@ -178,16 +178,16 @@ class MotionExecutor:
         if not generator.stopped:
             return ()
         if following.ending is not None:
-            return self._end_when_at_rest(following, step_s, position, at_rest)
+            return self._end_when_at_rest(following, step_s, position, at_rest=at_rest)
         if following.hold:
             if not at_rest or following.held_reported:
                 return ()
             following.held_reported = True
             return (MotionHeld(motion=following.number, request=following.request),)
-        return self._settle(following, step_s, position, at_rest) if generator.complete else ()
+        return self._settle(following, step_s, position, at_rest=at_rest) if generator.complete else ()
 
     def _settle(
-        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+        self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         goal = following.generator.goal
         error = np.abs((position if goal is None else goal) - position)
@@ -203,7 +203,7 @@ class MotionExecutor:
         return ()
 
     def _end_when_at_rest(
-        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+        self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         ending = following.ending or MotionEnd.CANCELED
         if ending is MotionEnd.FAILED and self._give_way is None:

@@ -65,7 +65,7 @@ class MotionGenerator(Protocol):
         ...
 
     def data(self) -> bytes:
-        """Recorded data for `MotionReport.data`; empty for most."""
+        """Return recorded data for `MotionReport.data`; empty for most."""
         ...
 
 

@@ -124,7 +124,7 @@ def _require_segments(calibration: Calibration, described: CalibrationFormat) ->
 
 
 def _require_same_axis(inner: Array, joint: Element, nominal: Calibration) -> None:
-    """The joint's axis must be the z axis of the file's frame, and pass through its origin."""
+    """Require that the joint's axis is the z axis of the file's frame, and passes through its origin."""
     described = joint.find("axis")
     axis = np.array([float(v) for v in described.attrib["xyz"].split()] if described is not None else [1.0, 0.0, 0.0])
     off_rad = float(np.linalg.norm(inner[:3, :3] @ axis - [0.0, 0.0, 1.0]))

@@ -44,7 +44,7 @@ def write_cached(folder: Path, key: str, payload: bytes) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(hashlib.sha256(payload).digest() + payload)
-            os.replace(temporary, folder / key)
+            Path(temporary).replace(folder / key)
         except BaseException:
             # No partial file may remain after any interruption.
             Path(temporary).unlink(missing_ok=True)

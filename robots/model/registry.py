@@ -59,7 +59,7 @@ def robot_model(
         gripper = load_arm(arm).document.tool
     tool = _folder(gripper, TOOLS_DIR, TOOL_FILE, "gripper model") if gripper is not None else None
     changed = tuple(_changed_ns(path) for path in (arm, tool, calibration))
-    return _composed(arm, tool, calibration, coupled_joints, changed)
+    return _composed(arm, tool, calibration, coupled_joints=coupled_joints, changed=changed)
 
 
 def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotModel:
@@ -89,7 +89,12 @@ def model_location(written: str, resolve: Callable[[str], Path]) -> str:
 # `changed` makes an edited folder a new model, so that editing needs no restart.
 @lru_cache(maxsize=64)
 def _composed(
-    arm: Path, tool: Path | None, calibration: Path | None, coupled_joints: bool, changed: tuple[int, ...]
+    arm: Path,
+    tool: Path | None,
+    calibration: Path | None,
+    *,
+    coupled_joints: bool,
+    changed: tuple[int, ...],  # noqa: ARG001 - part of the key of the cache
 ) -> RobotModel:
     try:
         return compose(

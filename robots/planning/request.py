@@ -112,8 +112,11 @@ class SampledTrajectory(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
-    """Effort of an answer: seconds of search, shortening, exact verification and timing; configurations checked by the
-    search and by the verification; number of paths rejected by the exact check; the planner that found the path."""
+    """Effort of an answer.
+
+    Seconds of search, shortening, exact verification and timing; configurations checked by the search and by the
+    verification; number of paths rejected by the exact check; the planner that found the path.
+    """
 
     search_s: float
     shortening_s: float

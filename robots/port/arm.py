@@ -64,7 +64,7 @@ class ArmPort(Protocol):
         ...
 
     def sample(self) -> ArmSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         ...
 
     def follow(

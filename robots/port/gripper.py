@@ -34,7 +34,7 @@ class GripperPort(Protocol):
         ...
 
     def sample(self) -> GripperSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         ...
 
     def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> Motion:

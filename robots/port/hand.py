@@ -32,7 +32,7 @@ class HandPort(Protocol):
         ...
 
     def sample(self) -> HandSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         ...
 
     def close_to(self, *, share: float, time_s: float) -> Motion:

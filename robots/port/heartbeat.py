@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import mmap
 import os
+from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -51,15 +52,14 @@ class Heartbeat:
         Raises:
             OSError: there is no such process, it belongs to another user, or it has no heartbeat.
         """
-        folder = f"/proc/{pid}/fd"
-        for entry in os.listdir(folder):
+        for entry in Path(f"/proc/{pid}/fd").iterdir():
             try:
-                if _NAME not in os.readlink(f"{folder}/{entry}"):
+                if _NAME not in str(entry.readlink()):
                     continue
             except FileNotFoundError:
                 # The process has closed it meanwhile.
                 continue
-            descriptor = os.open(f"{folder}/{entry}", os.O_RDWR)
+            descriptor = os.open(entry, os.O_RDWR)
             try:
                 return cls(descriptor)
             finally:

@@ -28,7 +28,7 @@ class MagnetPort(Protocol):
         ...
 
     def sample(self) -> MagnetSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         ...
 
     def switch(self, *, on: bool) -> Motion:

@@ -168,7 +168,7 @@ class PerceptionDevice:
         return {}
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
-        """The world was restored to an earlier state: the map is discarded."""
+        """Discard the map, as the world was restored to an earlier state."""
         self._forget = True
         self.map.outdated()
 
@@ -186,7 +186,7 @@ class PerceptionDevice:
             self._grids = bus.topic("cell/occupancy", OccupancyGrid)
             self._states = bus.topic("cell/occupancy_state", OccupancyState)
             self._states.provide(self._state)
-            self.map.subscribe(lambda: self._publish_state())
+            self.map.subscribe(self._publish_state)
         self.desk.register(bus)
         for camera in self.sight.cameras:
             self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)

@@ -57,7 +57,7 @@ def _names_within(
     from robots.planning.scene.exact_checker import ExactChecker
 
     checker = ExactChecker(scene, arm, margin_m=within_m)
-    joints = np.array(joints_rad if joints_rad else checker.model.home_rad)
+    joints = np.array(joints_rad or checker.model.home_rad)
     pairs = checker.colliding_pairs(joints)
     return frozenset(b if a == part else a for a, b in pairs if part in (a, b))
 

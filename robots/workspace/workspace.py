@@ -312,7 +312,7 @@ class Workspace:
             self._measuring = None
 
     async def _read(self, request: ReadPlanningScene) -> PlanningSceneState:
-        return await self._changed(lambda live: None)
+        return await self._changed(lambda _live: None)
 
     async def _put(self, request: PutObstacle) -> PlanningSceneState:
         return await self._changed(lambda live: live.put(request.obstacle), {request.obstacle.name})
@@ -337,7 +337,7 @@ class Workspace:
     async def _forget(self, request: ForgetOccupancy) -> PlanningSceneState:
         if self._occupancy is not None:
             self._occupancy.forget()
-        return await self._changed(lambda live: None)
+        return await self._changed(lambda _live: None)
 
     async def _check(self, request: CheckCollision) -> CollisionReport:
         await self.ready()

@@ -23,7 +23,7 @@ class Move(State, frozen=True, kw_only=True):
     speed_m_s: FingerSpeed = 0.1
 
     def resources(self) -> tuple[str, ...]:
-        """The gripper."""
+        """Return the gripper."""
         return (gripper_address(self.gripper),)
 
     async def run(self, ctx: Context) -> Outcome:

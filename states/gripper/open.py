@@ -24,7 +24,7 @@ class Open(State, frozen=True, kw_only=True):
     part: PartLabel = ""
 
     def resources(self) -> tuple[str, ...]:
-        """The gripper."""
+        """Return the gripper."""
         return (gripper_address(self.gripper),)
 
     async def run(self, ctx: Context) -> Outcome:

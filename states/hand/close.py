@@ -32,7 +32,7 @@ class Close(State, frozen=True, kw_only=True):
     part: PartLabel = ""
 
     def resources(self) -> tuple[str, ...]:
-        """The hand."""
+        """Return the hand."""
         return (hand_address(self.hand),)
 
     async def run(self, ctx: Context) -> Outcome:

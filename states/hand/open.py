@@ -23,7 +23,7 @@ class Open(State, frozen=True, kw_only=True):
     part: PartLabel = ""
 
     def resources(self) -> tuple[str, ...]:
-        """The hand."""
+        """Return the hand."""
         return (hand_address(self.hand),)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -45,7 +45,7 @@ class SetOutput(State, frozen=True, kw_only=True):
             raise ValueError("give either `output` or `device`")
 
     def resources(self) -> tuple[str, ...]:
-        """The robot."""
+        """Return the robot."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

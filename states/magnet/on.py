@@ -30,7 +30,7 @@ class On(State, frozen=True, kw_only=True):
     part: PartLabel = ""
 
     def resources(self) -> tuple[str, ...]:
-        """The magnet."""
+        """Return the magnet."""
         return (magnet_address(self.magnet),)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -50,6 +50,7 @@ _NOT_LIFTED = ("missed", "unreachable", "blocked")
 
 class PickPart(State, frozen=True, kw_only=True):
     """Open the tool, move collision-free to the pre-approach pose, straight to the part, close, lift, check the grasp.
+
     The state reads the latest measured pose of the part. Motions with the held part are planned including it.
     `missed` when the tool does not hold the part after closing or lifting, or when there is no such part;
     `unreachable` when the arm cannot reach the part or lift it; `blocked` when the planning scene blocks the arm or
@@ -94,7 +95,7 @@ class PickPart(State, frozen=True, kw_only=True):
             raise ValueError("`approach` must not be a zero vector")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm and its tool."""
+        """Return the arm and its tool."""
         return (self.robot, tool_resource(self.robot, self.tool))
 
     async def run(self, ctx: Context) -> Outcome:

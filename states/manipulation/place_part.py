@@ -61,7 +61,7 @@ class PlacePart(State, frozen=True, kw_only=True):
             raise ValueError("`approach` must not be a zero vector")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm and its tool."""
+        """Return the arm and its tool."""
         return (self.robot, tool_resource(self.robot, self.tool))
 
     async def run(self, ctx: Context) -> Outcome:

@@ -36,7 +36,7 @@ class ExecutePlan(State, frozen=True, kw_only=True):
     keep_orientation: KeepOrientation | None = None
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context, *, plan: PlannedMotion) -> Outcome:

@@ -36,7 +36,7 @@ class FollowCartDmp(State, frozen=True, kw_only=True):
             raise ValueError("`goal_offset_m` requires `goal`")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -39,7 +39,7 @@ class Guide(State, frozen=True, kw_only=True):
     damping: DampingShare = 0.1
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

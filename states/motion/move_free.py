@@ -76,11 +76,11 @@ class MoveFree(State, frozen=True, kw_only=True):
             raise ValueError("give `joints`, `pose` or `start_of`")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The target; nothing for a retracted joint target, which depends on the arm's kinematics."""
+        """Return the target; nothing for a retracted joint target, which depends on the arm's kinematics."""
         if self.joints is not None:
             return () if self.back_m else static_joint_target(self.robot, self.joints, stored, parameter="joints")
         return static_pose_target(

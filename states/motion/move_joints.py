@@ -27,11 +27,11 @@ class MoveJoints(State, frozen=True, kw_only=True):
     speed: Speed = 0.5
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The joints."""
+        """Return the joints."""
         return static_joint_target(self.robot, self.target, stored, parameter="target")
 
     async def run(self, ctx: Context) -> Outcome:

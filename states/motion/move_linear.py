@@ -62,11 +62,11 @@ class MoveLinear(State, frozen=True, kw_only=True):
             raise ValueError("give `target`, `joints`, `offset_m` or `back_m`")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The end of the line, if it does not depend on the arm's kinematics or its current pose."""
+        """Return the end of the line, if it does not depend on the arm's kinematics or its current pose."""
         if self.joints is not None and self.offset_m == NO_OFFSET and not self.back_m:
             return static_joint_target(self.robot, self.joints, stored, parameter="joints")
         return static_pose_target(

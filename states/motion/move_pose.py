@@ -33,11 +33,11 @@ class MovePose(State, frozen=True, kw_only=True):
     match: PoseMatch = "pose"
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The pose."""
+        """Return the pose."""
         return static_pose_target(
             self.robot, self.target, stored, parameter="target", offset_m=self.offset_m, match=self.match
         )

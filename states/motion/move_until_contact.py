@@ -38,7 +38,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     force_n: ContactForce = 10.0
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -54,7 +54,7 @@ class PlanMotion(State, frozen=True, kw_only=True):
         require_one(self.joints, self.pose)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
-        """The target."""
+        """Return the target."""
         if self.joints is not None:
             return static_joint_target(self.robot, self.joints, stored, parameter="joints")
         return static_pose_target(

@@ -55,7 +55,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     approach_speed: ApproachSpeed = None
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -20,7 +20,7 @@ class Recover(State, frozen=True, kw_only=True):
     robot: RobotName
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

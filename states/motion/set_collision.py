@@ -26,7 +26,7 @@ class SetCollision(State, frozen=True, kw_only=True):
     force_n: Force | None = None
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -24,7 +24,7 @@ class SetController(State, frozen=True, kw_only=True):
     controller: Annotated[ControllerName, Meta(description="Control law")]
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

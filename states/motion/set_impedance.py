@@ -44,7 +44,7 @@ class SetImpedance(State, frozen=True, kw_only=True):
             raise ValueError("give either `joints` or `tool`")
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

@@ -30,7 +30,7 @@ class SetLoad(State, frozen=True, kw_only=True):
     )
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:

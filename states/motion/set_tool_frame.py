@@ -28,11 +28,11 @@ class SetToolFrame(State, frozen=True, kw_only=True):
     xyzw: Annotated[Quaternion, Meta(description="Orientation in the tool link, x y z w")] = (0.0, 0.0, 0.0, 1.0)
 
     def resources(self) -> tuple[str, ...]:
-        """The arm."""
+        """Return the arm."""
         return (self.robot,)
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ToolChange, ...]:
-        """The change of the tool frame, which applies to all later pose targets."""
+        """Return the change of the tool frame, which applies to all later pose targets."""
         return (ToolChange(robot=self.robot),)
 
     async def run(self, ctx: Context) -> Outcome:

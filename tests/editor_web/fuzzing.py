@@ -45,7 +45,7 @@ HOSTILE_PATHS = (
 )  # fmt: skip
 
 _document = api().openapi()
-_schema = cast(Any, schemathesis.openapi.from_dict(_document))
+_schema = cast("Any", schemathesis.openapi.from_dict(_document))
 fuzzed = settings(
     max_examples=EXAMPLES,
     derandomize=True,

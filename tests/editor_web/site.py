@@ -7,7 +7,7 @@ import threading
 from collections.abc import Coroutine
 from contextlib import AsyncExitStack
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from editor_web.server import Dashboard, dashboard
 from tests.editor_web.fake_backend import FakeBackend
@@ -48,7 +48,7 @@ class Site:
         if forget:
             self._token_file.unlink()
 
-    def __enter__(self) -> Site:
+    def __enter__(self) -> Self:
         self._thread.start()
         self.up()
         return self

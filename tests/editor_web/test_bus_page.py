@@ -123,7 +123,7 @@ def test_a_goal_shows_its_feedback_and_can_be_cancelled(browser: Browser, shop: 
         page.get_by_label("What of the bus").get_by_text("Actions", exact=True).click()
         page.get_by_role("button", name="Cancel goal").click()
         expect(course).to_contain_text("Cancelled, the device is at rest")
-        assert shop.on_loop(lambda: shop.session.desk.leases()) == ()
+        assert shop.on_loop(shop.session.desk.leases) == ()
 
 
 def test_a_goal_is_cancelled_when_its_page_is_left(browser: Browser, shop: Workshop, plant: FakePlant) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import base64
 import re
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -176,7 +176,7 @@ def test_the_whole_behavior_is_exported_as_a_standalone_picture(
             assert download.value.suggested_filename == f"shift{file.suffix}"
             download.value.save_as(file)
         svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
-        drawn = ElementTree.fromstring(svg)
+        drawn = ET.fromstring(svg)
         text = " ".join(drawn.itertext())
         for name in ("first", "set", "left", "right", "rest", "Ends with", "finished"):
             assert name in text

@@ -15,7 +15,7 @@ def test_the_first_change_is_taken_back_before_the_server_has_answered(browser: 
     with at_editor(browser, shop, SHIFT_ID) as page:
         nodes = page.locator(".react-flow__node")
         before = nodes.count()
-        page.route("**/edits", lambda route: held.append(route))
+        page.route("**/edits", held.append)
         card(page, "root/set").click()
         with page.expect_request("**/edits"):
             page.keyboard.press("Control+d")

@@ -99,7 +99,7 @@ def test_a_gamepad_that_is_gone_stops_the_arm_and_starts_nothing_when_it_is_back
         told_s = site.call(site.hear_jogs())
         pads = jogging_with(page)
         leaving = (
-            lambda: pads.unplug(),
+            pads.unplug,
             lambda: page.evaluate("dispatchEvent(new Event('blur'))"),
             lambda: page.evaluate("dispatchEvent(new Event('pointerup'))"),
         )

@@ -21,7 +21,7 @@ PAGES = [
 SHOWN = [
     pytest.param(page, text, id=f"{page.relative_to(ROOT)}-{number}")
     for page in PAGES
-    for number, text in enumerate(re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M), 1)
+    for number, text in enumerate(re.findall(r"(?ms)^```yaml\n(.*?)^```", page.read_text(encoding="utf-8")), 1)
     if text.startswith("flexcell: 1") and "\nroot:" in text
 ]
 

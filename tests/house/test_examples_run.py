@@ -43,7 +43,7 @@ PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
 SHOWN = {
     f"{page.relative_to(ROOT)}-{number}": text
     for page in sorted(PAGES)
-    for number, text in enumerate(re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M), 1)
+    for number, text in enumerate(re.findall(r"(?ms)^```yaml\n(.*?)^```", page.read_text(encoding="utf-8")), 1)
 }
 
 

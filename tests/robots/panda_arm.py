@@ -39,7 +39,7 @@ def configurations(margin_rad: float = 0.0) -> st.SearchStrategy[Array]:
         st.floats(lower + margin_rad, upper - margin_rad)
         for lower, upper in zip(limits.lower_rad, limits.upper_rad, strict=True)
     ]
-    return st.tuples(*joints).map(lambda angles: np.array(angles))
+    return st.tuples(*joints).map(np.array)
 
 
 def played(trajectory: JointTrajectory, *, between: int = 7) -> tuple[Array, Array, Array]:

@@ -123,11 +123,11 @@ class _Roots:
     def show(self, groups: frozenset[LayerGroup], *, is_past: bool) -> None:
         """Show these groups, the bodies of the cell, and the previews."""
         for node in self._live:
-            _set_visible(node, not is_past)
-        _set_visible(self._past, is_past)
+            _set_visible(node, is_visible=not is_past)
+        _set_visible(self._past, is_visible=is_past)
         for group in LAYER_GROUPS:
-            _set_visible(self._groups[group], group in groups and not is_past)
-            _set_visible(self._past_groups[group], group in groups)
+            _set_visible(self._groups[group], is_visible=group in groups and not is_past)
+            _set_visible(self._past_groups[group], is_visible=group in groups)
 
 
 def _past_roots(scene: viser.SceneApi) -> tuple[viser.FrameHandle, dict[LayerGroup, viser.FrameHandle]]:
@@ -135,6 +135,6 @@ def _past_roots(scene: viser.SceneApi) -> tuple[viser.FrameHandle, dict[LayerGro
     return root, {group: scene.add_frame(root_of(group, under=PAST), show_axes=False) for group in LAYER_GROUPS}
 
 
-def _set_visible(frame: viser.FrameHandle, is_visible: bool) -> None:
+def _set_visible(frame: viser.FrameHandle, *, is_visible: bool) -> None:
     if frame.visible != is_visible:
         frame.visible = is_visible

@@ -47,7 +47,7 @@ class UrdfTree:
 
     def __init__(self, urdf: str) -> None:
         try:
-            robot = ET.fromstring(urdf)
+            robot = ET.fromstring(urdf)  # noqa: S314 - our composed URDF
         except ET.ParseError as error:
             raise FlexcellError(f"the description of the arm cannot be read: {error}") from error
         joints = [_joint(element) for element in robot.findall("joint")]

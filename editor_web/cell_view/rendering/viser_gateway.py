@@ -57,7 +57,7 @@ def new_viser_server(key: str) -> viser.ViserServer:
     return server
 
 
-def _no_tunnel(verbose: bool = True) -> str | None:
+def _no_tunnel(verbose: bool = True) -> str | None:  # noqa: FBT001, FBT002 - viser's signature
     del verbose
     return None
 

@@ -35,9 +35,7 @@ def concurrency_ends(
     return ends
 
 
-def parallel_ends(
-    placed: NodeAt, children: Sequence[NodeAt], edges: EdgesByNode, entry: int, sites: DefinitionSites
-) -> dict[str, int]:
+def parallel_ends(placed: NodeAt, children: Sequence[NodeAt], edges: EdgesByNode, entry: int) -> dict[str, int]:
     """Return the fact at success and at failure of a parallel of a tree."""
     group = placed.node.parallel
     policy = "all" if group is None or isinstance(group, tuple) else group.policy

@@ -99,8 +99,11 @@ class DataFlow:
         graph = self.graphs.get(placed.path)
         if graph is not None:
             return graph.solve(inner, self.sites)
-        merge = concurrency_ends if placed.node.concurrency is not None else parallel_ends
-        return dict.fromkeys(range(len(children)), inner), merge(placed, children, self.edges, inner, self.sites)
+        if placed.node.concurrency is not None:
+            ends = concurrency_ends(placed, children, self.edges, inner, self.sites)
+        else:
+            ends = parallel_ends(placed, children, self.edges, inner)
+        return dict.fromkeys(range(len(children)), inner), ends
 
     def _rounds(self, placed: NodeAt, child: NodeAt, entry: int) -> tuple[dict[int, int], dict[str, int]]:
         rounds = placed.node.foreach
@@ -309,9 +312,7 @@ class DataFlow:
 
 def _declared(placed: NodeAt) -> list[tuple[str, Origin]]:
     """Return the keys that a container declares in its own scope."""
-    found: list[tuple[str, Origin]] = []
-    for key in placed.node.userdata:
-        found.append((key, "userdata"))
+    found: list[tuple[str, Origin]] = [(key, "userdata") for key in placed.node.userdata]
     rounds = placed.node.foreach
     if rounds is not None:
         found.append((rounds.item, "item"))

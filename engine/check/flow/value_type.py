@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any, cast
 
 import msgspec
-import msgspec.inspect as inspect
+from msgspec import inspect
 
 from engine.document.cel_environment import ValueType
 from engine.document.cel_expression import as_text

@@ -43,7 +43,7 @@ def fix_text(text: str, *, file: Path, context: ProjectContext, likely: bool = F
         context: The states and behaviors around it.
         likely: If no fix is safe, apply the first that the editor offers, but none that deletes nodes.
     """
-    work = _Work(text, file, context, likely)
+    work = _Work(text, file, context, likely=likely)
     work.make()
     offered = work.offered()
     left = tuple((finding, offered[index]) for index, finding in enumerate(work.findings))
@@ -51,7 +51,7 @@ def fix_text(text: str, *, file: Path, context: ProjectContext, likely: bool = F
 
 
 class _Work:
-    def __init__(self, text: str, file: Path, context: ProjectContext, likely: bool) -> None:
+    def __init__(self, text: str, file: Path, context: ProjectContext, *, likely: bool) -> None:
         self.text: str = text
         self.fixed: list[AppliedFix] = []
         self._file = file

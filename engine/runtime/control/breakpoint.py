@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -106,4 +105,4 @@ def save_breakpoints(behavior: Path, breakpoints: Iterable[Breakpoint]) -> None:
     document = BreakpointsDocument(flexcell=1, breakpoints=kept)
     fresh = file.with_name(f".{file.name}.new")
     fresh.write_text(write_yaml(msgspec.to_builtins(document)), encoding="utf-8")
-    os.replace(fresh, file)
+    fresh.replace(file)

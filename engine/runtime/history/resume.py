@@ -90,7 +90,9 @@ def resume_checkpoint(
         if path not in history.active_states:
             hint = did_you_mean(path, history.active_states)
             raise ControlError("this state was not interrupted", where=path, hint=hint)
-    policies = {path: answers.get(path) or resume_policy(plan.nodes[path], demanded) for path in history.active_states}
+    policies = {
+        path: answers.get(path) or resume_policy(plan.nodes[path], demanded=demanded) for path in history.active_states
+    }
     questions = [
         ResumeQuestion(path=path, outcomes=tuple(plan.outcomes_of(path) or ()))
         for path, policy in policies.items()
@@ -117,7 +119,7 @@ def resume_checkpoint(
     )
 
 
-def resume_policy(node: Node, demanded: bool) -> str:
+def resume_policy(node: Node, *, demanded: bool) -> str:
     """Return the policy for a state that a crash interrupted: rerun, ask, or an outcome."""
     if node.resume is not None:
         return node.resume

@@ -69,8 +69,7 @@ async def observe(node: Node, scope: Scope, execution: Execution) -> Observation
     except asyncio.CancelledError:
         if being_cancelled(execution.loop):
             raise
-    except BaseException:
-        # As above: a BaseException is also an error of the node once it runs.
+    except BaseException:  # noqa: S110 - as above: a BaseException is also an error of the node once it runs
         pass
     left = NodeExit(outcome.name) if isinstance(outcome, Outcome) and outcome.name in work.outcomes else None
     return Observation(left, tuple(context.answers), frozenset(context.topics))

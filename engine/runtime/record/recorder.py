@@ -57,7 +57,7 @@ class Recorder:
             self.count()
 
     def stamp(self) -> tuple[int, float]:
-        """Number and time the next event, which the caller creates and passes to `record`: half the cost of `emit`."""
+        """Return number and time of the next event, which the caller makes and records: half the cost of `emit`."""
         return self.count(), self.now_s()
 
     def record(self, event: Event) -> None:

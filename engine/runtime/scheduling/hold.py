@@ -51,7 +51,7 @@ class _Member:
         self._settled = settled
         self.task: asyncio.Task[None] | None = None
 
-    def want(self, held: bool) -> None:
+    def want(self, *, held: bool) -> None:
         self.wanted = held
         if self.wanted != self.held and (self.task is None or self.task.done()):
             self.task = asyncio.create_task(self._follow(), name=f"hold {self.work.label}")
@@ -78,7 +78,7 @@ class BranchHolds:
         self._cleaning_up: set[str] = set()
         self._waiters: list[asyncio.Future[None]] = []
         self.on_settled: Callable[[], None] = lambda: None
-        self.is_preempted: Callable[[str], bool] = lambda path: False
+        self.is_preempted: Callable[[str], bool] = lambda _path: False
         """Whether the node at a path is preempted and cleans up."""
 
     @property
@@ -112,7 +112,7 @@ class BranchHolds:
                 timer.resume()
         for member in self._members.values():
             if member.of_clean_up and not self.held(member.work.path):
-                member.want(False)
+                member.want(held=False)
         self.wake()
 
     def has_cleaned_up(self, path: str) -> None:
@@ -124,7 +124,7 @@ class BranchHolds:
         member = _Member(work, self._notify_settled, of_clean_up=self.is_preempted(work.path))
         self._members[id(work)] = member
         if self._reasons and self.held(work.path):
-            member.want(True)
+            member.want(held=True)
 
     async def detach(self, work: Holdable) -> None:
         """Detach `work`; returns when no hold or resume of it is in progress."""
@@ -185,7 +185,7 @@ class BranchHolds:
                 timer.resume()
         for member in self._members.values():
             if not self._is_cleaning_up(member.work.path):
-                member.want(self.held(member.work.path))
+                member.want(held=self.held(member.work.path))
         self.wake()
 
     def _is_cleaning_up(self, path: str) -> bool:

@@ -28,10 +28,11 @@ def read_collection(uri: str, *, collection: str, patience_s: float = 10.0) -> t
             documents = tuple(cast("dict[str, Any]", plain_bson(document)) for document in cursor)
         if len(documents) > MAX_DOCUMENTS:
             raise ValueError(f"there are more than {MAX_DOCUMENTS} documents")
-        return documents
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
         raise StoreError(
             f"its documents cannot be read: {error}", where=server.address, hint="export the required documents only"
         ) from error
+    else:
+        return documents
     finally:
         server.client.close()

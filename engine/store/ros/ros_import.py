@@ -39,12 +39,12 @@ def read_ros_file(path: Path) -> tuple[dict[str, Any], ...]:
         documents = tuple(islice(found, MAX_DOCUMENTS + 1))
         if len(documents) > MAX_DOCUMENTS:
             raise ValueError(f"there are more than {MAX_DOCUMENTS} documents")
-        return documents
     except (OSError, ValueError, TypeError, OverflowError, RecursionError) as error:
         # Values of MongoDB's extended JSON may have any type in place of a number.
         raise StoreError(
             f"the documents cannot be read: {error}", where=path, hint="give the output of mongoexport or mongodump"
         ) from error
+    return documents
 
 
 def read_ros_documents(documents: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
@@ -104,7 +104,7 @@ def _json_documents(text: str) -> Iterator[dict[str, Any]]:
         found, at = decoder.raw_decode(text, at)
         for document in cast("list[Any]", found) if isinstance(found, list) else [found]:
             if not isinstance(document, dict):
-                raise ValueError(f"{document!r:.60} is not a document")
+                raise TypeError(f"{document!r:.60} is not a document")
             yield cast("dict[str, Any]", plain_bson(document))
 
 

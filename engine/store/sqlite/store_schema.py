@@ -45,9 +45,9 @@ SELECT kind, name, word FROM part WHERE word <> '';
 )
 _NOTE = "n.tags, n.changed_unix_ms, n.author, n.reason, n.restores, n.writer"
 _JOIN = "LEFT JOIN note n ON n.kind = r.kind AND n.name = r.name AND n.revision = r.revision"
-ENTRY = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM entry r {_JOIN}"
-KEY = f"SELECT r.kind, r.name, r.revision, NULL, {_NOTE} FROM entry r {_JOIN}"
-CHANGE = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM change r {_JOIN}"
+ENTRY = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM entry r {_JOIN}"  # noqa: S608 - our names
+KEY = f"SELECT r.kind, r.name, r.revision, NULL, {_NOTE} FROM entry r {_JOIN}"  # noqa: S608
+CHANGE = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM change r {_JOIN}"  # noqa: S608
 MANY = 20_000
 """Limit of the count of a word when the rarest one is determined."""
 
@@ -112,7 +112,8 @@ def conditions(selection: EntryQuery, *, rarest: tuple[str, str] | None) -> tupl
                 "EXISTS (SELECT 1 FROM word v WHERE v.kind = w.kind AND v.name = w.name AND v.word >= ? AND v.word < ?)"
             )
             arguments += span
-    found = f"SELECT DISTINCT w.kind, w.name FROM word w WHERE {' AND '.join(parts)} ORDER BY w.kind, w.name LIMIT ?"
+    where = " AND ".join(parts)
+    found = f"SELECT DISTINCT w.kind, w.name FROM word w WHERE {where} ORDER BY w.kind, w.name LIMIT ?"  # noqa: S608
     return f" WHERE (r.kind, r.name) IN ({found})", [*arguments, limit_of(selection)]
 
 

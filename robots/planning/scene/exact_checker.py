@@ -232,10 +232,12 @@ class ExactChecker:
                     RigidTransform.from_pose(part.pose).then(RigidTransform.from_pose(solid.pose))
                 )
                 index = self._add(part.name, frame.parentJoint, at, cached_shape(solid.shape, part.name))
-                for other in own:
-                    # Links that move with the part, such as the tool that holds it, cannot collide with it.
-                    if self._geometry.geometryObjects[other].parentJoint != frame.parentJoint:
-                        pairs.append((other, index))
+                # Links that move with the part, such as the tool that holds it, cannot collide with it.
+                pairs += [
+                    (other, index)
+                    for other in own
+                    if self._geometry.geometryObjects[other].parentJoint != frame.parentJoint
+                ]
         return pairs
 
     def _add_obstacles(self, outside: tuple[PlacedSolid, ...]) -> list[tuple[int, int]]:
@@ -265,7 +267,7 @@ def _always(_joints: Array) -> bool:
 
 
 def _ever_finer(count: int) -> Iterator[int]:
-    """Yield 1 … `count`: the last first, then halves, quarters, …"""
+    """Yield 1 … `count`: the last first, then halves, then quarters."""
     yield count
     stride = 1 << max(0, (count - 1).bit_length())
     while stride > 1:

@@ -94,7 +94,7 @@ def static_solids(
 
 def joints_of(arm: SceneArm, model: RobotModel) -> Array:
     """Return an arm's joints, shape (n,); raises CellError if their number is wrong."""
-    joints = np.array(arm.joints_rad if arm.joints_rad else model.home_rad, dtype=np.float64)
+    joints = np.array(arm.joints_rad or model.home_rad, dtype=np.float64)
     if joints.shape != (model.dof,):
         raise CellError(f"got {len(joints)} joints", where=arm.name, hint=f"this arm has {model.dof}")
     return joints

@@ -124,7 +124,7 @@ def distance(solids: Array, planes: Array, k: int, wx: float, wy: float, wz: flo
     )
     if kind == BOX:
         dx, dy, dz = abs(x) - radius, abs(y) - half, abs(z) - solids[k, SIZE + 2]
-        deepest = max(dx, max(dy, dz))
+        deepest = max(dx, dy, dz)
         if deepest <= 0.0:
             return deepest
         dx, dy, dz = max(dx, 0.0), max(dy, 0.0), max(dz, 0.0)

@@ -119,7 +119,7 @@ def _is_blocked(p: CompiledProblem, q: Array, s: Scratch) -> bool:
 
 @compiled()
 def is_edge_free(p: CompiledProblem, a: Array, b: Array, s: Scratch) -> bool:
-    """Return whether the straight line without `a` is free; checks the end first, then halves, quarters, …
+    """Return whether the straight line without `a` is free; checks the end first, then halves, then quarters.
 
     All checks are in this one function, as a call that passes a whole problem takes as long as a check.
     """

@@ -50,7 +50,7 @@ class SlidingGear:
         physics.motors[indices.motor] = physics.bias[indices.dof] + force_n
 
     def closing_axis(self) -> Array | None:
-        """Pads of a parallel gripper face along y."""
+        """Return the pads of a parallel gripper, which face along y."""
         return None
 
 
@@ -81,7 +81,7 @@ class TurningGear:
         physics.motors[indices.motor] = weight_nm + force_n * travel_m_rad
 
     def closing_axis(self) -> Array | None:
-        """Pads on a linkage face each other."""
+        """Return the pads on a linkage, which face each other."""
         left, right = self._indices.pad_geoms
         across = self._physics.geom_position(right) - self._physics.geom_position(left)
         return across / np.linalg.norm(across)

@@ -48,13 +48,13 @@ class LockstepHost:
         return self.simulation.busy
 
     def snapshot(self) -> SimSnapshot:
-        """The state after the last step."""
+        """Return the state after the last step."""
         values = self.simulation.layout.new_array()
         self.simulation.write_snapshot(values)
         return SimSnapshot(self.simulation.layout, values)
 
     def image(self) -> Array:
-        """The complete state after the last step."""
+        """Return the complete state after the last step."""
         image = np.zeros(self.summary.image_size)
         self.simulation.write_image(image)
         return image

@@ -57,8 +57,7 @@ class TimingCounter:
         late_s = max(late_s, 0.0)
         values[0] += 1.0
         values[1] += overrun
-        if late_s > values[_MAX]:
-            values[_MAX] = late_s
+        values[_MAX] = max(values[_MAX], late_s)
         values[_FIELDS + min(int(late_s / _BUCKET_S), _BUCKETS - 1)] += 1.0
 
     def slip(self, duration_s: float) -> None:

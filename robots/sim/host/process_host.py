@@ -69,18 +69,18 @@ class ProcessHost:
         return self._process.pid if self._process is not None else 0
 
     def timing(self) -> LoopTiming:
-        """Timing statistics since the world was opened."""
+        """Return timing statistics since the world was opened."""
         if self._timing is None:
             raise _not_open()
         return decode_timing(self._timing.read())
 
     def snapshot(self) -> SimSnapshot:
-        """The latest state, at most a few steps old; the last one after the process is lost."""
+        """Return the latest state, at most a few steps old; the last one after the process is lost."""
         layout, state = self._opened()
         return SimSnapshot(layout, state.read())
 
     def image(self) -> Array:
-        """The latest complete state, at most a few steps old; the last one after the process is lost."""
+        """Return the latest complete state, at most a few steps old; the last one after the process is lost."""
         layout, state = self._opened()
         return state.read()[layout.size :]
 

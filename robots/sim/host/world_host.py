@@ -15,11 +15,11 @@ class WorldListener(Protocol):
     """Receives the events of the world on the event loop thread."""
 
     def happened(self, event: AnyMotionEvent) -> None:
-        """A motion ended, was held or resumed."""
+        """Take the event that a motion ended, was held or resumed."""
         ...
 
     def lost(self, reason: str) -> None:
-        """The world is lost; no more events follow."""
+        """Take the loss of the world; no more events follow."""
         ...
 
 
@@ -32,11 +32,11 @@ class WorldHost(Protocol):
         ...
 
     def snapshot(self) -> SimSnapshot:
-        """The latest state."""
+        """Return the latest state."""
         ...
 
     def image(self) -> Array:
-        """The complete state, at most a few steps old, as in `ImageLayout`."""
+        """Return the complete state, at most a few steps old, as in `ImageLayout`."""
         ...
 
     async def restore(self, image: Array) -> None:

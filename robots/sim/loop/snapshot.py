@@ -103,7 +103,7 @@ class SimSnapshot:
         return float(self._values[0])
 
     def arm(self, name: str) -> ArmSample:
-        """The measurement of one arm."""
+        """Return the measurement of one arm."""
         fields = self._layout.arms[name]
         block = self._values[fields.joints].reshape(5, fields.dof)
         return ArmSample(
@@ -123,7 +123,7 @@ class SimSnapshot:
         return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
 
     def gripper(self, name: str) -> GripperSample:
-        """The measurement of the gripper on an arm."""
+        """Return the measurement of the gripper on an arm."""
         (width, velocity, force), contacts = self._tool(name)
         left, right = contacts
         return GripperSample(
@@ -131,12 +131,12 @@ class SimSnapshot:
         )
 
     def hand(self, name: str) -> HandSample:
-        """The measurement of the hand on an arm."""
+        """Return the measurement of the hand on an arm."""
         (closed, pull, _), contacts = self._tool(name)
         return HandSample(time_s=self.time_s, closed_share=closed, force_n=pull, contacts=contacts)
 
     def magnet(self, name: str) -> MagnetSample:
-        """The measurement of the magnet on an arm."""
+        """Return the measurement of the magnet on an arm."""
         (on, pull, _), (contact,) = self._tool(name)
         return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
 

@@ -131,7 +131,7 @@ class MotionRegistry:
         self._motions[motion.number] = motion
 
     def under_way(self) -> tuple[SimMotion, ...]:
-        """The motions that have not ended."""
+        """Return the motions that have not ended."""
         return tuple(self._motions.values())
 
     def when_reflex(self, arm: str, tell: Callable[[str], None]) -> None:

@@ -78,7 +78,7 @@ class SimArmPort:
         self._board.when_reflex(self._arm.name, tell)
 
     def sample(self) -> ArmSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         return self._host.snapshot().arm(self._arm.name)
 
     def follow(

@@ -61,7 +61,7 @@ class SimGripperPort:
         return self._line.tool.max_force_n
 
     def sample(self) -> GripperSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         return self._line.host.snapshot().gripper(self._line.arm)
 
     def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> SimMotion:
@@ -91,7 +91,7 @@ class SimHandPort:
         return self._line.tool.max_force_n
 
     def sample(self) -> HandSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         return self._line.host.snapshot().hand(self._line.arm)
 
     def close_to(self, *, share: float, time_s: float) -> SimMotion:
@@ -119,7 +119,7 @@ class SimMagnetPort:
         return self._line.tool.max_force_n
 
     def sample(self) -> MagnetSample:
-        """The latest measurement."""
+        """Return the latest measurement."""
         return self._line.host.snapshot().magnet(self._line.arm)
 
     def switch(self, *, on: bool) -> SimMotion:

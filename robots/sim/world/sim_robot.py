@@ -13,7 +13,7 @@ class SimRobot(Robot, Protocol):
     """A robot of a simulated world that provides its memory for a restore."""
 
     def grips(self) -> dict[str, GraspCommand]:
-        """The active grasp commands of its grippers, by their names."""
+        """Return the active grasp commands of its grippers, by their names."""
         ...
 
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
@@ -26,7 +26,7 @@ class StatefulDevice(Protocol):
     """A robot or device with additional state, in its own encoding."""
 
     def memo(self) -> bytes:
-        """The state to save for a restore; empty for none."""
+        """Return the state to save for a restore; empty for none."""
         ...
 
     def remember(self, memo: bytes) -> None:

@@ -44,8 +44,10 @@ def no_robots(_world: SimWorld) -> tuple[SimRobot, ...]:
 
 
 class SimWorld:
-    """Implements `engine.robot.World`; with a lockstep host also `engine.clock.LockstepSimulation`:
-    it is attached to a `VirtualLoop` while open.
+    """Implements `engine.robot.World`.
+
+    With a lockstep host it also implements `engine.clock.LockstepSimulation` and is attached to a `VirtualLoop` while
+    open.
 
     `make_robots` creates the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
     before the world is opened and work while it is open. Servers without an arm are devices of
@@ -103,11 +105,11 @@ class SimWorld:
         return self._host
 
     def robots(self) -> tuple[Robot, ...]:
-        """The simulated robots, not yet connected."""
+        """Return the simulated robots, not yet connected."""
         return tuple(robot for robot in self._robots if robot.name in self._arms)
 
     def devices(self) -> tuple[Robot, ...]:
-        """The devices of the world itself, entered, registered and exited with it."""
+        """Return the devices of the world itself, entered, registered and exited with it."""
         return self._devices
 
     def each_step(self, hook: StepHook, *, busy: Callable[[], bool]) -> None:
@@ -115,31 +117,31 @@ class SimWorld:
         self._hooks.append((hook, busy))
 
     def arm_names(self) -> tuple[str, ...]:
-        """The arms of this world, in document order."""
+        """Return the arms of this world, in document order."""
         return tuple(self._arm_ports)
 
     def arm(self, name: str) -> ArmPort:
-        """The port of one arm."""
+        """Return the port of one arm."""
         return self._arm_ports[name]
 
     def gripper(self, name: str) -> GripperPort:
-        """The port of the gripper on one arm."""
+        """Return the port of the gripper on one arm."""
         return self._tools.gripper(name)
 
     def hand(self, name: str) -> HandPort:
-        """The port of the hand on one arm."""
+        """Return the port of the hand on one arm."""
         return self._tools.hand(name)
 
     def magnet(self, name: str) -> MagnetPort:
-        """The port of the magnet on one arm."""
+        """Return the port of the magnet on one arm."""
         return self._tools.magnet(name)
 
     def outputs(self, name: str) -> SimOutputPort | None:
-        """The digital outputs of one arm's controller, None where it has none."""
+        """Return the digital outputs of one arm's controller, None where it has none."""
         return self._outputs.get(name)
 
     def measured(self) -> SimSnapshot:
-        """The latest measurements."""
+        """Return the latest measurements."""
         return self._host.snapshot()
 
     def snapshot(self) -> bytes:

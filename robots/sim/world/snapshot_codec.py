@@ -22,9 +22,11 @@ _NUMBER = np.dtype("<f8")
 
 
 class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
-    """A world at one instant: its numbers as in `ImageLayout`, the grasp command of each gripper,
-    the settings of each arm, the reasons of active reflexes, and the digital outputs of arms
-    that have some. `memos` are the saved states of devices, by their names, in their own encoding.
+    """A world at one instant.
+
+    Its numbers as in `ImageLayout`, the grasp command of each gripper, the settings of each arm, the reasons of active
+    reflexes, and the digital outputs of arms that have some. `memos` are the saved states of devices, by their names,
+    in their own encoding.
     """
 
     numbers: bytes

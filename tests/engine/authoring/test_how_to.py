@@ -105,7 +105,7 @@ def test_the_type_checker_passes_the_examples_and_marks_each_wrong_line(tmp_path
     command = [pyright, "--pythonpath", sys.executable, "--project", tmp_path]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False)
     marked = {
-        (Path(file).name, int(line)) for file, line in re.findall(r"^\s*(\S+\.py):(\d+):\d+ - error", done.stdout, re.M)
+        (Path(file).name, int(line)) for file, line in re.findall(r"(?m)^\s*(\S+\.py):(\d+):\d+ - error", done.stdout)
     }
     assert [row for row in marked if row[0] in {file.name for file in files}] == [], done.stdout
     lines = dedent(WRONG).splitlines()

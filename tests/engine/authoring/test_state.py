@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import datetime
+import datetime as dt
 from enum import Enum
 from typing import Annotated, ClassVar
 
@@ -51,7 +51,7 @@ class Draw(State, frozen=True, kw_only=True, rename={"points": "at"}):
     color: Color = Color.RED
     pair: Pair = Pair(0, 0)
     tags: dict[str, list[str]] = {}
-    day: datetime.date | None = None
+    day: dt.date | None = None
 
     async def run(self, ctx: Context) -> Outcome:
         return Outcome("done")
@@ -93,7 +93,7 @@ def test_what_only_equals_the_default_is_written() -> None:
 def test_values_are_written_as_msgspec_reads_them() -> None:
     """Tags, arrays, dates and nested mappings; reading them back gives the instance again."""
     instance = Draw(
-        shape=Square(side=1.0), pair=Pair(1, 2), tags={"a": ["b"]}, day=datetime.date(2026, 11, 21), anything=Color.RED
+        shape=Square(side=1.0), pair=Pair(1, 2), tags={"a": ["b"]}, day=dt.date(2026, 11, 21), anything=Color.RED
     )
     assert _written(instance) == {
         "shape": {"type": "square"}, "pair": [1, 2], "tags": {"a": ["b"]}, "day": "2026-11-21", "anything": "red",

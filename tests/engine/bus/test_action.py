@@ -223,7 +223,7 @@ async def test_a_handler_without_annotations_is_refused() -> None:
     """Nothing untyped can reach a device; the message shows the signature that is due."""
     bus = SkillBus(new_clock())
 
-    async def untyped(goal, handle):  # pyright: ignore[reportUnknownParameterType, reportMissingParameterType]
+    async def untyped(goal, handle):  # noqa: ANN001, ANN202 # pyright: ignore[reportUnknownParameterType, reportMissingParameterType]
         return HELD
 
     with pytest.raises(HandlerNotTyped, match=r"handler\(goal: GripperOpen, handle: ActiveGoal\[GripperFeedback\]\)"):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 from hypothesis import given
@@ -35,8 +35,8 @@ FAILED = JunitCase(
 ERROR = JunitCase(name="e", classname="a.b", time_s=0.0, problem=JunitProblem(kind="error", type="t", message="m"))
 
 
-def _checked(suites: list[JunitSuite]) -> ElementTree.Element:
-    root = ElementTree.fromstring(junit_xml(suites))
+def _checked(suites: list[JunitSuite]) -> ET.Element:
+    root = ET.fromstring(junit_xml(suites))
     for element in root.iter():
         assert set(element.attrib) <= ALLOWED[element.tag]
         assert {child.tag for child in element} <= CHILDREN.get(element.tag, set())

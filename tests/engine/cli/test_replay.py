@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+import xml.etree.ElementTree as ET
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
@@ -77,7 +77,7 @@ def test_json_and_junit_tell_all_of_several(project: Path) -> None:
         "status": "unusable",
         "error": "bad.mcap: this is not an MCAP file (give a file that --record wrote)",
     }
-    suites = ElementTree.parse(project / "r.xml").getroot()
+    suites = ET.parse(project / "r.xml").getroot()
     assert [(suite.get("failures"), suite.get("errors")) for suite in suites] == [("1", "0"), ("0", "1")]
     properties = {each.get("name"): each.get("value") for each in suites.iter("property")}
     assert properties["run"] == differs["run"]
@@ -126,7 +126,7 @@ def test_the_result_of_a_run_as_junit(project: Path) -> None:
         "run", "wait.yaml", "--clock", "virtual", "-q", "--junit", "r.xml", "--input", "flag=false", cwd=project
     )
     assert said.code == 1
-    (suite,) = ElementTree.parse(project / "r.xml").getroot()
+    (suite,) = ET.parse(project / "r.xml").getroot()
     assert (suite.get("name"), suite.get("failures"), suite.get("time")) == ("wait", "1", "60.000")
     failure = suite.find("./testcase/failure")
     assert failure is not None

@@ -83,7 +83,7 @@ class Untyped(State, frozen=True, kw_only=True):
 
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
 
-    async def run(self, ctx: Context, *, part=None) -> Outcome:  # pyright: ignore - the mistake under test
+    async def run(self, ctx: Context, *, part=None) -> Outcome:  # noqa: ANN001 # pyright: ignore - the mistake under test
         """End."""
         return Outcome("done")
 

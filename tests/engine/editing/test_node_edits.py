@@ -225,7 +225,7 @@ def test_containers_are_added_empty_and_filled(kind: str) -> None:
     assert changed(text, {"edit": "add_node", "parent": inside, "kind": "state", "runs": "test.Give"}) == (
         f"{inside}/{name}",
     )
-    assert made.startswith(TEXT.split("# Positions.")[0])
+    assert made.startswith(TEXT.split("# Positions.", maxsplit=1)[0])
 
 
 def test_decorators_are_added_and_take_one_child() -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import sqlite3
+import threading
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,9 @@ import pytest
 from engine.errors import JournalError
 from engine.event import MessageLogged, RunEnded
 from engine.journal import Journal, JournalPort, NullJournal, RunJournal, RunRecord, list_runs, read_events
+from engine.journal.batch import WriteBatch
+from engine.journal.database import JournalDatabase
+from engine.journal.group_commit import MAX_PENDING_EVENTS
 
 BOTH = pytest.mark.parametrize("inline", [True, False], ids=["inline", "threaded"])
 
@@ -56,6 +61,36 @@ async def test_a_run_that_is_faster_than_the_writer_waits_for_it(tmp_path: Path)
             run.append(said(seq))
         await run.apply_backpressure()
         assert len(read_events(tmp_path, "run-1")) > 100_000 - 20_000
+
+
+async def test_a_run_waits_for_events_that_the_writer_has_taken_and_not_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are in memory too: a write that takes its time counts as pending."""
+    taken, written = threading.Semaphore(0), threading.Semaphore(0)
+    store = JournalDatabase.store
+
+    def stored_slowly(database: JournalDatabase, batches: Sequence[WriteBatch]) -> None:
+        taken.release()
+        written.acquire()
+        store(database, batches)
+
+    with Journal.open(tmp_path) as journal:
+        run = begun(journal)
+        monkeypatch.setattr(JournalDatabase, "store", stored_slowly)
+        for seq in range(1, MAX_PENDING_EVENTS + 1):
+            run.append(said(seq))
+        await asyncio.to_thread(taken.acquire)
+        for seq in range(MAX_PENDING_EVENTS + 1, 3 * MAX_PENDING_EVENTS + 1):
+            run.append(said(seq))
+        written.release()
+        await asyncio.to_thread(taken.acquire)
+        waiting = asyncio.create_task(run.apply_backpressure())
+        done, _ = await asyncio.wait([waiting], timeout=0.05)
+        written.release(100)
+        assert not done
+        await waiting
+        assert len(read_events(tmp_path, "run-1")) == 3 * MAX_PENDING_EVENTS
 
 
 @BOTH

@@ -56,7 +56,7 @@ def test_what_is_written_is_there_in_order(tmp_path: Path, inline: bool) -> None
 def test_a_kill_loses_nothing_that_was_written(tmp_path: Path) -> None:
     file = tmp_path / "r.part"
     with subprocess.Popen(
-        [sys.executable, "-c", KILLED, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=os.getcwd()
+        [sys.executable, "-c", KILLED, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=Path.cwd()
     ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"written\n"

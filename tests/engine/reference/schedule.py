@@ -133,9 +133,11 @@ class Schedule:
                 ended = sum(each.end is not None for each in task.waits.tasks)
                 if ended > task.seen:
                     due.append((-task.waits.path.count("/"), 0, task.order, task, None))
-        for timer in self.deadlines:
-            if timer.at_s <= self.now_s:
-                due.append((-timer.depth, 1, timer.task.order, timer.task, timer))
+        due += [
+            (-timer.depth, 1, timer.task.order, timer.task, timer)
+            for timer in self.deadlines
+            if timer.at_s <= self.now_s
+        ]
         if not due:
             return False
         *_, task, timer = min(due, key=lambda each: each[:3])

@@ -92,7 +92,10 @@ class Mongod:
             *(*replica_set, *self._options),
         ]
         self._process = subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_die_with_parent
+            command,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            preexec_fn=_die_with_parent,  # noqa: PLW1509
         )
         client: pymongo.MongoClient[dict[str, Any]] = pymongo.MongoClient(
             self.uri, directConnection=True, serverSelectionTimeoutMS=int(START_S * 1000)

@@ -24,7 +24,7 @@ def _examples() -> tuple[dict[str, Any], ...]:
     found: list[dict[str, Any]] = []
     for text in re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL):
         names: dict[str, Any] = {}
-        exec(compile(text, "test-a-behavior.md", "exec"), names)  # noqa: S102 - our own page
+        exec(compile(text, "test-a-behavior.md", "exec"), names)
         found.append(names)
     return tuple(found)
 

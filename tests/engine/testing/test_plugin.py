@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
@@ -99,7 +99,7 @@ def test_the_failure_is_the_difference(project: Path) -> None:
     line = "event 7 at 60.000 s, root/choose: recorded `left with true`; replayed `left with false`"
     assert line in tested.out
     assert "Traceback" not in tested.out
-    case = ElementTree.parse(project / "r.xml").getroot().find("./testsuite/testcase")
+    case = ET.parse(project / "r.xml").getroot().find("./testsuite/testcase")
     assert case is not None
     assert {each.get("name") for each in case.iter("property")} == {"run", "document_sha256"}
 

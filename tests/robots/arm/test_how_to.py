@@ -17,7 +17,7 @@ def test_the_behavior_of_the_page_finds_the_table_and_is_shown_a_way(tmp_path: P
     """Without a hand the arm floats where it is."""
     text = next(
         block
-        for block in re.findall(r"^```yaml\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.S | re.M)
+        for block in re.findall(r"^```yaml\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
         if "find_and_show" in block
     )
     file = tmp_path / "find_and_show.yaml"

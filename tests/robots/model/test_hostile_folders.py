@@ -107,7 +107,7 @@ MESHES: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "too many": ("a.stl", lambda: stl(MAX_TRIANGLES + 1), "more than 1000000"),
     "polygons": ("a.obj", lambda: b"f" + b" 1" * (3 * MAX_TRIANGLES + 1), "more than 1000000 triangles"),
     "materials": ("a.obj", lambda: b"mtllib ../../secret.mtl\n", "materials outside"),
-    "laughs": ("a.dae", lambda: (BOMB + "<COLLADA/>").encode(), "document type"),
+    "laughs": ("a.dae", (BOMB + "<COLLADA/>").encode, "document type"),
     "hidden": ("a.dae", lambda: (BOMB + "<COLLADA/>").encode("utf-16"), "document type"),
     "no text": ("a.dae", lambda: b"<a>\xff\xfe</a>", "utf-8"),
     "blend": ("a.blend", lambda: b"", "is not one of"),

@@ -96,7 +96,7 @@ async def test_nothing_starts_before_it_is_told_to_recover(host: str) -> None:
         starts = (
             lambda: arm.follow(smooth(HOME, HOME + 0.1, 0.5), tolerance=Tolerance()),
             lambda: arm.stream("joint_position", watchdog_s=0.1),
-            lambda: arm.guide(),
+            arm.guide,
         )
         for start in starts:
             with pytest.raises(RobotError, match=r"stopped by itself: external force limit exceeded: .*recover it"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class FragilePlanner:
         """Be there again."""
         self.gone = ""
 
-    async def __aenter__(self) -> FragilePlanner:
+    async def __aenter__(self) -> Self:
         return self
 
     async def __aexit__(self, *error: object) -> None:

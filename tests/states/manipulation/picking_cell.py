@@ -85,8 +85,7 @@ def cell(**changed: Any) -> FakeContext:
         "cell/attach_part": SCENE,
         "cell/detach_part": SCENE,
     }
-    for address in answers:
-        answers[address] = changed.get(address.rpartition("/")[2], answers[address])
+    answers = {address: changed.get(address.rpartition("/")[2], answer) for address, answer in answers.items()}
     parts = PartPoses(time_s=0.0, poses={"block": Pose(xyz=(0.5, 0.1, 0.2))})
     return FakeContext(answers, topics={"cell/parts": parts})
 

@@ -63,7 +63,7 @@ async def test_moving_free_asks_for_what_the_behavior_says() -> None:
 
 
 @pytest.mark.parametrize("state", [MoveFree, PlanMotion])
-async def test_entries_are_read_when_the_state_runs(state: type[MoveFree] | type[PlanMotion]) -> None:
+async def test_entries_are_read_when_the_state_runs(state: type[MoveFree | PlanMotion]) -> None:
     """A pose with what of it counts and how far off, or a joint configuration."""
     records = [
         EntryRecord(kind="pose", name="pick", value={"xyz": [0.1, 0.2, 0.3]}, revision=1),

@@ -23,7 +23,7 @@ def _with(document: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
     if "state" in document:
         own = more if document["state"] == "test.Act" else {key: more[key] for key in more if key != "robot"}
         return {**document, "with": {**document["with"], **own}}
-    kind = next(key for key in document if key not in ("name",))
+    kind = next(key for key in document if key != "name")
     inner = document[kind]
     if "child" in inner:
         return {**document, kind: {**inner, "child": _with(inner["child"], more)}}

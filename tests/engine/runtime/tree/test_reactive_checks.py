@@ -263,8 +263,8 @@ def test_nothing_is_asked_during_a_pause() -> None:
 
     def pause(run: Run, bus: SkillBus) -> None:
         loop = asyncio.get_running_loop()
-        loop.call_at(1.0, lambda: run.control.pause())
-        loop.call_at(61.0, lambda: run.control.resume())
+        loop.call_at(1.0, run.control.pause)
+        loop.call_at(61.0, run.control.resume)
 
     asked: list[float] = []
 
