@@ -20,7 +20,7 @@ from pathlib import Path
 PACKAGES = ("engine", "states", "robots", "editor_web")
 WINGS = ("states", "robots", "editor_web")
 HERE = Path(__file__).resolve().parents[1]
-EVENTS_OF_NODES = frozenset({"NodeEntered", "NodeExited", "TransitionTaken"})
+TAGS_OF_NODES = frozenset({"entered", "exited", "transition"})
 LEAST_FIELDS, MOST_SHARED = 3, 0.75
 
 
@@ -149,13 +149,26 @@ def mirrors(root: Path) -> int:
 
 def folds(root: Path) -> int:
     """Return how many files tell the events of nodes apart: by `isinstance`, or in a `match`."""
+    events = events_of_nodes(root)
     found: set[Path] = set()
     for package in ("engine", "editor_web"):
         for module in modules(root, package).values():
             for node in ast.walk(module.tree):
-                if EVENTS_OF_NODES & tested_classes(node):
+                if events & tested_classes(node):
                     found.add(module.path)
     return len(found)
+
+
+def events_of_nodes(root: Path) -> set[str]:
+    """Return the classes of the events that a node was entered, has ended, and led to another; by their tags."""
+    declared = modules(root, "engine")["engine.event"].tree.body
+    return {
+        node.name
+        for node in declared
+        if isinstance(node, ast.ClassDef)
+        for keyword in node.keywords
+        if keyword.arg == "tag" and isinstance(keyword.value, ast.Constant) and keyword.value.value in TAGS_OF_NODES
+    }
 
 
 def tested_classes(node: ast.AST) -> set[str]:
