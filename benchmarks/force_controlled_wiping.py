@@ -31,10 +31,10 @@ from robots.port import (
     MotionEnd,
     Tolerance,
 )
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
 from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory, TrackForce
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
 
 FORCE_N = 10.0
 CLEARANCE_M = 0.006
@@ -137,7 +137,9 @@ class Wiping:
         way = plan_line(self._kinematics, joints, below, duration_s=PEAK_SPEED * deep / APPROACH_M_S)
         self._number += 1
         until = ContactCondition(force_n=3.0, direction=UP)
-        self.simulation.apply(FollowTrajectory.of("arm", self._number, way, Tolerance(), until))
+        self.simulation.apply(
+            FollowTrajectory(arm="arm", motion=self._number, trajectory=way, tolerance=Tolerance(), until=until)
+        )
         return self._finished()[0]
 
     def wipe(self, *, learned: ForceRecord | None, peak_m_s: float, slow_per_n: float = 0.0) -> Pass:
@@ -153,7 +155,7 @@ class Wiping:
         way = plan_line(self._kinematics, joints, end, duration_s=PEAK_SPEED * self._way_m / peak_m_s)
         task = pressing(way, learned=learned, slow_per_n=slow_per_n)
         self._number += 1
-        self.simulation.apply(TrackForce.of("arm", self._number, task, Tolerance()))
+        self.simulation.apply(TrackForce(arm="arm", motion=self._number, task=task, tolerance=Tolerance()))
         report, forces = self._finished()
         self._move_to(self._begin)
         return Pass(forces_n=forces, record=ForceRecord.from_bytes(report.data), report=report)
@@ -167,7 +169,7 @@ class Wiping:
             velocity_rad_s=(joints - start) * (30 * u**2 - 60 * u**3 + 30 * u**4),
         )
         self._number += 1
-        self.simulation.apply(FollowTrajectory.of("arm", self._number, way, Tolerance()))
+        self.simulation.apply(FollowTrajectory(arm="arm", motion=self._number, trajectory=way, tolerance=Tolerance()))
         report, _ = self._finished()
         assert report.end == MotionEnd.REACHED.value, report
 

@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 
 from engine.clock import run_virtual
-from robots.sim.scene.sim_scene import SimScene
+from robots.scene.sim_scene import SimScene
 from tests.robots.sim import test_grasping_2f85 as two_fingers
 from tests.robots.sim import test_grasping_claw as claw
 from tests.robots.sim import test_grasping_magnet as magnet

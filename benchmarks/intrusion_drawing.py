@@ -10,12 +10,12 @@ import numpy as np
 
 from engine.messages import Vector3
 from robots.port import Array
+from robots.scene.sim_scene import PersonBody
 from robots.sim.people.hand_trajectory import HandMotion, plan_hand_trajectory
 from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.limb import Limb, LimbPose
 from robots.sim.physics.person_spec import PersonIndices
 from robots.sim.physics.physics import mujoco
-from robots.sim.scene.sim_scene import PersonBody
 
 STEP_S = 0.05
 """How finely ways of arm and person are compared."""

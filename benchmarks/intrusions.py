@@ -29,8 +29,8 @@ from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
 from engine.messages import Pose
 from engine.skills.planning import MotionTarget
+from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.scene_builder import build_scene
 
 CELL = Path(__file__).resolve().parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
 REACTION_S = 0.25

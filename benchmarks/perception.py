@@ -70,7 +70,7 @@ async def times(cameras: int, looks: int, kind: str) -> str:
             stage.put_arm(random.uniform(stage.lower, stage.upper) * 0.4)
             stage.put_hand(number // 10)
             order, started_s = stage.look(), time.perf_counter()
-            seen: PerceptionResult = await process.ask(order)
+            seen: PerceptionResult = await process.look(order)
             if number >= _WARM_UP_LOOKS:
                 whole.append(time.perf_counter() - started_s)
                 render.append(seen.render_s)

@@ -14,14 +14,14 @@ from engine.messages.shapes import Capsule, Shape, Sphere
 from robots.model.transform import RigidTransform
 from robots.planning.scene.convex_shapes import convex_solid, to_frame
 from robots.port import Array
+from robots.scene.scene_builder import build_scene
+from robots.scene.sim_scene import SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.limb import Limb
 from robots.sim.physics.person_spec import FOREARM_SHARE
-from robots.sim.scene.scene_builder import build_scene
-from robots.sim.scene.sim_scene import SimScene
 from robots.vision.camera import camera_of
-from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup, state_bytes
+from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, voxel_box
 
 CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
@@ -93,7 +93,7 @@ class Stage:
 
     def look(self, *, forget: bool = False) -> PerceptionRequest:
         """Return the order to look at it as it is."""
-        return PerceptionRequest(time_s=0.0, state=state_bytes(self._image), cameras=self._cameras, forget=forget)
+        return PerceptionRequest(time_s=0.0, state=self._image, cameras=self._cameras, forget=forget)
 
 
 def inside(box: VoxelBox, points: Array) -> Array:

@@ -33,7 +33,7 @@ from robots.planning.request import PathPlan, PlanRequest
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 
 ROBOPLAN = "RoboPlan"
 Found = tuple[Array | None, float]

@@ -12,9 +12,9 @@ from robots.planning.scene.cell_planning_scene import planning_scene
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.search.kernels import blocked_at
 from robots.planning.search.problem_compiler import compile_problem
+from robots.scene.sim_scene import SimScene
 from robots.sim.physics.cell_model import CellModel, build_cell
 from robots.sim.physics.physics import mujoco
-from robots.sim.scene.sim_scene import SimScene
 
 NEAR_M = 1e-3
 """Where two things are nearer than this, or less deep in one another, the two libraries may differ."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeVar
 
 import msgspec
@@ -17,7 +18,7 @@ from robots.planning.request import CollisionRequest, PathCheckRequest, PathPlan
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
 from robots.planning.scene.voxels import voxels_of
 from robots.planning.worker.scene_planner import ScenePlanner
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 _T = TypeVar("_T")
 _SHAPE, _VOXEL_M = (64, 90, 60), 0.02
@@ -115,7 +116,7 @@ def _planned(planner: ScenePlanner, request: PlanRequest) -> PathCheckRequest:
     answer = planner.plan(msgspec.structs.replace(request, speed=1.0))
     assert isinstance(answer, PathPlan)
     assert answer.timed is not None
-    return PathCheckRequest(scene=request.scene, arm=ARM, way=answer.timed, from_s=0.0)
+    return PathCheckRequest(scene=request.scene, arm=ARM, trajectory=answer.timed, from_s=0.0)
 
 
 def _prepare(scene: PlanningScene) -> Callable[[ScenePlanner], object]:
@@ -128,8 +129,8 @@ def _known(planner: ScenePlanner, request: PathCheckRequest) -> PathCheckRequest
 
 
 def _other_way(request: PathCheckRequest, number: int) -> PathCheckRequest:
-    rows = np.frombuffer(request.way.position_rad) + 1e-9 * (number + 1)
-    return msgspec.structs.replace(request, way=msgspec.structs.replace(request.way, position_rad=rows.tobytes()))
+    rows = request.trajectory.position_rad + 1e-9 * (number + 1)
+    return msgspec.structs.replace(request, trajectory=replace(request.trajectory, position_rad=rows))
 
 
 def _spent(runs: int, prepare: Callable[[int], _T], work: Callable[[_T], object]) -> tuple[float, float]:

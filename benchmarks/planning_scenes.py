@@ -17,7 +17,7 @@ from robots.planning.request import JointGoal, PlanRequest
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 ARM = "arm"
 DOWN = (1.0, 0.0, 0.0, 0.0)

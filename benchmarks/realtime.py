@@ -29,9 +29,9 @@ from benchmarks.timing_jitter import Punctuality, watch
 from engine.bus import SkillBus
 from engine.document.cell import load_cell
 from robots.port import ArmSettings, ControllerName
+from robots.scene.scene_builder import build_scene
 from robots.sim.host.loop_timing import LoopTiming
 from robots.sim.host.process_host import ProcessHost
-from robots.sim.scene.scene_builder import build_scene
 from robots.sim.world.sim_world import SimWorld
 
 # Models are compiled and caches filled at first; that is no part of the work of every day.

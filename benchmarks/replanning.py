@@ -35,8 +35,8 @@ from robots.arm.arm_server import ArmServer
 from robots.planning.request import PathCheck, PathCheckRequest, PlanAnswer, PlanRequest
 from robots.planning.scene.cell_planning_scene import planning_scene
 from robots.planning.scene.planning_scene import PlanningScene
+from robots.scene.scene_builder import build_scene
 from robots.sim.host.process_host import ProcessHost
-from robots.sim.scene.scene_builder import build_scene
 from robots.sim.world.sim_world import SimRobot, SimWorld
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.planning_services import PlanningServices

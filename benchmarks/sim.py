@@ -25,6 +25,8 @@ from benchmarks.swinging_arms import CELL, Swinging, swing_for_ever
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, PartPoses, Pose
 from robots.port import ArmSettings, ControllerName
+from robots.scene.scene_builder import build_scene
+from robots.scene.sim_scene import PartBody, SimScene
 from robots.sim.commands.arm_commands import ConfigureArm
 from robots.sim.host.loop_timing import LoopTiming
 from robots.sim.host.process_host import ProcessHost
@@ -33,8 +35,6 @@ from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.physics import Physics
 from robots.sim.physics.scene_description import describe_scene
-from robots.sim.scene.scene_builder import build_scene
-from robots.sim.scene.sim_scene import PartBody, SimScene
 from robots.sim.world.sim_world import SimWorld
 
 _SHAPES = (("box", (0.05, 0.03, 0.04), 0.1), ("cylinder", (0.03, 0.04), 0.05))

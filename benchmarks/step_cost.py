@@ -12,12 +12,12 @@ import numpy as np
 
 from benchmarks.swinging_arms import Swinging
 from robots.port import ArmSettings, ControllerName
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import ConfigureArm
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.physics import Physics
-from robots.sim.scene.sim_scene import SimScene
 
 _SETTLE_S = 0.5
 # Neighbours on a shared machine make many steps dearer, none cheaper: costs are medians of blocks.

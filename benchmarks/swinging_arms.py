@@ -49,7 +49,9 @@ class Swinging:
     def _start(self, arm: str, way: int) -> None:
         self._number += 1
         self._arms[self._number] = (arm, way)
-        self._simulation.apply(FollowTrajectory.of(arm, self._number, self._ways[way], Tolerance()))
+        self._simulation.apply(
+            FollowTrajectory(arm=arm, motion=self._number, trajectory=self._ways[way], tolerance=Tolerance())
+        )
 
     def step(self) -> None:
         """Let one step pass and start the next swing where one has ended."""

@@ -11,9 +11,9 @@ from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
 from robots.arm.output_services import OutputServices
 from robots.model.robot_model import RobotModel
+from robots.scene.scene_builder import build_scene
+from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.host.process_host import NewStopLine
-from robots.sim.scene.scene_builder import build_scene
-from robots.sim.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.world.sim_robot import SimRobot
 from robots.sim.world.sim_world import SimWorld
 from robots.sim.world.sim_world import new_world as new_sim_world

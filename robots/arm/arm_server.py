@@ -27,11 +27,10 @@ from robots.arm.motion_runner import MotionRunner
 from robots.arm.output_services import OutputServices
 from robots.arm.path_motions import PathMotions
 from robots.arm.tool_frames import WORLD
-from robots.gripper.grasp_check import GraspCommand
 from robots.gripper.tool_server import ToolServer
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
-from robots.port import ArmPort, Tolerance
+from robots.port import ArmPort, GraspCommand, Tolerance
 from robots.workspace.workspace import Workspace
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.errors import PathBlocked
 from robots.arm.path_planner import describe_contacts
-from robots.planning.request import AttachedPartCheckRequest, SampledTrajectory
+from robots.planning.request import AttachedPartCheckRequest
 from robots.port import JointTrajectory
 from robots.workspace.workspace import Workspace
 
@@ -36,7 +36,7 @@ class AttachedPartGuard:
         scene = workspace.attached_check_scene_for(self._arm)
         if scene is None:
             return
-        request = AttachedPartCheckRequest(scene=scene, arm=self._arm, way=SampledTrajectory.of(trajectory))
+        request = AttachedPartCheckRequest(scene=scene, arm=self._arm, trajectory=trajectory)
         check = await workspace.planners.check_attached_parts(request)
         if check.blocked_at_s is not None:
             share = check.blocked_at_s / trajectory.duration_s if trajectory.duration_s else 0.0

@@ -21,7 +21,6 @@ from robots.planning.request import (
     PlanRequest,
     PoseGoal,
     RefusalReason,
-    SampledTrajectory,
 )
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
@@ -48,7 +47,6 @@ class PathSegment:
     """A validated, time-parameterized path that was planned with `margin_m`."""
 
     plan: PathPlan
-    way: SampledTrajectory
     trajectory: JointTrajectory
     margin_m: float
 
@@ -97,11 +95,11 @@ class PathPlanner:
 
     async def check(self, segment: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `find` does."""
-        return await self._workspace.planners.check_path(self._check_request(segment.way, from_s, margin_m))
+        return await self._workspace.planners.check_path(self._check_request(segment.trajectory, from_s, margin_m))
 
     async def confirm(self, segment: PathSegment) -> PathCheck:
         """Return where a path that was just planned is blocked in the current scene; raises as `find` does."""
-        return await self._workspace.planners.confirm_path(self._check_request(segment.way, 0.0, self.margin_m))
+        return await self._workspace.planners.confirm_path(self._check_request(segment.trajectory, 0.0, self.margin_m))
 
     async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
         """Return the pairs within a distance of the arm at `joints` (n,); raises as `find` does."""
@@ -147,14 +145,14 @@ class PathPlanner:
             return msgspec.structs.replace(answer, message=describe_names(answer.message))
         if answer.timed is None:
             raise RobotError("the planner returned no trajectory", where=self.arm, hint="plan again")
-        return PathSegment(plan=answer, way=answer.timed, trajectory=answer.timed.trajectory(), margin_m=margin_m)
+        return PathSegment(plan=answer, trajectory=answer.timed, margin_m=margin_m)
 
-    def _check_request(self, way: SampledTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
+    def _check_request(self, trajectory: JointTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
         workspace = self._workspace
         return PathCheckRequest(
             scene=workspace.scene_for(self.arm),
             arm=self.arm,
-            way=way,
+            trajectory=trajectory,
             from_s=from_s,
             occupancy=workspace.occupancy,
             margin_m=margin_m,

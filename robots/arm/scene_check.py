@@ -7,7 +7,7 @@ import msgspec
 from engine.errors import RobotError
 from engine.skills.jogging import JogCollisionOptions
 from robots.arm.path_planner import describe_contacts
-from robots.planning.request import PathCheck, PathCheckRequest, SampledTrajectory
+from robots.planning.request import PathCheck, PathCheckRequest
 from robots.port import JointTrajectory
 from robots.workspace.workspace import Workspace
 
@@ -46,7 +46,7 @@ class SceneCheck:
             PathCheckRequest(
                 scene=msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene,
                 arm=self._arm,
-                way=SampledTrajectory.of(trajectory),
+                trajectory=trajectory,
                 from_s=0.0,
                 occupancy=self._workspace.occupancy,
                 margin_m=self._rule.margin_m,

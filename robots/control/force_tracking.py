@@ -53,7 +53,7 @@ class ForceTracking:
         self._recorder = ForceRecorder(task.record_s)
         self._task_axes = RigidTransform.of((0.0, 0.0, 0.0), task.task_xyzw).rotation
         # Feed-forward offset and wanted wrench side by side, for one lookup.
-        self._rows = np.hstack((task.offset, task.wrench))
+        self._rows = np.hstack((task.offset, task.wrench), dtype=np.float64)
         self._row = self._rows[0]
         self._passed_s = 0.0
         self._force_error_n = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 
-class MotionEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
+class MotionEvent(msgspec.Struct, frozen=True, kw_only=True):
     """An event of the motion with this number."""
 
     motion: int

@@ -33,7 +33,7 @@ class TrajectoryPlayback:
         self._shortest_stop_s = shortest_stop_s
         from robots.control import kernels
 
-        # Copied: received arrays are read-only, which the compiled function does not accept.
+        # Copied: in virtual time these are the arrays of the planner, which may reuse them.
         self._points = np.array(trajectory.position_rad, dtype=np.float64, order="C")
         self._slopes = np.array(trajectory.velocity_rad_s, dtype=np.float64, order="C")
         self._pass_along = kernels.interpolate_setpoint

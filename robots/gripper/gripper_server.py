@@ -14,9 +14,9 @@ from engine.skills.gripper import (
     GripperSetting,
     ReadGripper,
 )
-from robots.gripper.grasp_check import GraspCommand, check_grasp
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import GripperPort, GripperSample
+from robots.port.grasp_check import GraspCommand, check_grasp
 
 _MOVE_FORCE_N = 30.0
 _AT_WIDTH_M = 0.002

@@ -5,10 +5,9 @@ from __future__ import annotations
 from engine.bus import ActiveGoal, SkillBus
 from engine.messages import HandState
 from engine.skills.hand import HandClose, HandFeedback, HandOpen, HandResult, ReadHand
-from robots.gripper.grasp_check import GraspCommand
-from robots.gripper.hand_grasp_check import check_hand_grasp
 from robots.gripper.tool_motion import ToolMotion
-from robots.port import HandPort, HandSample
+from robots.port import GraspCommand, HandPort
+from robots.port.hand_grasp_check import check_hand_grasp, hand_state
 
 
 class HandServer:
@@ -61,15 +60,3 @@ class HandServer:
             part=holding.part,
             reason=holding.reason,
         )
-
-
-def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
-    """Return the state of a hand in a measurement, with its grasp re-evaluated."""
-    part = check_hand_grasp(sample, max_force_n=max_force_n).part
-    return HandState(
-        time_s=sample.time_s,
-        closed_percent=100.0 * sample.closed_share,
-        force_n=sample.force_n,
-        held=bool(part),
-        part=part,
-    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from engine.bus import SkillBus
-from robots.gripper.grasp_check import GraspCommand
+from robots.port import GraspCommand
 
 
 class ToolServer(Protocol):

@@ -60,7 +60,7 @@ class PathOrientationConstraint(msgspec.Struct, frozen=True, kw_only=True):
     free_about: Vector3 | None = None
 
 
-class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
+class PlanRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_plan"):
     """Requests a path for one arm of a scene from `start_rad` to any of its goals.
 
     `planner` is `fast`, `stomp` or the name of an OMPL planner. `time_s` covers the whole request; the same request
@@ -82,33 +82,6 @@ class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
     tool: Pose | None = None
     speed: float | None = None
     occupancy: OccupancyGrid | None = None
-
-
-class SampledTrajectory(msgspec.Struct, frozen=True, kw_only=True):
-    """A trajectory at rest at both ends, sampled every `dt_s`: rows of n float64 numbers, row after row."""
-
-    dt_s: float
-    joints: int
-    position_rad: bytes
-    velocity_rad_s: bytes
-
-    @classmethod
-    def of(cls, trajectory: JointTrajectory) -> SampledTrajectory:
-        """Return the data of a trajectory."""
-        return cls(
-            dt_s=trajectory.dt_s,
-            joints=trajectory.position_rad.shape[1],
-            position_rad=trajectory.position_rad.tobytes(),
-            velocity_rad_s=trajectory.velocity_rad_s.tobytes(),
-        )
-
-    def trajectory(self) -> JointTrajectory:
-        """Return the trajectory as arrays."""
-        position, velocity = (
-            np.frombuffer(data, dtype=np.float64).reshape(-1, self.joints)
-            for data in (self.position_rad, self.velocity_rad_s)
-        )
-        return JointTrajectory(dt_s=self.dt_s, position_rad=position, velocity_rad_s=velocity)
 
 
 class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
@@ -136,7 +109,7 @@ class PathPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
 
     waypoints_rad: tuple[tuple[float, ...], ...]
     stats: PlanStats
-    timed: SampledTrajectory | None = None
+    timed: JointTrajectory | None = None
 
     @property
     def path(self) -> Array:
@@ -165,26 +138,26 @@ class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
 PlanAnswer = PathPlan | PlanRefusal
 
 
-class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """Asks whether an arm that follows `way` collides from `from_s` of the trajectory's own time on."""
+class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_path_check"):
+    """Asks whether an arm that follows `trajectory` collides from `from_s` of the trajectory's own time on."""
 
     scene: PlanningScene
     arm: str
-    way: SampledTrajectory
+    trajectory: JointTrajectory
     from_s: float
     occupancy: OccupancyGrid | None = None
     margin_m: float = 0.0
 
 
-class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """Asks whether an attached part collides along `way`; see `attached_part_check` for the allowed contacts.
+class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_attached_part_check"):
+    """Asks whether an attached part collides along `trajectory`; see `attached_part_check` for the allowed contacts.
 
     The scene does not allow contact with the objects that held parts rest on.
     """
 
     scene: PlanningScene
     arm: str
-    way: SampledTrajectory
+    trajectory: JointTrajectory
 
 
 class PathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
@@ -198,7 +171,7 @@ class PathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
     looked_s: float
 
 
-class CollisionRequest(msgspec.Struct, frozen=True, kw_only=True):
+class CollisionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_collisions"):
     """Asks for the collisions of an arm at `joints_rad`, and its clearance.
 
     Obstacles, other arms and `occupancy` nearer than `margin_m` count as touching.

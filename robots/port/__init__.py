@@ -1,5 +1,7 @@
 """The device interfaces of the skill servers, simulated or real: measure, move, hold, resume, cancel.
 
+Whether a measured tool holds something is decided here too, so that servers and topics say the same.
+
 Arrays are float64, joints in the model's order, radians. All members are called from the event
 loop thread; an implementation may run its control elsewhere but completes futures on that loop.
 """
@@ -7,6 +9,7 @@ loop thread; an implementation may run its control elsewhere but completes futur
 from robots.port.arm import ArmPort, ArmSample, StreamKind
 from robots.port.arrays import Array
 from robots.port.force_task import Admittance, ForceRecord, ForceTask
+from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.magnet import MagnetPort, MagnetSample
@@ -25,6 +28,7 @@ __all__ = [
     "ControllerName",
     "ForceRecord",
     "ForceTask",
+    "GraspCommand",
     "GripperPort",
     "GripperSample",
     "HandPort",

@@ -12,7 +12,7 @@ from robots.model.pinocchio_model import pin, rest_configuration, whole_model
 from robots.model.transform import RigidTransform
 from robots.planning.search.arm_spheres import arm_spheres
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 from robots.vision.known_geometry import ArmConfiguration
 
 

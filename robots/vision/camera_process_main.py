@@ -7,44 +7,19 @@ import signal
 import socket
 import sys
 
-import msgspec
-
 from engine.errors import FlexcellError
 from engine.host.child_process import set_parent_death_signal
-from robots.io.framed_socket import FramedSocket, PeerGone
-from robots.vision.camera_process_messages import (
-    FromWorker,
-    PerceptionAnswer,
-    PerceptionOrder,
-    PerceptionReady,
-    PerceptionRefusal,
-    StartPerception,
-    ToWorker,
-    UpdateKnownGeometry,
-)
+from robots.io.message_socket import MessageSocket, PeerGone
+from robots.io.request_failure import RequestFailure
+from robots.vision.camera_process_messages import FromCameras, PerceptionReady, ToCameras
 from robots.vision.camera_rig import CameraRig
+from robots.vision.known_geometry import KnownGeometry
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
 
 _NICE = 5
 
 
-class _Mailbox:
-    """The worker's end of the socket."""
-
-    def __init__(self, connection: socket.socket) -> None:
-        self._messages = FramedSocket(connection)
-        self._decode = msgspec.msgpack.Decoder(ToWorker).decode
-        self._encode = msgspec.msgpack.Encoder().encode
-        self._waiting: list[bytes] = []
-
-    def next(self) -> ToWorker:
-        """Wait for the next message and return it."""
-        while not self._waiting:
-            self._waiting = self._messages.receive()
-        return self._decode(self._waiting.pop(0))
-
-    def send(self, message: FromWorker) -> None:
-        """Send a message."""
-        self._messages.send(self._encode(message))
+_Mailbox = MessageSocket[ToCameras, FromCameras]
 
 
 def main() -> None:
@@ -54,40 +29,38 @@ def main() -> None:
     connection = socket.socket(fileno=int(sys.argv[1]))
     set_parent_death_signal(connection)
     try:
-        _serve(_Mailbox(connection))
+        _serve(_Mailbox(connection, ToCameras))
     except PeerGone:
         connection.close()
 
 
 def _serve(mailbox: _Mailbox) -> None:
-    begin = mailbox.next()
-    if not isinstance(begin, StartPerception):
+    number, setup = mailbox.wait()
+    if not isinstance(setup, PerceptionSetup):
         return
     try:
-        eye = CameraRig(begin.sight, repeatable=False)
-        eye.warm()
+        rig = CameraRig(setup, repeatable=False)
+        rig.warm()
     except FlexcellError as error:
-        mailbox.send(_refused(error))
+        mailbox.send(RequestFailure.of(error), number=number)
         return
     # On few cores the event loop and the planners have priority: a late image is merely dropped.
     os.nice(_NICE)
-    mailbox.send(PerceptionReady(words=eye.words))
+    mailbox.send(PerceptionReady(words=rig.words), number=number)
     while True:
-        match mailbox.next():
-            case UpdateKnownGeometry(known=known):
-                eye.know(known)
-            case PerceptionOrder(number=number, look=look):
-                try:
-                    mailbox.send(PerceptionAnswer(number=number, seen=eye.look(look)))
-                except (FlexcellError, ValueError) as error:
-                    # ValueError: an invalid pose or array; the next request may be valid.
-                    mailbox.send(_refused(error, number=number))
-            case StartPerception():
+        number, message = mailbox.wait()
+        match message:
+            case KnownGeometry():
+                rig.know(message)
+            case PerceptionRequest():
+                mailbox.send(_answer(rig, message), number=number)
+            case PerceptionSetup():
                 return
 
 
-def _refused(error: Exception, *, number: int = 0) -> PerceptionRefusal:
-    if not isinstance(error, FlexcellError):
-        return PerceptionRefusal(message=str(error), number=number)
-    where = str(error.where) if error.where is not None else ""
-    return PerceptionRefusal(message=error.message, where=where, hint=error.hint or "", number=number)
+def _answer(rig: CameraRig, request: PerceptionRequest) -> PerceptionResult | RequestFailure:
+    try:
+        return rig.look(request)
+    except (FlexcellError, ValueError) as error:
+        # ValueError: an invalid pose or array; the next request may be valid.
+        return RequestFailure.of(error)

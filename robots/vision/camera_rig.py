@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import time
 
-import numpy as np
-
 from engine.errors import CellError
 from engine.messages.sensing import DepthImage, OccupancyGrid
 from engine.skills.vision import Detections
@@ -62,7 +60,7 @@ class CameraRig:
                 f"there is no camera {unknown[0]}", where="cameras", hint=f"the cameras are {[*self._cameras]}"
             )
         started_s = time.perf_counter()
-        self._cell.go_to(np.frombuffer(look.state))
+        self._cell.go_to(look.state)
         images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
         rendered_s = time.perf_counter()
         grid = self._mapped(look, images)

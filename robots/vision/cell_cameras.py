@@ -5,8 +5,8 @@ from __future__ import annotations
 from engine.document.cell import CellDocument
 from engine.errors import CellError
 from engine.suggestions import did_you_mean
+from robots.scene.sim_scene import SimScene
 from robots.sim.host.lockstep_host import LockstepHost
-from robots.sim.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
 from robots.vision.camera import camera_of
 from robots.vision.depth_renderer import check_depth_setting

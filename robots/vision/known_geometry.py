@@ -9,7 +9,7 @@ from engine.messages.shapes import Obstacle
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 
 
-class KnownGeometry(msgspec.Struct, frozen=True, kw_only=True):
+class KnownGeometry(msgspec.Struct, frozen=True, kw_only=True, tag="known"):
     """The obstacles and held parts of a planning scene."""
 
     obstacles: tuple[Obstacle, ...] = ()

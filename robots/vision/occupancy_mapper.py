@@ -14,7 +14,7 @@ from engine.messages.sensing import DepthImage, OccupancyGrid
 from engine.messages.shapes import Obstacle
 from robots.model.transform import RigidTransform
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 from robots.vision.arm_body import ArmBody
 from robots.vision.camera import Image, depths
 from robots.vision.known_geometry import KnownGeometry, MeasuredState

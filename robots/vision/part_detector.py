@@ -19,7 +19,7 @@ from engine.messages.sensing import CameraIntrinsics
 from engine.skills.vision import Detection, Detections, Rectangle
 from robots.model.transform import RigidTransform, product, quaternion_of
 from robots.port import Array
-from robots.sim.scene.sim_scene import PartBody
+from robots.scene.sim_scene import PartBody
 from robots.vision.camera import CameraSpec, pixels
 from robots.vision.depth_image import frame_number
 from robots.vision.depth_rays import first_hits

@@ -11,15 +11,15 @@ from engine.bus import SkillBus
 from engine.bus.topic import Topic
 from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
 from engine.robot import DeviceStatus
-from robots.gripper.grasp_check import GraspCommand
 from robots.planning.scene.planning_scene import PlanningScene
+from robots.port import GraspCommand
 from robots.sim.world.sim_world import SimWorld
 from robots.vision.camera import CameraSpec
 from robots.vision.detection_service import DetectionService
 from robots.vision.known_geometry import KnownGeometry
 from robots.vision.occupancy_map import LiveOccupancyMap
 from robots.vision.occupancy_source import Unsubscribe
-from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup, state_bytes
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
 
 PROCESSING_S = 0.03
 """Time from an image to the map in virtual time: near the 99th percentile that `benchmarks/perception.py` measures."""
@@ -121,7 +121,7 @@ class PerceptionDevice:
         return PerceptionRequest(
             # An image begins with the step count.
             time_s=round(float(image[0])) * self._world.host.summary.step_s,
-            state=state_bytes(image),
+            state=image,
             cameras=names,
             wanted=tuple(name for name in wanted if name in names),
             detecting=detecting,

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import msgspec
-import numpy as np
 
 from engine.messages.sensing import DepthImage, OccupancyGrid
 from engine.skills.vision import Detections
 from robots.port import Array
-from robots.sim.scene.sim_scene import SimScene
+from robots.scene.sim_scene import SimScene
 from robots.vision.camera import CameraSpec
 from robots.vision.voxel_box import VoxelBox
 
 
-class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True):
+class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True, tag="setup"):
     """A simulated cell with its cameras; `seed` is that of the noise.
 
     `box` is the mapped box, None without a map.
@@ -25,22 +24,22 @@ class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True):
     seed: int = 0
 
 
-class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True):
+class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
     """A request for images of `cameras` at world time `time_s`; `wanted` are those whose images are returned too.
 
-    The cameras in `detecting` also detect objects. `state` are the float64 of `WorldHost.image`. With `forget` the map
+    The cameras in `detecting` also detect objects. `state` is as `WorldHost.image`. With `forget` the map
     restarts with these images.
     """
 
     time_s: float
-    state: bytes
+    state: Array
     cameras: tuple[str, ...]
     wanted: tuple[str, ...] = ()
     detecting: tuple[str, ...] = ()
     forget: bool = False
 
 
-class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True):
+class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True, tag="seen"):
     """The map after a request, the wanted images, and the times for rendering and mapping.
 
     `grid` is None without a map, or if no images were taken.
@@ -51,8 +50,3 @@ class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True):
     detections: tuple[Detections, ...] = ()
     render_s: float
     map_s: float
-
-
-def state_bytes(image: Array) -> bytes:
-    """Encode an image of the world (`WorldHost.image`) for a `PerceptionRequest`."""
-    return np.ascontiguousarray(image, dtype=np.float64).tobytes()

@@ -10,10 +10,10 @@ from engine.errors import CellError
 from engine.messages import Pose
 from robots.model.transform import RigidTransform
 from robots.port import Array
+from robots.scene.sim_scene import SimScene
 from robots.sim.loop.image_layout import ImageLayout
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.physics import mujoco
-from robots.sim.scene.sim_scene import SimScene
 from robots.vision.known_geometry import ArmConfiguration, MeasuredState
 
 

@@ -111,15 +111,17 @@ class RealTimePerception(PerceptionDevice):
 
     async def _seen(self, order: PerceptionRequest) -> PerceptionResult:
         """Return the result; meanwhile subscribers are notified of the map's age."""
-        answer = self._process.ask(order)
-        waited_s = 0.0
-        while not answer.done() and waited_s < _PATIENCE_S:
-            await asyncio.wait((answer,), timeout=_LOOK_AFTER_S)
-            waited_s += _LOOK_AFTER_S
-            self.map.tell()
-        if not answer.done():
+        answer = asyncio.ensure_future(self._process.look(order))
+        try:
+            waited_s = 0.0
+            while not answer.done() and waited_s < _PATIENCE_S:
+                await asyncio.wait((answer,), timeout=_LOOK_AFTER_S)
+                waited_s += _LOOK_AFTER_S
+                self.map.tell()
+            if not answer.done():
+                raise RobotError(
+                    f"the camera process has not answered within {_PATIENCE_S:g} s", hint="a new one is started"
+                )
+            return answer.result()
+        finally:
             answer.cancel()
-            raise RobotError(
-                f"the camera process has not answered within {_PATIENCE_S:g} s", hint="a new one is started"
-            )
-        return answer.result()

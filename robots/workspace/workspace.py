@@ -28,9 +28,9 @@ from engine.skills.planning_scene import (
     ReadPlanningScene,
     RemoveObstacle,
 )
-from robots.gripper.grasp_check import GraspCommand
 from robots.planning.request import CollisionRequest
 from robots.planning.scene.planning_scene import PlanningScene
+from robots.port import GraspCommand
 from robots.vision.occupancy_source import OccupancySource
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
 from robots.workspace.path_reservations import Row

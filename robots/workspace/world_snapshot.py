@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.model.transform import RigidTransform
-from robots.sim.scene.sim_scene import SimScene
+from robots.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
 from robots.workspace.tool_joint_estimator import ToolJointEstimator

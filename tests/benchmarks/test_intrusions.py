@@ -11,11 +11,11 @@ from benchmarks.intrusions import CELL
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
 from engine.skills.planning import MotionTarget
+from robots.scene.scene_builder import build_scene
 from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import CellModel, build_cell
-from robots.sim.scene.scene_builder import build_scene
 
 DOCUMENT = load_cell(CELL)
 RIGHT = (-0.567, 0.18, 0.13, 0.0, 1.26, -0.567)

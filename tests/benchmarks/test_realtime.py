@@ -27,9 +27,9 @@ from engine.messages import JointState
 from engine.project.run_factory import new_run
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
+from robots.scene.scene_builder import build_scene
 from robots.sim.host.loop_timing import LoopTiming, TimingCounter, decode_timing
 from robots.sim.host.process_host import ProcessHost
-from robots.sim.scene.scene_builder import build_scene
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import one_arm
 

@@ -27,7 +27,7 @@ from engine.runtime.control.breakpoint import breakpoints_file
 from engine.skills.entries import WriteEntry
 from engine.teaching import load_triggers
 from engine.testing.behavior_run import run_behavior
-from robots.sim.scene.scene_builder import build_scene
+from robots.scene.scene_builder import build_scene
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "how-to" / "examples"

@@ -8,8 +8,8 @@ import pytest
 
 from engine.cell.cell_names import cell_names
 from engine.document.cell import load_cell
+from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.scene_builder import build_scene
 
 CELLS = sorted((Path(__file__).parents[2] / "behaviors" / "cells").glob("*.yaml"))
 

@@ -11,7 +11,7 @@ from engine.messages import Pose
 from engine.messages.shapes import Box, Cylinder, Obstacle, Shape, Solid, Sphere
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import NamePair, PlanningScene, SceneArm
-from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 
 
 def planning_scene(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) -> PlanningScene:

@@ -15,7 +15,7 @@ from engine.errors import CellError
 from engine.messages import Pose
 from engine.messages.shapes import AT_ORIGIN, Obstacle, Solid
 from engine.suggestions import did_you_mean
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 NamePair = tuple[str, str]
 

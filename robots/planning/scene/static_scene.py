@@ -17,7 +17,7 @@ from robots.planning.scene.coal_shapes import pin, rigid_of
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene, SceneArm
 from robots.planning.scene.shape_cache import CachedShape, cached_link_shapes, cached_shape
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,6 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from engine.errors import CellError
 from engine.skills.planning_scene import CONTACT_M
 from robots.model.robot_model import RobotModel
 from robots.planning.request import AttachedPartCheckRequest, PathCheck
@@ -26,8 +25,9 @@ from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.pair_checks import TOUCHING_M, PairChecks
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.planning.scene.static_scene import arm_in_scene
+from robots.planning.search.path_check import require_fit
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 _STEP_M, _FINE_M = 0.005, 0.0005
 """Largest motion of a held point between two checks, and the resolution of the start of the end section."""
@@ -46,13 +46,8 @@ def check_attached_parts(
     """
     scene = _attached_parts_only(request.scene, request.arm)
     checker = ExactChecker(scene, request.arm, among=arm_in_scene(scene, request.arm, robot=robot))
-    if request.way.joints != checker.dof or not request.way.position_rad:
-        raise CellError(
-            f"a path of {request.way.joints} joints does not fit this arm",
-            where=request.arm,
-            hint=f"it has {checker.dof}",
-        )
-    trajectory = request.way.trajectory()
+    trajectory = request.trajectory
+    require_fit(trajectory, arm=request.arm, dof=checker.dof)
     rows = trajectory.position_rad
     checks = checker.checks[0]
     moved_m = _moved(checker, rows)

@@ -15,12 +15,13 @@ import msgspec
 import numpy as np
 
 from engine.errors import CellError
-from robots.planning.request import PathCheck, PathCheckRequest, SampledTrajectory
+from robots.planning.request import PathCheck, PathCheckRequest
 from robots.planning.scene.compiled_problem import CompiledProblem
 from robots.planning.scene.exact_checker import CollisionQuery, ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, NamePair, PlanningScene, SceneArm
 from robots.planning.search.escape import EscapeChecker
 from robots.planning.search.kernels import check_along_path
+from robots.port import JointTrajectory
 
 _CACHE_SIZE = 16
 _Key = tuple[SceneArm, tuple[AttachedPart, ...], tuple[NamePair, ...], bytes]
@@ -32,22 +33,34 @@ class SelfCollisionCache:
     def __init__(self) -> None:
         self._free_from_s: OrderedDict[_Key, float] = OrderedDict()
 
-    def are_free(self, scene: PlanningScene, arm: str, way: SampledTrajectory, from_s: float) -> bool:
+    def are_free(self, scene: PlanningScene, arm: str, trajectory: JointTrajectory, from_s: float) -> bool:
         """Return whether a trajectory is known to be free from a time on."""
-        return self._free_from_s.get(_key(scene, arm, way), np.inf) <= from_s
+        return self._free_from_s.get(_key(scene, arm, trajectory), np.inf) <= from_s
 
-    def add(self, scene: PlanningScene, arm: str, way: SampledTrajectory, from_s: float) -> None:
+    def add(self, scene: PlanningScene, arm: str, trajectory: JointTrajectory, from_s: float) -> None:
         """Record a trajectory that is free from a time on."""
-        key = _key(scene, arm, way)
+        key = _key(scene, arm, trajectory)
         self._free_from_s[key] = min(self._free_from_s.pop(key, np.inf), from_s)
         if len(self._free_from_s) > _CACHE_SIZE:
             self._free_from_s.popitem(last=False)
 
 
-def _key(scene: PlanningScene, arm: str, way: SampledTrajectory) -> _Key:
+def _key(scene: PlanningScene, arm: str, trajectory: JointTrajectory) -> _Key:
     # The current joints of the arm do not matter.
     body = msgspec.structs.replace(scene.arm(arm), joints_rad=())
-    return body, tuple(part for part in scene.attached if part.arm == arm), scene.allowed, way.position_rad
+    return (
+        body,
+        tuple(part for part in scene.attached if part.arm == arm),
+        scene.allowed,
+        trajectory.position_rad.tobytes(),
+    )
+
+
+def require_fit(trajectory: JointTrajectory, *, arm: str, dof: int) -> None:
+    """Raise CellError unless a trajectory has samples of `dof` joints."""
+    rows = trajectory.position_rad
+    if rows.ndim != 2 or rows.shape[1] != dof or not len(rows):
+        raise CellError(f"a path of {rows.shape[-1]} joints does not fit this arm", where=arm, hint=f"it has {dof}")
 
 
 def check_path(
@@ -58,18 +71,13 @@ def check_path(
     Raises:
         CellError: the trajectory does not fit this arm.
     """
-    if request.way.joints != checker.dof or not request.way.position_rad:
-        raise CellError(
-            f"a path of {request.way.joints} joints does not fit this arm",
-            where=request.arm,
-            hint=f"it has {checker.dof}",
-        )
-    trajectory = request.way.trajectory()
+    trajectory = request.trajectory
+    require_fit(trajectory, arm=request.arm, dof=checker.dof)
     last = len(trajectory.position_rad) - 1
     first = min(max(int(request.from_s / trajectory.dt_s), 0), last)
     rows = np.ascontiguousarray(trajectory.position_rad[first:])
     checked, blocked = np.empty(len(rows), dtype=np.int64), np.empty(len(rows), dtype=np.bool_)
-    own_is_free = known.are_free(request.scene, request.arm, request.way, request.from_s)
+    own_is_free = known.are_free(request.scene, request.arm, trajectory, request.from_s)
     outside = problem._replace(pairs=problem.pairs[:0], pair_gap=problem.pair_gap[:0])
     count = check_along_path(outside, rows, checked, blocked)
     escape = EscapeChecker(checker, rows[0]) if blocked[0] else None
@@ -89,5 +97,5 @@ def check_path(
             return PathCheck(blocked_at_s=at_s, pairs=query.colliding_pairs(rows[earliest]), looked_s=at_s)
         before = row
     if not own_is_free:
-        known.add(request.scene, request.arm, request.way, request.from_s)
+        known.add(request.scene, request.arm, trajectory, request.from_s)
     return PathCheck(blocked_at_s=None, pairs=(), looked_s=last * trajectory.dt_s)

@@ -19,7 +19,7 @@ from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.planning.search.endpoints import describe_touching
 from robots.port import Array
-from robots.sim.scene.scene_builder import build_scene
+from robots.scene.scene_builder import build_scene
 
 _CONTACT_DEPTH_M = 0.005
 """Up to this depth contact with a fixture is allowed, such as of fingers around a part on a table."""

@@ -1,10 +1,11 @@
-"""Messages between the planning process and its client: length-prefixed msgpack over a socket."""
+"""Messages between the planning process and its client: numbered requests and their answers."""
 
 from __future__ import annotations
 
 import msgspec
 
 from engine.skills.planning_scene import CollisionReport
+from robots.io.request_failure import RequestFailure
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
@@ -16,67 +17,24 @@ from robots.planning.request import (
 )
 
 
-class AskPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
-    """Requests a plan; `number` identifies the request."""
-
-    number: int
-    request: PlanRequest
+class WarmUpRequest(msgspec.Struct, frozen=True, kw_only=True, tag="warm_up"):
+    """Load and compile everything that a first request would wait for; the first request."""
 
 
-class AskPathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
-    """Requests a path check."""
-
-    number: int
-    request: PathCheckRequest
-
-
-class AskAttachedPartCheck(msgspec.Struct, frozen=True, kw_only=True, tag="carry"):
-    """Requests a check of the attached parts."""
-
-    number: int
-    request: AttachedPartCheckRequest
-
-
-class AskCollisions(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
-    """Requests the collisions in a configuration."""
-
-    number: int
-    request: CollisionRequest
-
-
-class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, tag="withdraw"):
-    """Cancels a request; it is still answered, as canceled."""
-
-    number: int
-
-
-class PlanningReply(msgspec.Struct, frozen=True, kw_only=True, tag="answered"):
-    """The answer to `AskPlan`, `AskPathCheck` or `AskAttachedPartCheck`."""
-
-    number: int
-    answer: PathPlan | PlanRefusal | PathCheck
-
-
-class CollisionReply(msgspec.Struct, frozen=True, kw_only=True, tag="reported"):
-    """The answer to `AskCollisions`."""
-
-    number: int
-    answer: CollisionReport
-
-
-class RequestFailure(msgspec.Struct, frozen=True, kw_only=True, tag="failed"):
-    """Reports a failed request: its scene or model is invalid."""
-
-    number: int
-    message: str
-    where: str
-    hint: str
+class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, tag="cancel"):
+    """Cancels the request of the same number; it is still answered, as canceled."""
 
 
 class PlannerReady(msgspec.Struct, frozen=True, kw_only=True, tag="ready"):
-    """The process has loaded and compiled everything."""
+    """The answer to `WarmUpRequest`."""
 
 
-PlanningRequest = AskPlan | AskPathCheck | AskAttachedPartCheck | AskCollisions
-ToWorker = PlanningRequest | CancelRequest
-FromWorker = PlanningReply | CollisionReply | RequestFailure | PlannerReady
+class CollisionReply(msgspec.Struct, frozen=True, kw_only=True, tag="collisions"):
+    """The answer to a `CollisionRequest`: a message of the bus, which has no tag of its own."""
+
+    report: CollisionReport
+
+
+PlanningRequest = WarmUpRequest | PlanRequest | PathCheckRequest | AttachedPartCheckRequest | CollisionRequest
+ToPlanner = PlanningRequest | CancelRequest
+FromPlanner = PlannerReady | PathPlan | PlanRefusal | PathCheck | CollisionReply | RequestFailure

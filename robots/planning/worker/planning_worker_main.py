@@ -6,123 +6,118 @@ import select
 import socket
 import sys
 from collections import deque
-
-import msgspec
+from collections.abc import Callable, Sequence
 
 from engine.errors import FlexcellError
 from engine.host.child_process import set_parent_death_signal
 from engine.messages import Pose
 from engine.messages.shapes import Box, Obstacle
-from robots.io.framed_socket import FramedSocket, PeerGone
-from robots.planning.request import JointGoal, PlanRequest
+from robots.io.message_socket import MessageSocket, PeerGone
+from robots.io.request_failure import RequestFailure
+from robots.planning.request import (
+    AttachedPartCheckRequest,
+    CollisionRequest,
+    JointGoal,
+    PathCheckRequest,
+    PlanRequest,
+)
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
 from robots.planning.worker.planning_messages import (
-    AskAttachedPartCheck,
-    AskCollisions,
-    AskPathCheck,
-    AskPlan,
     CancelRequest,
     CollisionReply,
-    FromWorker,
+    FromPlanner,
     PlannerReady,
-    PlanningReply,
     PlanningRequest,
-    RequestFailure,
-    ToWorker,
+    ToPlanner,
+    WarmUpRequest,
 )
 from robots.planning.worker.scene_planner import ScenePlanner
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 
-class _Mailbox:
-    """The worker's end of the socket."""
+class _RequestQueue:
+    """The requests that have arrived, in order, and which of them are canceled."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
-        self._messages = FramedSocket(connection)
-        self._decode = msgspec.msgpack.Decoder(ToWorker).decode
-        self._waiting: deque[PlanningRequest] = deque()
+        self._messages = MessageSocket[ToPlanner, FromPlanner](connection, ToPlanner)
+        self._waiting: deque[tuple[int, PlanningRequest]] = deque()
         self._open: set[int] = set()
         self._canceled: set[int] = set()
 
-    def next(self) -> PlanningRequest:
-        """Wait for the next request and return it."""
+    def next(self) -> tuple[int, PlanningRequest]:
+        """Wait for the next request and return it with its number."""
         while not self._waiting:
             self._read()
         return self._waiting.popleft()
 
-    def take_quick_requests(self) -> list[AskPathCheck | AskAttachedPartCheck | AskCollisions]:
+    def take_quick_requests(self) -> Sequence[tuple[int, PlanningRequest]]:
         """Read new messages, and remove and return the queued requests that take milliseconds."""
         while select.select([self._connection], [], [], 0.0)[0]:
             self._read()
-        quick = [ask for ask in self._waiting if not isinstance(ask, AskPlan)]
+        quick = [(number, request) for number, request in self._waiting if not isinstance(request, PlanRequest)]
         if quick:
-            self._waiting = deque(ask for ask in self._waiting if isinstance(ask, AskPlan))
+            self._waiting = deque(waiting for waiting in self._waiting if isinstance(waiting[1], PlanRequest))
         return quick
 
     def is_canceled(self, number: int) -> bool:
         """Return whether a cancellation of the request has been read."""
         return number in self._canceled
 
-    def send(self, message: FromWorker) -> None:
-        """Send a message."""
-        self._messages.send(msgspec.msgpack.encode(message))
-
-    def done(self, number: int) -> None:
-        """Remove an answered request."""
+    def answer(self, number: int, answer: FromPlanner) -> None:
+        """Answer a request and forget it."""
+        self._messages.send(answer, number=number)
         self._open.discard(number)
         self._canceled.discard(number)
 
     def _read(self) -> None:
-        for frame in self._messages.receive():
-            message = self._decode(frame)
+        for number, message in self._messages.receive():
             if not isinstance(message, CancelRequest):
-                self._waiting.append(message)
-                self._open.add(message.number)
-            elif message.number in self._open:
-                self._canceled.add(message.number)
+                self._waiting.append((number, message))
+                self._open.add(number)
+            elif number in self._open:
+                self._canceled.add(number)
 
 
 def main() -> None:
     """Serve the socket whose descriptor is the first argument until the other end closes it."""
     connection = socket.socket(fileno=int(sys.argv[1]))
     set_parent_death_signal(connection)
-    mailbox = _Mailbox(connection)
+    queue = _RequestQueue(connection)
     planner = ScenePlanner()
     try:
-        warm_up(planner)
-        mailbox.send(PlannerReady())
         while True:
-            _serve(planner, mailbox, mailbox.next())
+            _serve(planner, queue, *queue.next())
     except PeerGone:
         connection.close()
 
 
-def _serve(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> None:
-    mailbox.send(_answer(planner, mailbox, ask))
-    mailbox.done(ask.number)
-
-
-def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: PlanningRequest) -> FromWorker:
+def _serve(planner: ScenePlanner, queue: _RequestQueue, number: int, request: PlanningRequest) -> None:
     def is_canceled() -> bool:
         # A moving arm must not wait for the plan of another.
-        for quick in mailbox.take_quick_requests():
-            _serve(planner, mailbox, quick)
-        return mailbox.is_canceled(ask.number)
+        for quick_number, quick in queue.take_quick_requests():
+            _serve(planner, queue, quick_number, quick)
+        return queue.is_canceled(number)
 
     try:
-        match ask:
-            case AskPlan(number=number, request=request):
-                return PlanningReply(number=number, answer=planner.plan(request, cancelled=is_canceled))
-            case AskPathCheck(number=number, request=request):
-                return PlanningReply(number=number, answer=planner.check_path(request))
-            case AskAttachedPartCheck(number=number, request=request):
-                return PlanningReply(number=number, answer=planner.check_attached_parts(request))
-            case AskCollisions(number=number, request=request):
-                return CollisionReply(number=number, answer=planner.look(request))
+        queue.answer(number, _answer(planner, request, is_canceled))
     except FlexcellError as error:
-        where = str(error.where) if error.where is not None else ""
-        return RequestFailure(number=ask.number, message=error.message, where=where, hint=error.hint or "")
+        queue.answer(number, RequestFailure.of(error))
+
+
+def _answer(planner: ScenePlanner, request: PlanningRequest, is_canceled: Callable[[], bool]) -> FromPlanner:
+    match request:
+        case WarmUpRequest():
+            warm_up(planner)
+            return PlannerReady()
+        case PlanRequest():
+            return planner.plan(request, cancelled=is_canceled)
+        case PathCheckRequest():
+            return planner.check_path(request)
+        case AttachedPartCheckRequest():
+            return planner.check_attached_parts(request)
+        case CollisionRequest():
+            return CollisionReply(report=planner.look(request))
 
 
 def warm_up(planner: ScenePlanner) -> None:

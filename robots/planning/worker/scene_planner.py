@@ -26,7 +26,6 @@ from robots.planning.request import (
     PlanRefusal,
     PlanRequest,
     PlanStats,
-    SampledTrajectory,
 )
 from robots.planning.scene.compiled_problem import FREE, CompiledProblem
 from robots.planning.scene.exact_checker import ExactChecker
@@ -52,7 +51,7 @@ from robots.planning.search.search_task import SearchAlgorithm, SearchBudget, Se
 from robots.planning.search.stomp import stomp_search
 from robots.planning.timing.trajectory_timing import time_path
 from robots.port import Array, JointTrajectory
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 _Result = TypeVar("_Result")
 
@@ -236,8 +235,7 @@ class _Attempt:
     def _plan(self, path: Array, name: str) -> PathPlan:
         timed = None
         if self._request.speed is not None:
-            trajectory = self._timed("timing", lambda w=path, v=self._request.speed: self._trajectory(w, v))
-            timed = SampledTrajectory.of(trajectory)
+            timed = self._timed("timing", lambda w=path, v=self._request.speed: self._trajectory(w, v))
         stats = PlanStats(
             search_s=self._spent["search"],
             shortening_s=self._spent["shortening"],

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from engine.messages import Vector3
 from robots.port import Array
-from robots.sim.commands.arm_commands import ArmCommand, SimCommand, to_bytes
+from robots.sim.commands.arm_commands import ArmCommand, SimCommand
 
 
 class CloseFingers(SimCommand, frozen=True, kw_only=True, tag="close_to"):
@@ -86,18 +84,9 @@ class MovePersonHand(SimCommand, frozen=True, kw_only=True, tag="move_hand"):
 
 
 class RestoreWorld(SimCommand, frozen=True, kw_only=True, tag="restore"):
-    """Restore an image of this world, at rest; `numbers` are float64 as in `ImageLayout`."""
+    """Restore an image of this world, at rest; its numbers are as in `ImageLayout`."""
 
-    numbers: bytes
-
-    @classmethod
-    def of(cls, image: Array) -> RestoreWorld:
-        """Return the command to restore `image`."""
-        return cls(numbers=to_bytes(image))
-
-    def image(self) -> Array:
-        """Return the image."""
-        return np.frombuffer(self.numbers)
+    image: Array
 
 
 class ShutDownWorld(SimCommand, frozen=True, kw_only=True, tag="shutdown"):

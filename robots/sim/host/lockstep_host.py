@@ -8,12 +8,12 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.port import Array
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import AnyCommand, RestoreWorld
 from robots.sim.host.world_host import StepHook, WorldListener
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import CellSummary, SimSnapshot
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.sim_scene import SimScene
 
 
 class LockstepHost:
@@ -62,7 +62,7 @@ class LockstepHost:
     async def restore(self, image: Array) -> None:
         """Restore an image of this world, at rest."""
         before = self.simulation.steps
-        self.simulation.apply(RestoreWorld.of(image))
+        self.simulation.apply(RestoreWorld(image=image))
         # The world's clock jumps; the loop's does not.
         self._start_steps += self.simulation.steps - before
 

@@ -5,32 +5,31 @@ from __future__ import annotations
 import asyncio
 import os
 import socket
-import subprocess
-from collections import deque
 from collections.abc import Callable
+from functools import partial
 
-import msgspec
-
-from engine.errors import CONNECT_AGAIN, CellError, RobotError
-from engine.host.child_process import describe_exit, start_child
-from robots.io.framing import FrameReader, frame_message
+from engine.errors import CONNECT_AGAIN, RobotError
+from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed, ReflexTripped
+from robots.io.worker_process import WorkerProcess
 from robots.port import Array
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.loop_heartbeat import LoopHeartbeat
 from robots.port.shared_file import new_shared_file
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import AnyCommand, RestoreWorld, ShutDownWorld
 from robots.sim.host.loop_timing import SIZE, LoopTiming, decode_timing
 from robots.sim.host.shared_state import SharedNumbers
 from robots.sim.host.world_host import WorldListener
-from robots.sim.host.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
+from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady
 from robots.sim.loop.snapshot import CellSummary, SimSnapshot, SnapshotLayout
-from robots.sim.scene.sim_scene import SimScene
 
 _START = "from robots.sim.host.process_main import main; main()"
 _WHAT = "the world's process"
 # On a loaded machine that compiles the controllers for the first time, one arm takes half a minute.
 _START_S = 180.0
 _END_S = 6.0
+# A process that is already shutting down needs no more to exit.
+_EXIT_S = 0.2
 # On an overloaded machine this takes seconds; a timeout too early makes a run impossible to resume.
 _RESTORE_S = 20.0
 
@@ -50,8 +49,7 @@ class ProcessHost:
     def __init__(self, scene: SimScene, *, new_stop_line: NewStopLine | None = None) -> None:
         self._scene = scene
         self._new_stop_line = new_stop_line
-        self._process: subprocess.Popen[bytes] | None = None
-        self._wire: _Wire | None = None
+        self._worker: WorkerProcess[ToWorld, FromWorld] | None = None
         self._layout: SnapshotLayout | None = None
         self._state: SharedNumbers | None = None
         self._timing: SharedNumbers | None = None
@@ -66,7 +64,7 @@ class ProcessHost:
     @property
     def pid(self) -> int:
         """The process id of the world."""
-        return self._process.pid if self._process is not None else 0
+        return self._worker.pid if self._worker is not None else 0
 
     def timing(self) -> LoopTiming:
         """Return timing statistics since the world was opened."""
@@ -86,12 +84,10 @@ class ProcessHost:
 
     async def restore(self, image: Array) -> None:
         """Restore an image of this world; returns when the process has confirmed it."""
-        self.send(RestoreWorld.of(image))
-        assert self._wire is not None
-        restored = self._wire.next_restored()
+        restored = self._alive().ask(RestoreWorld(image=image)).answer
         try:
             async with asyncio.timeout(_RESTORE_S):
-                await restored
+                await asyncio.shield(restored)
         except TimeoutError as error:
             raise RobotError(
                 f"the world's process did not restore its state within {_RESTORE_S:g} s", hint=CONNECT_AGAIN
@@ -99,17 +95,10 @@ class ProcessHost:
 
     def send(self, command: AnyCommand) -> None:
         """Send a command; raises RobotError when the process is lost."""
-        if self._wire is None or self._wire.lost_reason:
-            raise RobotError(
-                self._wire.lost_reason if self._wire else "the world's process was ended", hint=CONNECT_AGAIN
-            )
-        if self._heartbeat is not None:
-            self._heartbeat.pulse()
-        self._wire.send(msgspec.msgpack.encode(command))
+        self._alive().send(command)
 
     async def open(self, listener: WorldListener) -> None:
         """Start the process and wait until its world is built; may be called again after a loss."""
-        ours, theirs = socket.socketpair()
         state_fd, timing_fd, heartbeat_fd = (
             new_shared_file("flexcell-state"),
             new_shared_file("flexcell-timing"),
@@ -117,16 +106,17 @@ class ProcessHost:
         )
         stop_line = self._new_stop_line("world") if self._new_stop_line is not None else None
         stop_fds = (stop_line.fileno(),) if stop_line is not None else ()
-        descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd, *stop_fds)
+        worker = self._worker = WorkerProcess[ToWorld, FromWorld](
+            _START,
+            FromWorld,
+            what=_WHAT,
+            hint=CONNECT_AGAIN,
+            on_notice=partial(_tell, listener),
+            on_lost=listener.lost,
+        )
         try:
-            self._process = start_child(_START, descriptors, what=_WHAT)
-            # Closed before the process can end, else its end would not be noticed.
-            theirs.close()
-            loop = asyncio.get_running_loop()
-            _, wire = await loop.create_connection(lambda: _Wire(listener, self._how_it_ended), sock=ours)
-            self._wire = wire
-            wire.send(msgspec.msgpack.encode(self._scene))
-            ready = await self._answer(wire)
+            await worker.start(state_fd, timing_fd, heartbeat_fd, *stop_fds)
+            ready = await self._built(worker)
             self._layout = SnapshotLayout(ready.summary)
             self._state = SharedNumbers(state_fd, self._layout.size + ready.summary.image_size)
             # Read once, so that a consistent state exists if the process dies in mid-write.
@@ -136,15 +126,10 @@ class ProcessHost:
             self._begin_heartbeat(Heartbeat(heartbeat_fd))
         except BaseException:
             # On any error, cancellation included, no process may be left behind.
-            wire, self._wire = self._wire, None
-            if wire is None:
-                ours.close()
-            else:
-                wire.first.cancel()
-            self._kill(wire)
+            self._worker = None
+            self._end(worker)
             raise
         finally:
-            theirs.close()
             if stop_line is not None:
                 stop_line.close()
             os.close(state_fd)
@@ -159,51 +144,47 @@ class ProcessHost:
 
     def _end_silent_process(self, silent_s: float) -> None:
         """Kill a process that does not step, so that its end is certain, and report its loss."""
-        if self._process is not None:
-            self._process.kill()
-        if self._wire is not None and not self._wire.lost_reason:
-            self._wire.lose(f"{_WHAT} has not stepped for {silent_s:.1f} s: it is frozen or starved, and was killed")
-            self._wire.close()
+        if self._worker is not None:
+            self._worker.kill(f"{_WHAT} has not stepped for {silent_s:.1f} s: it is frozen or starved, and was killed")
 
-    async def _answer(self, wire: _Wire) -> WorldReady:
+    async def _built(self, worker: WorkerProcess[ToWorld, FromWorld]) -> WorldReady:
+        ready = worker.ask(BuildWorld(scene=self._scene)).answer
         try:
             async with asyncio.timeout(_START_S):
-                answer = await asyncio.shield(wire.first)
+                answer = await asyncio.shield(ready)
         except TimeoutError as error:
             raise RobotError(f"the world's process did not answer within {_START_S:g} s") from error
-        if isinstance(answer, WorldRefused):
-            raise CellError(answer.message, where=answer.where or None, hint=answer.hint or None)
+        assert isinstance(answer, WorldReady)
         return answer
 
     async def close(self) -> None:
         """Bring everything to rest and end the process; kill it if it does not end."""
-        wire, self._wire = self._wire, None
+        worker, self._worker = self._worker, None
+        if worker is None:
+            return
         try:
-            if wire is not None:
-                wire.closing = True
-                if not wire.lost_reason:
-                    wire.send(msgspec.msgpack.encode(ShutDownWorld()))
-                    await asyncio.wait((wire.gone,), timeout=_END_S)
+            worker.end_reason = "the world was closed"
+            if not worker.lost_reason:
+                worker.send(ShutDownWorld())
+                await worker.wait_closed(_END_S)
         finally:
             # Even if this is cancelled while it waits, no process may be left behind.
-            self._kill(wire)
+            self._end(worker)
 
-    def _kill(self, wire: _Wire | None) -> None:
+    def _end(self, worker: WorkerProcess[ToWorld, FromWorld]) -> None:
         """End the process, gracefully if it is already shutting down."""
         if self._heartbeat is not None:
             self._heartbeat.end()
             self._heartbeat = None
-        if wire is not None:
-            wire.close()
-        if self._process is not None and self._process.poll() is None:
-            try:
-                self._process.wait(timeout=0.2)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
+        worker.end(grace_s=_EXIT_S)
 
-    def _how_it_ended(self) -> str:
-        return describe_exit(self._process, what=_WHAT)
+    def _alive(self) -> WorkerProcess[ToWorld, FromWorld]:
+        """Return the process for a message to it; raises RobotError when it is lost."""
+        if self._worker is None:
+            raise RobotError("the world's process was ended", hint=CONNECT_AGAIN)
+        if self._heartbeat is not None and not self._worker.lost_reason:
+            self._heartbeat.pulse()
+        return self._worker
 
     def _opened(self) -> tuple[SnapshotLayout, SharedNumbers]:
         if self._layout is None or self._state is None:
@@ -211,73 +192,10 @@ class ProcessHost:
         return self._layout, self._state
 
 
-class _Wire(asyncio.Protocol):
-    """The parent's end of the socket."""
-
-    def __init__(self, listener: WorldListener, how_it_ended: Callable[[], str]) -> None:
-        loop = asyncio.get_running_loop()
-        self._listener = listener
-        self._how_it_ended = how_it_ended
-        self._reader = FrameReader()
-        self._decode = msgspec.msgpack.Decoder(AnyReport).decode
-        self._transport: asyncio.Transport | None = None
-        self.first: asyncio.Future[WorldReady | WorldRefused] = loop.create_future()
-        self.gone: asyncio.Future[None] = loop.create_future()
-        self.lost_reason = ""
-        self.closing = False
-        self._restores: deque[asyncio.Future[None]] = deque()
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        assert isinstance(transport, asyncio.Transport)
-        self._transport = transport
-
-    def data_received(self, data: bytes) -> None:
-        for message in self._reader.feed(data):
-            report = self._decode(message)
-            match report:
-                case WorldReady() | WorldRefused():
-                    self.first.set_result(report)
-                case WorldRestored():
-                    self._restored_first_in_line()
-                case _:
-                    self._listener.happened(report)
-
-    def next_restored(self) -> asyncio.Future[None]:
-        """Return a future that completes with the world's next restore."""
-        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._restores.append(future)
-        return future
-
-    def _restored_first_in_line(self) -> None:
-        future = self._restores.popleft()
-        if not future.done():
-            future.set_result(None)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        if not self.gone.done():
-            self.gone.set_result(None)
-        if not self.lost_reason:
-            self.lose(self._how_it_ended() if not self.closing else "")
-
-    def lose(self, reason: str) -> None:
-        """Fail all waiters because the world is lost; a deliberate close has its own reason."""
-        reason = "the world was closed" if self.closing else reason
-        self.lost_reason = reason
-        if not self.first.done():
-            self.first.set_exception(RobotError(f"{reason} before it was ready"))
-        for future in self._restores:
-            if not future.done():
-                future.set_exception(RobotError(reason, hint=CONNECT_AGAIN))
-        self._listener.lost(reason)
-
-    def send(self, payload: bytes) -> None:
-        assert self._transport is not None
-        self._transport.write(frame_message(payload))
-
-    def close(self) -> None:
-        if self._transport is not None:
-            self._transport.close()
-
-
 def _not_open() -> RobotError:
     return RobotError("the simulated world is not open", hint="enter it with `async with` first")
+
+
+def _tell(listener: WorldListener, message: FromWorld) -> None:
+    if isinstance(message, MotionFinished | MotionHeld | MotionResumed | ReflexTripped):
+        listener.happened(message)

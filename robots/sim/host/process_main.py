@@ -10,23 +10,22 @@ import sys
 import time
 from types import FrameType
 
-import msgspec
 import numpy as np
 
 from engine.errors import CellError
 from engine.stop import StopLine
-from robots.io.framed_socket import FramedSocket, PeerGone
+from robots.io.message_socket import MessageSocket, PeerGone
+from robots.io.request_failure import RequestFailure
 from robots.port.control_process import EngineMonitor
 from robots.port.heartbeat import Heartbeat
 from robots.port.stop_monitor import StopMonitor
-from robots.sim.commands.world_commands import AnyCommand, RestoreWorld, ShutDownWorld, StopAll
+from robots.sim.commands.world_commands import RestoreWorld, ShutDownWorld, StopAll
 from robots.sim.host.loop_timing import SIZE, TimingCounter
 from robots.sim.host.process_log import log_nonblocking
 from robots.sim.host.shared_state import SharedNumbers
-from robots.sim.host.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
+from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady, WorldRestored
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.sim_scene import SimScene
 
 _FIFO_PRIORITY = 20
 _SNAPSHOT_EVERY = 2
@@ -36,43 +35,14 @@ _LONGEST_LAG_S = 0.05
 _SHUTDOWN_S = 4.0
 
 
-class CommandChannel:
-    """The child's end of the socket; blocks only for the scene; raises PeerGone once the parent is gone."""
-
-    def __init__(self, connection: socket.socket) -> None:
-        self._connection = connection
-        self._messages = FramedSocket(connection)
-        self._decode = msgspec.msgpack.Decoder(AnyCommand).decode
-        self._encode = msgspec.msgpack.Encoder().encode
-
-    def receive_scene(self) -> SimScene:
-        """Wait for the first message, the scene."""
-        while True:
-            for message in self._messages.receive():
-                self._connection.setblocking(False)
-                return msgspec.msgpack.decode(message, type=SimScene)
-
-    def commands(self) -> list[AnyCommand]:
-        """Return the commands that have arrived."""
-        return [self._decode(message) for message in self._messages.receive()]
-
-    def report(self, message: AnyReport) -> None:
-        """Send a message, or buffer it until the socket accepts it."""
-        self._messages.post(self._encode(message))
-
-    def flush(self) -> None:
-        """Send buffered data, as far as the socket accepts it."""
-        self._messages.flush()
-
-
 class ClosedChannel:
-    """Replaces the channel once the parent is gone: receives nothing, discards everything."""
+    """Replaces the socket once the parent is gone: receives nothing, discards everything."""
 
-    def commands(self) -> list[AnyCommand]:
+    def receive(self) -> list[tuple[int, ToWorld]]:
         """Return nothing."""
         return []
 
-    def report(self, message: AnyReport) -> None:
+    def post(self, message: FromWorld, *, number: int = 0) -> None:
         """Drop a message."""
 
     def flush(self) -> None:
@@ -85,7 +55,7 @@ class WorldLoop:
     def __init__(
         self,
         simulation: Simulation,
-        channel: CommandChannel,
+        channel: MessageSocket[ToWorld, FromWorld],
         *,
         engine: EngineMonitor,
         stop: StopMonitor,
@@ -93,7 +63,7 @@ class WorldLoop:
         timing_fd: int,
     ) -> None:
         self._simulation = simulation
-        self._channel: CommandChannel | ClosedChannel = channel
+        self._channel: MessageSocket[ToWorld, FromWorld] | ClosedChannel = channel
         self._engine = engine
         self._stop = stop
         # The measurement, followed by the image, so that both belong to one instant.
@@ -154,8 +124,8 @@ class WorldLoop:
         return self._simulation.at_rest or time.monotonic() > self._ending_at
 
     def _tick(self) -> None:
-        for command in self._channel.commands():
-            self._take(command)
+        for number, command in self._channel.receive():
+            self._take(command, number)
         # Before the check of the engine's silence, so that motions report STOP as their cause.
         self._stop.look()
         if self._stop.cut:
@@ -167,19 +137,23 @@ class WorldLoop:
             # The state is written before the event is sent, so a listener reads the state at the end.
             self.publish()
         for event in events:
-            self._channel.report(event)
+            self._channel.post(event)
         self._channel.flush()
         if self._simulation.steps % _TIMING_EVERY == 0:
             self._shared_timing.write(self._timing.values)
 
-    def _take(self, command: AnyCommand) -> None:
-        if isinstance(command, ShutDownWorld):
-            self.request_end()
-            return
-        self._simulation.apply(command)
-        if isinstance(command, RestoreWorld):
-            self.publish()
-            self._channel.report(WorldRestored())
+    def _take(self, command: ToWorld, number: int) -> None:
+        match command:
+            case ShutDownWorld():
+                self.request_end()
+            case RestoreWorld():
+                self._simulation.apply(command)
+                self.publish()
+                self._channel.post(WorldRestored(), number=number)
+            case BuildWorld():
+                raise CellError("the world is built once")
+            case _:
+                self._simulation.apply(command)
 
     def _next_due(self, due: float, step_s: float, late_s: float) -> float:
         now = time.monotonic()
@@ -204,17 +178,19 @@ def main() -> None:
     connection_fd, state_fd, timing_fd, heartbeat_fd, *stop_fd = (int(argument) for argument in sys.argv[1:])
     # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    channel = CommandChannel(socket.socket(fileno=connection_fd))
+    connection = socket.socket(fileno=connection_fd)
+    channel = MessageSocket[ToWorld, FromWorld](connection, ToWorld)
     try:
-        scene = channel.receive_scene()
+        number, first = channel.wait()
+        if not isinstance(first, BuildWorld):
+            return
+        scene = first.scene
         try:
             simulation = Simulation(build_cell(scene))
         except CellError as error:
-            refusal = WorldRefused(
-                message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
-            )
-            channel.report(refusal)
+            channel.send(RequestFailure.of(error), number=number)
             return
+        connection.setblocking(False)
         engine = EngineMonitor(Heartbeat(heartbeat_fd), simulation, limit_s=scene.engine_silence_s, log=log_nonblocking)
         line = StopLine(socket.socket(fileno=stop_fd[0])) if stop_fd else None
         loop = WorldLoop(
@@ -231,7 +207,7 @@ def main() -> None:
         gc.freeze()
         # A collection in mid-step would be late by milliseconds; the loop makes no cycles.
         gc.disable()
-        channel.report(WorldReady(summary=simulation.summary, fifo=fifo))
+        channel.post(WorldReady(summary=simulation.summary, fifo=fifo), number=number)
         loop.run()
     except PeerGone:
         return

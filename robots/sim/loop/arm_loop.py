@@ -74,11 +74,11 @@ class SimArmLoop:
         control = self.control
         match command:
             case FollowTrajectory():
-                control.start(command.motion, self._passage(command), command.closeness.tolerance())
+                control.start(command.motion, self._passage(command), command.tolerance)
             case TrackForce():
                 model = self.indices.model
-                tracking = ForceTracking(command.task(), limits=model.limits, joints=model.arm_joints)
-                control.start(command.motion, tracking, command.closeness.tolerance())
+                tracking = ForceTracking(command.task, limits=model.limits, joints=model.arm_joints)
+                control.start(command.motion, tracking, command.tolerance)
             case StartStream():
                 control.start(command.motion, self._listener(command), Tolerance())
             case StartGuiding():
@@ -122,11 +122,11 @@ class SimArmLoop:
         self.control.initialize(near, reflex=reflex)
 
     def _passage(self, command: FollowTrajectory) -> MotionGenerator:
-        contact, way = command.contact(), command.way.trajectory()
-        if contact is None:
-            return TrajectoryPlayback(way, acceleration_rad_s2=self._acceleration_rad_s2)
-        inner = TrajectoryPlayback(way, acceleration_rad_s2=self._acceleration_rad_s2, shortest_stop_s=GUARDED_STOP_S)
-        return GuardedMotion(inner, contact)
+        trajectory, limits = command.trajectory, self._acceleration_rad_s2
+        if command.until is None:
+            return TrajectoryPlayback(trajectory, acceleration_rad_s2=limits)
+        inner = TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, shortest_stop_s=GUARDED_STOP_S)
+        return GuardedMotion(inner, command.until)
 
     def _listener(self, command: StartStream) -> MotionGenerator:
         model, start = self.indices.model, self.control.motion.position

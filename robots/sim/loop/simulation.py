@@ -133,7 +133,7 @@ class Simulation:
                 self._qpos[self._cell.part_qpos] = self._start_poses
                 self._qvel[self._cell.part_dof] = 0.0
             case RestoreWorld():
-                self._restore(command.image())
+                self._restore(command.image)
             case StopAll() | ShutDownWorld():
                 for device in self._devices():
                     device.stop()

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from robots.port import Array
+from robots.scene.sim_scene import PersonBody
 from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.people.hand_trajectory import HandMotion, HandTrajectory, plan_hand_trajectory
 from robots.sim.physics.limb import Limb, LimbPose
-from robots.sim.scene.sim_scene import PersonBody
 
 MOTION_FIELDS = 16
 """Length of the complete state of a person's motion."""

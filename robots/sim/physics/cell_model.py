@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from engine.errors import CellError
 from engine.messages import Pose
 from robots.model.robot_model import RobotModel
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.tool_indices import ToolIndices, tool_indices
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 
 Indices = NDArray[np.intp]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from robots.model.transform import cross
 from robots.port import Array
-from robots.sim.scene.sim_scene import PersonBody
+from robots.scene.sim_scene import PersonBody
 
 BODIES = ("upper_arm", "forearm", "hand")
 """The bodies of an arm, from the shoulder on: a person's are `<person>/upper_arm` and so on."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from engine.messages import Vector3, VisualGeometry
+from robots.scene.sim_scene import PersonBody
 from robots.sim.physics.person_spec import FOREARM_SHARE, body_names
-from robots.sim.scene.sim_scene import PersonBody
 
 
 def person_geometries(person: PersonBody) -> list[VisualGeometry]:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.scene.sim_scene import FixtureBody, PersonBody
 from robots.sim.physics.limb import BODIES, Limb
 from robots.sim.physics.physics import mujoco
-from robots.sim.scene.sim_scene import FixtureBody, PersonBody
 
 FOREARM_SHARE = 0.8
 """Thickness of a forearm relative to upper arm and hand; a hand therefore touches with its ball."""

@@ -95,9 +95,10 @@ class SimArmPort:
             self._check_contact(until)
         checked = validate_trajectory(trajectory, start_rad=self._set_point(), joints=self._arm.joints)
         motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
-        return self._one.start(
-            motion, self._host, FollowTrajectory.of(self._arm.name, number, checked, tolerance, until)
+        command = FollowTrajectory(
+            arm=self._arm.name, motion=number, trajectory=checked, tolerance=tolerance, until=until
         )
+        return self._one.start(motion, self._host, command)
 
     def track_force(self, task: ForceTask, *, tolerance: Tolerance) -> SimMotion:
         """Start following a tool path under force control; the report contains a `ForceRecord`.
@@ -108,7 +109,8 @@ class SimArmPort:
         number = self._next_number()
         checked = validate_force_task(task, start_rad=self._set_point(), joints=self._arm.joints)
         motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
-        return self._one.start(motion, self._host, TrackForce.of(self._arm.name, number, checked, tolerance))
+        command = TrackForce(arm=self._arm.name, motion=number, task=checked, tolerance=tolerance)
+        return self._one.start(motion, self._host, command)
 
     def stream(self, kind: StreamKind, *, watchdog_s: float) -> SimStream:
         """Start following streamed values.

@@ -10,12 +10,12 @@ from engine.messages import Vector3
 from engine.skills.people import ContactCount, CountContacts, Reach, ReachResult, Withdraw
 from engine.suggestions import did_you_mean
 from robots.port import Array
+from robots.scene.sim_scene import PersonBody
 from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.host.world_host import WorldHost
 from robots.sim.people.hand_trajectory import HandMotion, plan_hand_trajectory
 from robots.sim.people.person_report import PersonSample
 from robots.sim.physics.limb import Limb
-from robots.sim.scene.sim_scene import PersonBody
 
 
 class PersonServices:

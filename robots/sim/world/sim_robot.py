@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from engine.robot import Robot
-from robots.gripper.grasp_check import GraspCommand
+from robots.port import GraspCommand
 
 
 class SimRobot(Robot, Protocol):

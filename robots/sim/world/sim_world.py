@@ -17,6 +17,7 @@ from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
 from engine.skills.simulated_world import PushBody, PushBodyResult, ResetParts, ResetPartsResult
 from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
+from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.commands.world_commands import PushSimBody, StopAll
 from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
 from robots.sim.grip.tool_summary import tool_summary
@@ -29,7 +30,6 @@ from robots.sim.ports.motion_registry import MotionRegistry
 from robots.sim.ports.sim_outputs import SimOutputPort
 from robots.sim.ports.sim_ports import SimArmPort
 from robots.sim.ports.tool_ports import ToolPorts
-from robots.sim.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.world.person_services import PersonServices
 from robots.sim.world.sim_robot import SimRobot, StatefulDevice, WorldDependentDevice
 from robots.sim.world.snapshot_codec import WorldImage, decode_snapshot, encode_snapshot

@@ -9,8 +9,7 @@ import msgspec
 import numpy as np
 
 from engine.errors import RobotError
-from robots.gripper.grasp_check import GraspCommand
-from robots.port import ArmSettings, Array
+from robots.port import ArmSettings, Array, GraspCommand
 from robots.sim.physics.physics import mujoco
 
 FORMAT = 2

@@ -7,8 +7,8 @@ from typing import Generic, Protocol, TypeVar
 
 from engine.bus import SkillBus, Topic
 from engine.messages import GripperState, HandState, MagnetState, Message
-from robots.gripper.hand_server import hand_state
-from robots.gripper.magnet_server import magnet_state
+from robots.port.hand_grasp_check import hand_state
+from robots.port.magnet_grasp_check import magnet_state
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
 

@@ -25,8 +25,8 @@ from engine.registry import load_states
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run, RunResult
 from robots.port import Array
+from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import ArmIndices, build_cell
-from robots.sim.scene.scene_builder import build_scene
 from tests.tiers import nightly
 
 mujoco: Any = import_module("mujoco")

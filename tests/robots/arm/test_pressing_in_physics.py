@@ -20,7 +20,7 @@ from robots.arm import ArmServer
 from robots.model.transform import RigidTransform, quaternion_of
 from robots.motion.dmp import learn_cart_dmp
 from robots.motion.min_jerk import min_jerk
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
 from robots.sim.world.sim_world import SimRobot, SimWorld, new_world
 from tests.robots.arm.simulated import Simulated
 from tests.robots.panda_arm import BASE, panda_kinematics

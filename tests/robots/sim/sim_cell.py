@@ -14,7 +14,7 @@ from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.world.sim_world import SimWorld, new_world
 from tests.tiers import nightly
 

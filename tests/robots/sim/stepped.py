@@ -44,7 +44,7 @@ class SteppedArm:
     def follow(self, goal: Array, duration_s: float, *, motion: int = 1) -> None:
         """Start a minimum-jerk motion from the set point."""
         way = smooth(self.sample.desired_rad.copy(), goal, duration_s)
-        self.apply(FollowTrajectory.of("left", motion, way, Tolerance()))
+        self.apply(FollowTrajectory(arm="left", motion=motion, trajectory=way, tolerance=Tolerance()))
 
     @property
     def sample(self) -> ArmSample:

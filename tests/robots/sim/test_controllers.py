@@ -10,9 +10,9 @@ from robots.model.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion import plan_line
 from robots.port import ArmSettings, Tolerance
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import FinishStream, FollowTrajectory, StartGuiding
 from robots.sim.physics.cell_model import CellModel, build_cell
-from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, LEFT, LIFTED, PANDA, one_arm
 from tests.robots.sim.stepped import BumpWatch, SteppedArm
 from tests.tiers import nightly
@@ -101,7 +101,7 @@ def test_a_line_is_followed_within_half_a_millimetre(cell: CellModel, settings: 
     goal = RigidTransform(xyz=start.xyz + np.array([0.1, 0.25, -0.13]), xyzw=start.xyzw)
     arm = SteppedArm(cell, settings)
     line = plan_line(kinematics.twin(), HOME, goal, duration_s=1.5)
-    arm.apply(FollowTrajectory.of("left", 1, line, Tolerance()))
+    arm.apply(FollowTrajectory(arm="left", motion=1, trajectory=line, tolerance=Tolerance()))
     along = (goal.xyz - start.xyz) / np.linalg.norm(goal.xyz - start.xyz)
     worst = 0.0
 

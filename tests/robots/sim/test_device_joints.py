@@ -11,7 +11,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.messages import JointState, Pose
 from robots.port import Tolerance
-from robots.sim.scene.sim_scene import ArmPlacement, SimScene
+from robots.scene.sim_scene import ArmPlacement, SimScene
 from tests.robots.sim.sim_cell import opened, smooth
 
 

@@ -7,9 +7,9 @@ import asyncio
 import pytest
 
 from engine.messages import Pose, Quaternion, Vector3
-from robots.gripper import GraspCommand, check_grasp
 from robots.port import GripperSample, MotionEnd, MotionReport
-from robots.sim.scene.sim_scene import PartBody, SimScene
+from robots.port.grasp_check import GraspCommand, check_grasp
+from robots.scene.sim_scene import PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 TABLE = block("table", (0.8, 0.0, 0.1), (0.8, 0.8))

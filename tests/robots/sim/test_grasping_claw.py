@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from engine.messages import Pose
-from robots.gripper import GraspCommand, check_grasp
 from robots.port import GripperSample, MotionEnd, MotionReport
-from robots.sim.scene.sim_scene import FixtureBody, PartBody
+from robots.port.grasp_check import GraspCommand, check_grasp
+from robots.scene.sim_scene import FixtureBody, PartBody
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 # The elbow swings the claw down over what stands in front of the arm, where the base joint points.

@@ -7,9 +7,9 @@ import asyncio
 import pytest
 
 from engine.messages import Pose, Vector3
-from robots.gripper import check_magnet_grasp
 from robots.port import MagnetSample, MotionEnd
-from robots.sim.scene.sim_scene import PartBody, SimScene
+from robots.port.magnet_grasp_check import check_magnet_grasp
+from robots.scene.sim_scene import PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 PEDESTAL = block("pedestal", (1.4, 0.2, 0.5), (0.4, 0.4))

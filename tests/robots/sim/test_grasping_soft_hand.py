@@ -9,9 +9,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine.messages import Pose, Quaternion
-from robots.gripper import HandGrasp, check_hand_grasp
 from robots.port import Array, HandSample, MotionEnd, MotionReport
-from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
+from robots.port.hand_grasp_check import HandGrasp, check_hand_grasp
+from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 from tests.tiers import nightly
 

@@ -9,8 +9,8 @@ import pytest
 
 from engine.messages import Vector3
 from robots.port import ArmSettings, ControllerName, MotionEnd, Tolerance
+from robots.scene.sim_scene import SimScene
 from robots.sim.physics.cell_model import CellModel, build_cell
-from robots.sim.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import LIFTED, box, grasp, move, one_arm, opened, smooth
 from tests.robots.sim.stepped import SteppedArm

@@ -14,15 +14,24 @@ import msgspec
 import pytest
 
 from engine.host.child_process import start_child
-from robots.io.framing import FrameReader, frame_message
+from robots.io.framing import frame_payload
+from robots.io.message_codec import encode_payload
+from robots.io.message_socket import MessageSocket
 from robots.port import Tolerance
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.shared_file import new_shared_file
 from robots.sim.commands.arm_commands import FollowTrajectory
-from robots.sim.host.world_report import AnyReport, WorldReady
+from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady
 from tests.robots.sim.sim_cell import HOME, one_arm, smooth
 
 _PATIENCE_S = 60.0
+
+
+def follow(motion: int) -> bytes:
+    """Return the command to follow a long motion, as a frame."""
+    trajectory = smooth(HOME, HOME + 1.0, 10.0)
+    command = FollowTrajectory(arm="left", motion=motion, trajectory=trajectory, tolerance=Tolerance())
+    return frame_payload(encode_payload(command))
 
 
 @dataclass(frozen=True)
@@ -35,8 +44,7 @@ class World:
 
     def move(self) -> None:
         """Begin a long motion and return when the arm moves."""
-        follow = FollowTrajectory.of("left", 1, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
-        self.connection.sendall(frame_message(msgspec.msgpack.encode(follow)))
+        self.connection.sendall(follow(1))
         self.until(moves=True)
 
     def until(self, *, moves: bool) -> None:
@@ -57,9 +65,10 @@ def moving_world() -> Generator[World]:
     theirs.close()
     try:
         world = World(process, ours, Heartbeat(files[-1]))
-        ours.sendall(frame_message(msgspec.msgpack.encode(one_arm())))
-        [ready] = FrameReader().feed(ours.recv(1 << 16))
-        assert isinstance(msgspec.msgpack.decode(ready, type=AnyReport), WorldReady)
+        parent = MessageSocket[FromWorld, ToWorld](ours, FromWorld)
+        parent.send(BuildWorld(scene=one_arm()), number=1)
+        number, ready = parent.wait()
+        assert (number, type(ready)) == (1, WorldReady)
         world.move()
         yield world
     finally:
@@ -74,8 +83,7 @@ def test_a_parent_that_dies_with_messages_unread_leaves_nothing_moving() -> None
     """The system then resets the connection, which is no ordinary end."""
     with moving_world() as world:
         # The refusal of a second motion stays unread.
-        follow = FollowTrajectory.of("left", 2, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
-        world.connection.sendall(frame_message(msgspec.msgpack.encode(follow)))
+        world.connection.sendall(follow(2))
         while not world.connection.recv(1, socket.MSG_PEEK):
             os.sched_yield()
         world.connection.close()
@@ -87,9 +95,9 @@ def test_a_parent_that_dies_with_messages_unread_leaves_nothing_moving() -> None
     "nonsense",
     [
         pytest.param(b"\xff" * 64, id="length"),
-        pytest.param(frame_message(msgspec.msgpack.encode({"command": "fly"})), id="unknown"),
-        pytest.param(frame_message(b"\xc1"), id="no message", marks=pytest.mark.nightly),
-        pytest.param(frame_message(b""), id="empty", marks=pytest.mark.nightly),
+        pytest.param(frame_payload(msgspec.msgpack.encode({"command": "fly"})), id="unknown"),
+        pytest.param(frame_payload(b"\xc1"), id="no message", marks=pytest.mark.nightly),
+        pytest.param(frame_payload(b""), id="empty", marks=pytest.mark.nightly),
         pytest.param(b"\x00" * 4096, id="zeros", marks=pytest.mark.nightly),
     ],
 )

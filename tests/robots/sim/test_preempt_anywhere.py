@@ -15,6 +15,7 @@ from robots.control.arm_control_loop import ArmControlLoop
 from robots.control.motion_event import MotionFinished, MotionHeld
 from robots.motion import plan_joints
 from robots.port import Admittance, ArmSettings, Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import (
     ConfigureArm,
     FinishStream,
@@ -28,7 +29,6 @@ from robots.sim.commands.arm_commands import (
 from robots.sim.commands.world_commands import CancelMotion, HoldMotion, PushSimBody
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import CellModel, build_cell
-from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim.sim_cell import HOME, LEFT, PANDA
 
 TRIALS = 30
@@ -99,13 +99,19 @@ def way(arm: WatchedArm, random_: random.Random, *, speed: float = 1.0) -> Joint
 
 
 def follow(arm: WatchedArm, random_: random.Random) -> None:
-    arm.simulation.apply(FollowTrajectory.of("left", arm.next_number(), way(arm, random_), Tolerance()))
+    arm.simulation.apply(
+        FollowTrajectory(arm="left", motion=arm.next_number(), trajectory=way(arm, random_), tolerance=Tolerance())
+    )
 
 
 def guarded(arm: WatchedArm, random_: random.Random) -> None:
     """Every other one meets something."""
     contact = ContactCondition(force_n=5.0)
-    arm.simulation.apply(FollowTrajectory.of("left", arm.next_number(), way(arm, random_), Tolerance(), contact))
+    arm.simulation.apply(
+        FollowTrajectory(
+            arm="left", motion=arm.next_number(), trajectory=way(arm, random_), tolerance=Tolerance(), until=contact
+        )
+    )
     if random_.random() < 0.5:
         arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=(0.0, 8.0, 0.0), duration_s=0.05))
 
@@ -117,7 +123,7 @@ def track_force(arm: WatchedArm, random_: random.Random) -> None:
     task = ForceTask(
         trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)), admittance=Admittance()
     )
-    arm.simulation.apply(TrackForce.of("left", arm.next_number(), task, Tolerance()))
+    arm.simulation.apply(TrackForce(arm="left", motion=arm.next_number(), task=task, tolerance=Tolerance()))
     arm.simulation.apply(
         PushSimBody(body="left/panda_hand", force_n=(0.0, 0.0, random_.uniform(-10, 10)), duration_s=0.2)
     )

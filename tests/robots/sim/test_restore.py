@@ -17,8 +17,8 @@ from engine.clock import run_virtual
 from engine.errors import RobotError
 from engine.messages import Vector3
 from robots.port import ArmSample, Array, MotionEnd, Tolerance
+from robots.scene.sim_scene import SimScene
 from robots.sim.host.lockstep_host import LockstepHost
-from robots.sim.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import (
     ABOVE_PART,

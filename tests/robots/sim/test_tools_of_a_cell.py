@@ -19,7 +19,7 @@ from engine.skills.hand import HandClose, HandOpen, ReadHand
 from engine.skills.magnet import MagnetSwitch, ReadMagnet
 from engine.skills.motion import CartTrapVel
 from robots.port import MotionEnd
-from robots.sim.scene.sim_scene import ArmPlacement, SimScene
+from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.world.sim_world import new_world
 
 CELL = """

@@ -14,7 +14,7 @@ from robots.model.inverse_kinematics import InverseKinematicsSolver
 from robots.model.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, MotionReport
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.world.sim_world import SimWorld, new_world
 from tests.robots.sim.sim_cell import move
 

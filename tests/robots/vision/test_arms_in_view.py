@@ -13,14 +13,14 @@ from robots.model.transform import RigidTransform
 from robots.planning.scene.cell_planning_scene import known_obstacles
 from robots.planning.scene.planning_scene import AttachedPart
 from robots.port import Array
+from robots.scene.sim_scene import ArmPlacement, PartBody, SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.sim_scene import ArmPlacement, PartBody, SimScene
 from robots.vision.arm_body import ArmBody
 from robots.vision.camera_rig import CameraRig
 from robots.vision.known_geometry import ArmConfiguration, KnownGeometry, MeasuredState
 from robots.vision.occupancy_mapper import OccupancyMapper
-from robots.vision.perception_messages import PerceptionRequest, state_bytes
+from robots.vision.perception_messages import PerceptionRequest
 from robots.vision.voxel_box import voxel_box
 from tests.robots.vision.watched_cell import PANDA, block, cameras, look, scene, sight, voxels
 
@@ -55,7 +55,7 @@ class Stage:
             self._q[self.cell.part_qpos] = [*part.xyz, w, x, y, z]
         image = np.zeros(self._simulation.image_layout.size)
         self._simulation.write_image(image)
-        return voxels(self.eye.look(PerceptionRequest(time_s=0.0, state=state_bytes(image), cameras=self._names)).grid)
+        return voxels(self.eye.look(PerceptionRequest(time_s=0.0, state=image, cameras=self._names)).grid)
 
 
 def postures(arm: ArmPlacement, count: int) -> Array:

@@ -12,7 +12,7 @@ from engine.errors import CellError
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import angle_between_rad
 from engine.skills.vision import Detections
-from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 from robots.vision.camera_rig import CameraRig
 from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from tests.robots.vision.watched_cell import block, cameras, look, scene

@@ -9,11 +9,11 @@ from engine.document.cell_perception import DepthCamera, OccupancyMap
 from engine.messages import Pose, Vector3
 from engine.messages.sensing import OccupancyGrid
 from robots.port import Array
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.vision.camera import CameraSpec, camera_of
-from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup, state_bytes
+from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, occupied_centres, voxel_box
 
 FLOOR = FixtureBody(name="floor", shape="box", size_m=(4.0, 4.0, 0.04), pose=Pose(xyz=(0.0, 0.0, -0.02)))
@@ -51,7 +51,7 @@ def look(what: SimScene, names: tuple[str, ...] = ("front",), *, joints: Array |
         simulation._qpos[cell.arms[0].qpos] = joints  # pyright: ignore[reportPrivateUsage]
     image = np.zeros(simulation.image_layout.size)
     simulation.write_image(image)
-    return PerceptionRequest(time_s=0.0, state=state_bytes(image), cameras=names, wanted=names)
+    return PerceptionRequest(time_s=0.0, state=image, cameras=names, wanted=names)
 
 
 def voxels(grid: OccupancyGrid | None) -> Array:

@@ -29,7 +29,7 @@ from robots.planning.request import (
 )
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
 from robots.planning.worker.inline_planner import InlinePlanner
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
 from robots.workspace.planning_services import PlanningServices

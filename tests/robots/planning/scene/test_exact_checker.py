@@ -18,7 +18,7 @@ from robots.model.registry import robot_model
 from robots.model.transform import RigidTransform
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene, SceneArm
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 
 HOME = np.array(robot_model("panda").home_rad)
 ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))

@@ -16,7 +16,7 @@ from robots.model.registry import robot_model
 from robots.planning.scene.cell_planning_scene import planning_scene
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 
 BOX = box("box", (0.1, 0.1, 0.1), (0.5, 0.0, 0.3))
 CUP = AttachedPart(name="cup", arm=ARM, solids=(Solid(shape=Sphere(radius_m=0.03)),))

@@ -11,12 +11,12 @@ from engine.errors import CellError
 from engine.messages import Pose
 from engine.messages.shapes import Box, Obstacle, Solid
 from engine.skills.planning_scene import CONTACT_M
-from robots.planning.request import AttachedPartCheckRequest, PathCheck, SampledTrajectory
+from robots.planning.request import AttachedPartCheckRequest, PathCheck
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene, SceneArm
 from robots.planning.worker.scene_planner import ScenePlanner
-from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.port import Array, JointTrajectory
+from robots.scene.sim_scene import ArmPlacement
 from tests.robots.planning.search.test_path_check import HOME, line, turned
 
 ROD = AttachedPart(
@@ -27,9 +27,9 @@ TURN = line(turned(6, -0.6), turned(6, 0.6))
 """The hand turns and the tip of the rod sweeps round; the tool centre stays where it is."""
 
 
-def check(way: SampledTrajectory, *obstacles: Obstacle, scene: PlanningScene = SCENE) -> PathCheck:
+def check(way: JointTrajectory, *obstacles: Obstacle, scene: PlanningScene = SCENE) -> PathCheck:
     return ScenePlanner().check_attached_parts(
-        AttachedPartCheckRequest(scene=scene.with_obstacles(*obstacles), arm=ARM, way=way)
+        AttachedPartCheckRequest(scene=scene.with_obstacles(*obstacles), arm=ARM, trajectory=way)
     )
 
 

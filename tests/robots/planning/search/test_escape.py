@@ -80,7 +80,7 @@ def test_a_start_within_the_margin_is_left_and_the_margin_kept_from_there_on(
     assert min(gaps[left:]) > MARGIN_M - 2e-3
     assert isinstance(answer, PathPlan)
     assert answer.timed is not None
-    assert min(gaps_along(scene, answer.timed.trajectory().position_rad[::10])[-20:]) > MARGIN_M - 2e-3
+    assert min(gaps_along(scene, answer.timed.position_rad[::10])[-20:]) > MARGIN_M - 2e-3
 
 
 def test_what_is_left_may_be_what_cameras_see() -> None:
@@ -155,7 +155,7 @@ def test_a_given_way_is_confirmed_and_timed_as_it_is() -> None:
     assert answer.waypoints_rad == (HOME, MIDDLE, AWAY)
     assert answer.stats.found_by == GIVEN_PATH
     assert answer.timed is not None
-    rows = answer.timed.trajectory().position_rad
+    rows = answer.timed.position_rad
     assert tuple(rows[0]) == HOME
     assert tuple(rows[-1]) == AWAY
     assert float(np.linalg.norm(rows - np.array(MIDDLE), axis=1).min()) < 0.06

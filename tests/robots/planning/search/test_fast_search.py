@@ -21,7 +21,7 @@ from robots.planning.search.kernels import blocked_at, gaps, tool_rotation
 from robots.planning.search.problem_compiler import compile_problem
 from robots.planning.search.search_task import SearchBudget
 from robots.port import Array
-from robots.sim.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement
 
 CORNERS = ((0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.3), (0.2, 0.2, 0.1))
 ROD = Solid(shape=Cylinder(radius_m=0.02, length_m=0.2), pose=Pose(xyz=(0.0, 0.0, 0.1)))

@@ -22,7 +22,6 @@ from robots.planning.request import (
     PathCheckRequest,
     PathPlan,
     PlanRequest,
-    SampledTrajectory,
 )
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
@@ -36,15 +35,12 @@ HOME = np.array(ExactChecker(PANDA, ARM).model.home_rad)
 SHELF = cases()[-1].request
 
 
-def line(start: Array, end: Array, *, duration_s: float = 2.0) -> SampledTrajectory:
+def line(start: Array, end: Array, *, duration_s: float = 2.0) -> JointTrajectory:
     """Return a straight way at rest at both ends, a sample each 2 ms."""
     share = np.linspace(0.0, 1.0, round(duration_s / 0.002) + 1)[:, None]
     smooth = 3.0 * share**2 - 2.0 * share**3
     rate = 6.0 * share * (1.0 - share) / duration_s
-    trajectory = JointTrajectory(
-        dt_s=0.002, position_rad=start + smooth * (end - start), velocity_rad_s=rate * (end - start)
-    )
-    return SampledTrajectory.of(trajectory)
+    return JointTrajectory(dt_s=0.002, position_rad=start + smooth * (end - start), velocity_rad_s=rate * (end - start))
 
 
 def turned(joint: int, by: float) -> Array:
@@ -54,7 +50,7 @@ def turned(joint: int, by: float) -> Array:
 
 
 def check(
-    way: SampledTrajectory,
+    way: JointTrajectory,
     *,
     scene: PlanningScene = PANDA,
     from_s: float = 0.0,
@@ -63,13 +59,13 @@ def check(
     planner: ScenePlanner = PLANNER,
 ) -> PathCheck:
     return planner.check_path(
-        PathCheckRequest(scene=scene, arm=ARM, way=way, from_s=from_s, occupancy=occupancy, margin_m=margin_m)
+        PathCheckRequest(scene=scene, arm=ARM, trajectory=way, from_s=from_s, occupancy=occupancy, margin_m=margin_m)
     )
 
 
-def first_touch_s(checker: ExactChecker, way: SampledTrajectory, from_s: float = 0.0) -> float | None:
+def first_touch_s(checker: ExactChecker, way: JointTrajectory, from_s: float = 0.0) -> float | None:
     """Return the first sample at which anything touches, by looking at all of them."""
-    for k, joints in enumerate(way.trajectory().position_rad):
+    for k, joints in enumerate(way.position_rad):
         if k * way.dt_s >= from_s and checker.in_collision(joints):
             return k * way.dt_s
     return None
@@ -99,7 +95,7 @@ def test_only_what_is_still_to_come_counts() -> None:
     checker = ExactChecker(scene, ARM)
     through_s = next(
         k * WAY.dt_s
-        for k, joints in enumerate(WAY.trajectory().position_rad)
+        for k, joints in enumerate(WAY.position_rad)
         if k * WAY.dt_s > blocked_s and not checker.in_collision(joints)
     )
     assert check(WAY, scene=scene, from_s=blocked_s + 0.1).blocked_at_s == pytest.approx(blocked_s + 0.1)
@@ -128,11 +124,11 @@ def test_what_a_brute_force_finds_in_random_clutter_is_found(seed: int, from_s: 
         return
     if found.blocked_at_s is not None:
         # No false stop, and none too late by more than the step between two looks.
-        at = way.trajectory().position_rad[round(found.blocked_at_s / way.dt_s)]
+        at = way.position_rad[round(found.blocked_at_s / way.dt_s)]
         assert checker.in_collision(at)
         assert set(found.pairs) == set(checker.colliding_pairs(at))
         assert exact_s is not None
-        between = way.trajectory().position_rad[[round(exact_s / way.dt_s), round(found.blocked_at_s / way.dt_s)]]
+        between = way.position_rad[[round(exact_s / way.dt_s), round(found.blocked_at_s / way.dt_s)]]
         assert exact_s <= found.blocked_at_s
         assert exact_s == pytest.approx(found.blocked_at_s) or _grazed(checker, way, exact_s, found.blocked_at_s), (
             between
@@ -141,9 +137,9 @@ def test_what_a_brute_force_finds_in_random_clutter_is_found(seed: int, from_s: 
         assert _grazed(checker, way, exact_s, 2.0)
 
 
-def _grazed(checker: ExactChecker, way: SampledTrajectory, first_s: float, until_s: float) -> bool:
+def _grazed(checker: ExactChecker, way: JointTrajectory, first_s: float, until_s: float) -> bool:
     """Return whether all touches in a time are so short that no point of the arm moves a step meanwhile."""
-    rows = way.trajectory().position_rad[round(first_s / way.dt_s) : round(until_s / way.dt_s)]
+    rows = way.position_rad[round(first_s / way.dt_s) : round(until_s / way.dt_s)]
     longest = run = 0.0
     for before, after in itertools.pairwise(rows):
         run = run + float(np.abs(after - before) @ checker.bound_m) if checker.in_collision(after) else 0.0
@@ -192,7 +188,7 @@ def test_an_arm_within_the_margin_may_go_away_but_not_nearer() -> None:
     scene = PANDA.with_obstacles(WALL)
     blocked_s = check(WAY, scene=scene).blocked_at_s
     assert blocked_s is not None
-    standing = WAY.trajectory().position_rad[round(blocked_s / WAY.dt_s) - 20]
+    standing = WAY.position_rad[round(blocked_s / WAY.dt_s) - 20]
     gap_m = ExactChecker(scene, ARM).clearance(standing).distance_m
     assert 0.0 < gap_m < 0.04
     away = check(line(standing, turned(0, -1.2)), scene=scene, margin_m=0.05)
@@ -201,14 +197,12 @@ def test_an_arm_within_the_margin_may_go_away_but_not_nearer() -> None:
     assert nearer.blocked_at_s is not None
     assert nearer.blocked_at_s < 0.5
     # Once it has left, the whole margin counts.
-    back = WAY.trajectory().position_rad[round(blocked_s / WAY.dt_s) - 150]
-    out, into = line(standing, back).trajectory(), line(back, standing).trajectory()
-    there = SampledTrajectory.of(
-        JointTrajectory(
-            dt_s=0.002,
-            position_rad=np.vstack((out.position_rad, into.position_rad)),
-            velocity_rad_s=np.vstack((out.velocity_rad_s, into.velocity_rad_s)),
-        )
+    back = WAY.position_rad[round(blocked_s / WAY.dt_s) - 150]
+    out, into = line(standing, back), line(back, standing)
+    there = JointTrajectory(
+        dt_s=0.002,
+        position_rad=np.vstack((out.position_rad, into.position_rad)),
+        velocity_rad_s=np.vstack((out.velocity_rad_s, into.velocity_rad_s)),
     )
     returned = check(there, scene=scene, margin_m=0.05)
     assert returned.blocked_at_s is not None

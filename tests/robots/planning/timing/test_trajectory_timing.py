@@ -134,7 +134,7 @@ def test_the_trajectory_of_a_plan_touches_nothing(title: str) -> None:
         answer = planner.plan(msgspec.structs.replace(request, seed=seed, speed=1.0))
         assert isinstance(answer, PathPlan), answer
         assert answer.timed is not None
-        trajectory = answer.timed.trajectory()
+        trajectory = answer.timed
         check_speed(checker.model.limits, checker.model.arm_joints, trajectory)
         assert np.allclose(trajectory.position_rad[[0, -1]], answer.path[[0, -1]], atol=1e-9)
         touching = [q for q in trajectory.position_rad[::4] if checker.clearance(q).distance_m < -1e-3]

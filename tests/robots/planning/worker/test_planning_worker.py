@@ -73,13 +73,13 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         block = OccupancyGrid(
             time_s=0.0, revision=1, corner_m=(0.4, -0.3, 0.3), voxel_m=0.1, shape=(2, 4, 2), occupied=b"\xff\xff"
         )
-        ways = PathCheckRequest(scene=SHELF.scene, arm=ARM, way=answer.timed, from_s=0.0, occupancy=block)
+        ways = PathCheckRequest(scene=SHELF.scene, arm=ARM, trajectory=answer.timed, from_s=0.0, occupancy=block)
         check = await planner.check_path(ways)
         assert check.blocked_at_s is not None
         assert {pair[1] for pair in check.pairs} == {"occupancy"}
         assert (await planner.check_path(msgspec.structs.replace(ways, occupancy=None))).blocked_at_s is None
         bar = AttachedPart(name="bar", arm=ARM, solids=(Solid(shape=Capsule(radius_m=0.01, length_m=2.0)),))
-        carry = AttachedPartCheckRequest(scene=SHELF.scene.with_attached(bar), arm=ARM, way=answer.timed)
+        carry = AttachedPartCheckRequest(scene=SHELF.scene.with_attached(bar), arm=ARM, trajectory=answer.timed)
         assert "bar" in (await planner.check_attached_parts(carry)).pairs[0]
         looks = CollisionRequest(scene=SHELF.scene, arm=ARM, joints_rad=SHELF.start_rad, occupancy=block)
         look = await planner.look(looks)
@@ -159,7 +159,7 @@ def test_in_virtual_time_planning_is_inline_takes_the_time_of_its_work_and_repea
             found += [answer.waypoints_rad, clock.now_s()]
             assert 0.004 < clock.now_s() < 0.1
             assert answer.timed is not None
-            ways = PathCheckRequest(scene=SHELF.scene, arm=ARM, way=answer.timed, from_s=0.0)
+            ways = PathCheckRequest(scene=SHELF.scene, arm=ARM, trajectory=answer.timed, from_s=0.0)
             before_s = clock.now_s()
             found.append(await planner.check_path(ways))
             assert clock.now_s() - before_s == pytest.approx(LOOK_FIXED_S)

@@ -23,8 +23,8 @@ from engine.messages import Pose
 from engine.robot import DeviceStatus
 from robots.port import MotionEnd, Tolerance
 from robots.port.heartbeat import Heartbeat
+from robots.scene.sim_scene import FixtureBody, SimScene
 from robots.sim.host.process_host import ProcessHost
-from robots.sim.scene.sim_scene import FixtureBody, SimScene
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until, watched
 
@@ -251,7 +251,7 @@ def test_the_world_ends_when_its_parent_is_killed() -> None:
     script = (
         "import asyncio\n"
         "from robots.sim.host.process_host import ProcessHost\n"
-        "from robots.sim.scene.sim_scene import SimScene\n"
+        "from robots.scene.sim_scene import SimScene\n"
         "from robots.sim.world.sim_world import SimWorld\n"
         "async def main():\n"
         "    host = ProcessHost(SimScene())\n"

@@ -4,63 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 
-import msgspec
 import numpy as np
 import pytest
 
-from robots.control.motion_event import MotionFinished
-from robots.io.framed_socket import PeerGone
-from robots.io.framing import FrameReader, frame_message
 from robots.port import MotionEnd, Tolerance
-from robots.sim.commands.world_commands import CancelMotion, StopAll
 from robots.sim.host.process_host import ProcessHost
-from robots.sim.host.process_main import CommandChannel
-from robots.sim.host.world_report import AnyReport
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until, watched
-
-
-def end_of(motion: int) -> MotionFinished:
-    """Return the end of a motion that recorded much."""
-    return MotionFinished(motion=motion, end="reached", progress=1.0, data=bytes(100_000))
-
-
-def test_reports_to_a_parent_that_does_not_listen_are_kept_in_order_and_nothing_waits() -> None:
-    """Far more than the socket holds; each comes whole once there is somebody."""
-    ours, theirs = socket.socketpair()
-    theirs.setblocking(False)
-    with ours, theirs:
-        channel = CommandChannel(theirs)
-        for number in range(1, 41):
-            channel.report(end_of(number))
-        reader, heard = FrameReader(), list[int]()
-        while len(heard) < 40:
-            for message in reader.feed(ours.recv(1 << 16)):
-                report = msgspec.msgpack.decode(message, type=AnyReport)
-                assert isinstance(report, MotionFinished)
-                heard.append(report.motion)
-            channel.flush()
-        assert heard == list(range(1, 41))
-
-
-def test_commands_that_came_in_pieces_are_taken_once_they_are_whole_and_their_end_is_told() -> None:
-    ours, theirs = socket.socketpair()
-    theirs.setblocking(False)
-    with theirs:
-        channel = CommandChannel(theirs)
-        sent = frame_message(msgspec.msgpack.encode(CancelMotion(motion=7))) + frame_message(
-            msgspec.msgpack.encode(StopAll())
-        )
-        taken = [channel.commands()]
-        for piece in (sent[:3], sent[3:-1], sent[-1:]):
-            ours.sendall(piece)
-            taken.append(channel.commands())
-        assert taken == [[], [], [CancelMotion(motion=7)], [StopAll()]]
-        ours.close()
-        with pytest.raises(PeerGone):
-            channel.commands()
 
 
 async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> None:

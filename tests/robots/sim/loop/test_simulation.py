@@ -39,7 +39,7 @@ def test_a_step_of_the_set_point_settles_without_much_overshoot() -> None:
     simulation = Simulation(build_cell(one_arm()))
     goal = HOME + 0.02
     jump = smooth(HOME, goal, 0.002)
-    simulation.apply(FollowTrajectory.of("left", 1, jump, Tolerance(path_rad=1.0)))
+    simulation.apply(FollowTrajectory(arm="left", motion=1, trajectory=jump, tolerance=Tolerance(path_rad=1.0)))
     peak = np.full(7, -np.inf)
     for _ in range(300):
         simulation.step()
@@ -53,7 +53,9 @@ def test_a_step_of_the_set_point_settles_without_much_overshoot() -> None:
 def test_a_trajectory_is_tracked_within_two_milliradians() -> None:
     """The inertia along the set point is fed forward."""
     simulation = Simulation(build_cell(one_arm()))
-    simulation.apply(FollowTrajectory.of("left", 1, smooth(HOME, ABOVE_PART, 1.2), Tolerance()))
+    simulation.apply(
+        FollowTrajectory(arm="left", motion=1, trajectory=smooth(HOME, ABOVE_PART, 1.2), tolerance=Tolerance())
+    )
     worst = 0.0
     while simulation.busy:
         simulation.step()
@@ -67,7 +69,9 @@ def test_equal_commands_give_equal_bits() -> None:
 
     def run() -> str:
         simulation = Simulation(build_cell(two_arms(box("a"), box("b", (0.09, -0.28, 0.05)))))
-        simulation.apply(FollowTrajectory.of("left", 1, smooth(HOME, ABOVE_PART, 1.0), Tolerance()))
+        simulation.apply(
+            FollowTrajectory(arm="left", motion=1, trajectory=smooth(HOME, ABOVE_PART, 1.0), tolerance=Tolerance())
+        )
         steps(simulation, 400)
         simulation.apply(CancelMotion(motion=1))
         steps(simulation, 400)

@@ -7,12 +7,12 @@ import numpy as np
 
 from engine.messages import Vector3
 from robots.port import Array
+from robots.scene.sim_scene import PersonBody, SimScene
 from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.people.person_report import PersonSample
 from robots.sim.physics.cell_model import CellModel
-from robots.sim.scene.sim_scene import PersonBody, SimScene
 
 ANNA = PersonBody(name="anna", shoulder=(0.0, -0.65, 0.45), hand_rests=(0.0, -0.6, 0.15))
 REST = np.array(ANNA.hand_rests)

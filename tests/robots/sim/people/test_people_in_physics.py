@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from robots.scene.sim_scene import PersonBody
 from robots.sim.commands.world_commands import RestoreWorld
 from robots.sim.physics.cell_model import CellModel, build_cell
-from robots.sim.scene.sim_scene import PersonBody
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, REST, SteppedPerson, with_anna
 from tests.robots.sim.sim_cell import box, one_arm
 
@@ -153,7 +153,7 @@ def test_an_image_holds_what_a_person_does_and_has_touched(cell: CellModel) -> N
         if lived_before:
             person.reach(OVER_TABLE, stay_s=0.0)
             person.run(0.333)
-        person.simulation.apply(RestoreWorld.of(image))
+        person.simulation.apply(RestoreWorld(image=image))
         assert person.sample.count == lost.count
         assert person.sample.arrives_in_s == lost.arrives_in_s
         assert (person.sample.hand.xyz == lost.hand.xyz).all()

@@ -8,10 +8,10 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from robots.scene.sim_scene import SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.fingerprint import fingerprint
-from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim.sim_cell import PANDA, box, one_arm, two_arms
 
 SCENE = one_arm(box("part"))

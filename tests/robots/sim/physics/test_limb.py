@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from robots.port import Array
+from robots.scene.sim_scene import PersonBody
 from robots.sim.physics.limb import Limb
-from robots.sim.scene.sim_scene import PersonBody
 
 PERSON = PersonBody(name="anna", shoulder=(0.1, -0.2, 0.3), hand_rests=(0.1, 0.1, 0.2))
 SHOULDER = np.array(PERSON.shoulder)

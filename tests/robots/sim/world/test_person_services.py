@@ -15,7 +15,7 @@ from engine.clock import new_clock, run_virtual
 from engine.errors import NoSuchSkill, SkillFailed
 from engine.messages import FramePoses, SceneDescription, Vector3
 from engine.skills.people import CountContacts, Reach, Withdraw
-from robots.sim.scene.sim_scene import SimScene
+from robots.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, with_anna
 from tests.robots.sim.sim_cell import TABLE, both_hosts_nightly, one_arm, opened, until

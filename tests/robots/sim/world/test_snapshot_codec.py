@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.errors import RobotError
-from robots.gripper.grasp_check import GraspCommand
-from robots.port import ArmSettings
+from robots.port import ArmSettings, GraspCommand
 from robots.sim.world.snapshot_codec import FORMAT, WorldImage, decode_snapshot, encode_snapshot
 
 NUMBERS = np.arange(40.0) / 3.0

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from robots.port import HandSample
+from engine.messages import HandState
+from robots.port.hand import HandSample
 
 _UNKNOWN = "?"
 _OPEN_SHARE = 0.01
@@ -39,3 +40,15 @@ def check_hand_grasp(sample: HandSample, *, max_force_n: float) -> HandGrasp:
         if (thumb in meant or palm in meant) and any(finger in meant for finger in fingers):
             return HandGrasp(part=body)
     return HandGrasp(reason=f"the fingers touch {words} at {closed}, but neither thumb nor palm opposes them")
+
+
+def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
+    """Return the state of a hand in a measurement, with its grasp re-evaluated."""
+    part = check_hand_grasp(sample, max_force_n=max_force_n).part
+    return HandState(
+        time_s=sample.time_s,
+        closed_percent=100.0 * sample.closed_share,
+        force_n=sample.force_n,
+        held=bool(part),
+        part=part,
+    )

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.messages import Pose
-from robots.sim.scene.jitter import jitter_pose
+from robots.scene.jitter import jitter_pose
 
 AT = Pose(xyz=(0.1, -0.2, 0.3))
 

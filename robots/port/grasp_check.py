@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from robots.port import GripperSample
+from robots.port.gripper import GripperSample
 
 # In motion the pad force oscillates about the commanded one.
 FORCE_SHARE = 0.5

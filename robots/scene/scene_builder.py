@@ -11,8 +11,8 @@ from engine.document.cell import CellDocument, Fixture, RobotSpec
 from engine.document.cell_perception import Person
 from engine.errors import CellError
 from robots.model.registry import model_location
-from robots.sim.scene.jitter import jitter_pose
-from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, SimScene
+from robots.scene.jitter import jitter_pose
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, SimScene
 
 Resolve = Callable[[str], Path]
 

@@ -9,8 +9,8 @@ import pytest
 
 from engine.document.cell import CellDocument, Fixture, GripperSpec, Spring, load_cell
 from engine.errors import CellError
+from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
-from robots.sim.scene.scene_builder import build_scene
 
 CELL = Path(__file__).parents[4] / "behaviors" / "cells" / "dual_panda.yaml"
 
