@@ -24,7 +24,7 @@ SPANS = {
     "engine.cli.run:new_plan": "plan",
     "engine.cell.open_cell:OpenCell.__aenter__": "open the cell",
     "robots.sim.host.lockstep_host:LockstepHost.advance": "simulated seconds",
-    "robots.arm.arm_planner:ArmPlanner._run": "plan motions",
+    "robots.arm.execution.arm_planner:ArmPlanner._run": "plan motions",
 }
 """What is timed: module and function, as their callers look it up, and the name of its span."""
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from engine.messages import Pose
 from robots.control.motion_event import MotionFinished
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, quaternion_of
 from robots.motion.cart_line import plan_line
 from robots.motion.min_jerk import PEAK_SPEED

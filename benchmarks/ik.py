@@ -24,7 +24,7 @@ from benchmarks.comparison import machine
 from benchmarks.ik_arms import Request, arms, requests, solves
 from benchmarks.peers.ik_solvers import Solver, damped_least_squares, eaik, flexcell, pink
 from benchmarks.peers.python_descents import PythonDescents
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 
 _SLOW_SHARE = 10
 _LOADING = """

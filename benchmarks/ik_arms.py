@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import ARMS_DIR, robot_model
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform

@@ -11,10 +11,10 @@ import time
 
 import numpy as np
 
-from robots.model.calibration import load_calibration, transform
-from robots.model.collision_model import CollisionModel
-from robots.model.dynamics import ArmDynamics
-from robots.model.kinematics import ArmKinematics
+from robots.model.folder.calibration import load_calibration, transform
+from robots.model.mechanics.collision_model import CollisionModel
+from robots.model.mechanics.dynamics import ArmDynamics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import ARMS_DIR, robot_model, robot_names, tool_names
 from robots.model.transform import RigidTransform
 from robots.port import Array

@@ -11,15 +11,15 @@ import time
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.control.force_tracking import ForceTracking
-from robots.control.guarded_motion import GuardedMotion
-from robots.control.guiding import GuidingGenerator
-from robots.control.joint_jogging import JointJogGenerator
-from robots.control.joint_streaming import JointStreamGenerator
-from robots.control.motion_generator import MotionGenerator, StreamGenerator
-from robots.control.tool_jogging import ToolJogGenerator
-from robots.control.trajectory_playback import TrajectoryPlayback
-from robots.model.kinematics import ArmKinematics
+from robots.control.force.force_tracking import ForceTracking
+from robots.control.generators.guarded_motion import GuardedMotion
+from robots.control.generators.guiding import GuidingGenerator
+from robots.control.generators.joint_jogging import JointJogGenerator
+from robots.control.generators.joint_streaming import JointStreamGenerator
+from robots.control.generators.motion_generator import MotionGenerator, StreamGenerator
+from robots.control.generators.tool_jogging import ToolJogGenerator
+from robots.control.generators.trajectory_playback import TrajectoryPlayback
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import model_by_name
 from robots.model.transform import RigidTransform
 from robots.port import Array, ContactCondition, ForceTask, JointTrajectory

@@ -20,7 +20,7 @@ import numpy as np
 from benchmarks.comparison import machine
 from benchmarks.peers import movement_primitives as peer
 from engine.messages.demonstrations import Trajectory
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import model_by_name
 from robots.model.transform import RigidTransform
 from robots.motion.dmp import (

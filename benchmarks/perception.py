@@ -31,12 +31,12 @@ from engine.messages.sensing import OccupancyState
 from robots.port import Array
 from robots.sim.host.process_host import ProcessHost
 from robots.sim.world.sim_world import SimWorld
-from robots.vision.arm_body import ArmBody
 from robots.vision.camera_process import CameraProcess
 from robots.vision.camera_rig import CameraRig
-from robots.vision.depth_renderer import VARIABLE
+from robots.vision.cameras.depth_renderer import VARIABLE
 from robots.vision.known_geometry import ArmConfiguration
-from robots.vision.occupancy_kernels import INSIDE, NEAR, stamp_balls
+from robots.vision.occupancy.arm_body import ArmBody
+from robots.vision.occupancy.occupancy_kernels import INSIDE, NEAR, stamp_balls
 from robots.vision.perception_messages import PerceptionResult
 from robots.vision.real_time_perception import RealTimePerception
 from robots.vision.voxel_box import VoxelBox, occupied_centres

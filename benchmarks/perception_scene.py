@@ -20,7 +20,7 @@ from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 from robots.sim.physics.limb import Limb
 from robots.sim.physics.person_spec import FOREARM_SHARE
-from robots.vision.camera import camera_of
+from robots.vision.cameras.camera import camera_of
 from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, voxel_box
 

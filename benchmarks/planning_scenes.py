@@ -11,7 +11,7 @@ from engine.errors import RobotError
 from engine.messages import Pose
 from engine.messages.shapes import Box, Cylinder, Obstacle, Sphere
 from robots.model.inverse_kinematics import InverseKinematicsSolver
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.planning.request import JointGoal, PlanRequest
 from robots.planning.scene.exact_checker import ExactChecker

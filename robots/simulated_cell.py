@@ -9,7 +9,7 @@ from engine.clock import Clock
 from engine.document.cell import Cell
 from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
-from robots.arm.output_services import OutputServices
+from robots.arm.services.output_services import OutputServices
 from robots.model.robot_model import RobotModel
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement, SimScene

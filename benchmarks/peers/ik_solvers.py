@@ -12,8 +12,8 @@ import numpy as np
 from engine.errors import RobotError
 from robots.model.inverse_kinematics import InverseKinematicsSolver, pose_error, weighted_step
 from robots.model.inverse_kinematics.chain import chain_of, matrix_of
-from robots.model.kinematics import ArmKinematics
-from robots.model.pinocchio_model import arm_model, pin
+from robots.model.mechanics.kinematics import ArmKinematics
+from robots.model.mechanics.pinocchio_model import arm_model, pin
 from robots.model.transform import RigidTransform
 from robots.port import Array
 

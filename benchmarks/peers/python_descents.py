@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.model.inverse_kinematics import ANGLE_TOLERANCE_RAD, POSITION_TOLERANCE_M, pose_error, weighted_step
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 

@@ -10,9 +10,9 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected
 from engine.skills.contact import ContactResult, MoveUntilContact
 from engine.skills.motion import CartMotionFeedback
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.tool_frames import WORLD
-from robots.arm.trajectory_goal import publish_pose_feedback
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.tool_frames import WORLD
+from robots.arm.execution.trajectory_goal import publish_pose_feedback
 from robots.model.transform import RigidTransform
 from robots.motion.min_jerk import PEAK_SPEED
 from robots.port import Array, ContactCondition, JointTrajectory, Motion

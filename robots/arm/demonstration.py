@@ -6,8 +6,8 @@ from typing import Any
 
 from engine.bus import ActiveGoal, GoalStatus
 from engine.messages.demonstrations import Trajectory
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.tool_frames import WORLD
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.tool_frames import WORLD
 
 MOST_SAMPLES = 30_000
 """Maximum number of samples that fit into one entry of the store."""

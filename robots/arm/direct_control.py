@@ -8,8 +8,8 @@ from engine.bus import SkillBus
 from engine.errors import RobotError
 from engine.skills.direct_control import JointCommand, SwitchDirectControl
 from engine.skills.switch_result import SwitchResult
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.validate_numbers import are_numbers
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.validate_numbers import are_numbers
 from robots.port import MotionEnd, MotionStream
 
 _log = logging.getLogger("flexcell.arm")

@@ -18,10 +18,10 @@ from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnedCartDmp, L
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from engine.store.entry_kinds import decode_entry
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.tool_frames import WORLD
-from robots.arm.trajectory_goal import follow_joints, follow_tool
-from robots.model.kinematics import ArmKinematics
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.tool_frames import WORLD
+from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion.dmp import learn_cart_dmp, learn_joint_dmp, plan_cart_dmp, plan_joint_dmp
 from robots.port import Array, JointTrajectory

@@ -10,8 +10,8 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.messages.primitives import CartOffsets
 from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult, Compliance
 from robots.arm.dmp_motions import frame_of
-from robots.arm.motion_runner import MotionRunner
-from robots.model.kinematics import ArmKinematics
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, plan_cart_dmp, wrench_at
 from robots.motion.dmp.quaternions import of_matrix
 from robots.port import Admittance, Array, ForceRecord, ForceTask, Motion

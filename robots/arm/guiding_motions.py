@@ -12,8 +12,8 @@ from engine.skills.entries import WriteEntry
 from engine.skills.guiding import FinishGuiding, FinishGuidingResult, GuideArm, GuideFeedback, GuideResult
 from engine.store.limits import verify_name
 from robots.arm.demonstration import MOST_SAMPLES, DemonstrationRecorder
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.stream_deadline import StreamDeadline
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.stream_deadline import StreamDeadline
 from robots.port import MotionStream
 
 _STORE, _KIND = "store", "trajectory"

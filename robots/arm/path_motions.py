@@ -19,9 +19,9 @@ from engine.skills.motion import (
     JointMotionResult,
     JointTrapVel,
 )
-from robots.arm.motion_runner import MotionRunner
-from robots.arm.tool_frames import WORLD
-from robots.arm.trajectory_goal import follow_joints, follow_tool
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.tool_frames import WORLD
+from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
 from robots.model.inverse_kinematics import PoseMatch
 from robots.model.transform import RigidTransform
 from robots.port import Array, JointTrajectory

@@ -1,1 +1,1 @@
-"""Control laws that run at every step: impedance on gravity and Coriolis compensation, playback, fingers."""
+"""What runs in every control period: set points, torques, the collision reflex, the drives of tools."""

@@ -10,16 +10,16 @@ from msgspec.structs import replace
 
 from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
-from robots.control.cartesian_impedance import CartesianImpedance
 from robots.control.collision_reflex import CollisionReflex
-from robots.control.controller import Controller
-from robots.control.gravity_compensation import GravityCompensation
-from robots.control.joint_impedance import JointImpedance, nominal_stiffness_nm_rad
+from robots.control.generators.motion_generator import MotionGenerator
+from robots.control.laws.cartesian_impedance import CartesianImpedance
+from robots.control.laws.controller import Controller
+from robots.control.laws.gravity_compensation import GravityCompensation
+from robots.control.laws.joint_impedance import JointImpedance, nominal_stiffness_nm_rad
+from robots.control.laws.torque_blend import TorqueBlend
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTripped
 from robots.control.motion_executor import MotionExecutor
-from robots.control.motion_generator import MotionGenerator
-from robots.control.torque_blend import TorqueBlend
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import ArmSettings, Array, ControllerName, MotionEnd, Tolerance
 

@@ -11,7 +11,7 @@ from robots.port import Array
 
 
 class ToolKinematics(Protocol):
-    """The kinematics a control loop needs; `robots.model.kinematics.ArmKinematics` implements it."""
+    """The kinematics a control loop needs; `robots.model.mechanics.kinematics.ArmKinematics` implements it."""
 
     @property
     def dof(self) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, cross
 from robots.port import ArmSettings, Array
 

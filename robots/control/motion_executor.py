@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.control.arm_state import ArmState
+from robots.control.generators.motion_generator import MotionGenerator, StreamGenerator
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
-from robots.control.motion_generator import MotionGenerator, StreamGenerator
 from robots.port import Array, MotionEnd, Tolerance
 
 _REST_RAD_S = 0.01

@@ -10,8 +10,8 @@ from pathlib import Path
 from engine.document.cell import RobotSpec
 from engine.errors import CellError
 from engine.suggestions import did_you_mean
-from robots.model.composition import compose
-from robots.model.model_folder import ROBOT_FILE, TOOL_FILE, load_arm, load_tool
+from robots.model.folder.composition import compose
+from robots.model.folder.model_folder import ROBOT_FILE, TOOL_FILE, load_arm, load_tool
 from robots.model.robot_model import RobotModel
 
 ARMS_DIR = Path(__file__).parents[1] / "arms"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import RobotError
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, conjugate, product, rotation_vector
 from robots.motion.joint_checks import check_duration, check_speed
 from robots.motion.min_jerk import PEAK_SPEED, min_jerk

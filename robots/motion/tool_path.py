@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.model.inverse_kinematics import SINGULAR, InverseKinematicsSolver, weighted_step
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion.joint_checks import check_range
 from robots.port import Array

@@ -8,14 +8,14 @@ from engine.errors import CellError
 from engine.messages.sensing import DepthImage, OccupancyGrid
 from engine.skills.vision import Detections
 from robots.planning.scene.cell_planning_scene import known_obstacles
-from robots.vision.camera import CameraSpec
-from robots.vision.depth_image import frame_number, measured_image
-from robots.vision.depth_renderer import new_depth_renderer
+from robots.vision.cameras.camera import CameraSpec
+from robots.vision.cameras.depth_image import frame_number, measured_image
+from robots.vision.cameras.depth_renderer import new_depth_renderer
+from robots.vision.cameras.physics_copy import PhysicsCopy
+from robots.vision.detection.part_detector import PartDetector
 from robots.vision.known_geometry import ArmConfiguration, KnownGeometry, MeasuredState
-from robots.vision.occupancy_mapper import OccupancyMapper
-from robots.vision.part_detector import PartDetector
+from robots.vision.occupancy.occupancy_mapper import OccupancyMapper
 from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
-from robots.vision.physics_copy import PhysicsCopy
 
 
 class CameraRig:

@@ -8,8 +8,8 @@ from engine.suggestions import did_you_mean
 from robots.scene.sim_scene import SimScene
 from robots.sim.host.lockstep_host import LockstepHost
 from robots.sim.world.sim_world import SimWorld
-from robots.vision.camera import camera_of
-from robots.vision.depth_renderer import check_depth_setting
+from robots.vision.cameras.camera import camera_of
+from robots.vision.cameras.depth_renderer import check_depth_setting
 from robots.vision.lockstep_perception import LockstepPerception
 from robots.vision.perception_messages import PerceptionSetup
 from robots.vision.real_time_perception import RealTimePerception

@@ -14,11 +14,11 @@ from engine.robot import DeviceStatus
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
 from robots.sim.world.sim_world import SimWorld
-from robots.vision.camera import CameraSpec
-from robots.vision.detection_service import DetectionService
+from robots.vision.cameras.camera import CameraSpec
+from robots.vision.detection.detection_service import DetectionService
 from robots.vision.known_geometry import KnownGeometry
-from robots.vision.occupancy_map import LiveOccupancyMap
-from robots.vision.occupancy_source import Unsubscribe
+from robots.vision.occupancy.occupancy_map import LiveOccupancyMap
+from robots.vision.occupancy.occupancy_source import Unsubscribe
 from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
 
 PROCESSING_S = 0.03

@@ -8,7 +8,7 @@ from engine.messages.sensing import DepthImage, OccupancyGrid
 from engine.skills.vision import Detections
 from robots.port import Array
 from robots.scene.sim_scene import SimScene
-from robots.vision.camera import CameraSpec
+from robots.vision.cameras.camera import CameraSpec
 from robots.vision.voxel_box import VoxelBox
 
 

@@ -9,8 +9,8 @@ from typing import Self
 from engine.errors import CellError, FlexcellError, RobotError
 from engine.robot import DeviceStatus
 from robots.sim.world.sim_world import SimWorld
-from robots.vision.camera import CameraSpec
 from robots.vision.camera_process import CameraProcess
+from robots.vision.cameras.camera import CameraSpec
 from robots.vision.perception_device import PerceptionDevice
 from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
 

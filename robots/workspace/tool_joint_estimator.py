@@ -11,7 +11,7 @@ import numpy as np
 
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform, product, quaternion_of
-from robots.model.urdf_tree import ends_of, joints_of
+from robots.model.urdf.urdf_tree import ends_of, joints_of
 from robots.port import Array
 
 

@@ -31,7 +31,7 @@ from engine.skills.planning_scene import (
 from robots.planning.request import CollisionRequest
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
-from robots.vision.occupancy_source import OccupancySource
+from robots.vision.occupancy.occupancy_source import OccupancySource
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
 from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices

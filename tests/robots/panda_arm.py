@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from robots.model import RobotModel, model_by_name
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, JointTrajectory
 

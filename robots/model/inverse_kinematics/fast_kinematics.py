@@ -12,7 +12,7 @@ from robots.model.inverse_kinematics.chain import KinematicChain, chain_of
 from robots.model.inverse_kinematics.failure_reason import DescentAttempt
 from robots.model.inverse_kinematics.ideal_arm import IdealArm, ideal_arm
 from robots.model.inverse_kinematics.pose_match import PoseMatch
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.port import Array
 
 # The compiled loops are imported inside the functions that run them: numba takes a third of a second to import,

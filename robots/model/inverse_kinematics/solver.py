@@ -18,7 +18,7 @@ from robots.model.inverse_kinematics.failure_reason import DescentAttempt, unrea
 from robots.model.inverse_kinematics.fast_kinematics import FastKinematics, is_solved, new_fast_kinematics
 from robots.model.inverse_kinematics.pose_match import PoseMatch
 from robots.model.inverse_kinematics.solutions import SolutionSet, distinct, soonest_first, with_turns
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 

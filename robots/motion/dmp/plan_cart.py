@@ -10,7 +10,7 @@ import numpy as np
 from engine.errors import RobotError
 from engine.messages.primitives import CartDmp
 from robots.model.inverse_kinematics import pose_error
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion.cart_line import spline_trajectory
 from robots.motion.dmp.boundary_conditions import END_SHARE, ENDS, START_SHARE, fade, fade_in, is_negligible

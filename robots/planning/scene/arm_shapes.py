@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from robots.model.collision_model import CollisionModel
+from robots.model.mechanics.collision_model import CollisionModel
 from robots.model.robot_model import RobotModel
 from robots.planning.scene.coal_shapes import coal, pin
 

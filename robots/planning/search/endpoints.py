@@ -9,7 +9,7 @@ import numpy as np
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from robots.model.inverse_kinematics import InverseKinematicsSolver, PoseMatch
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.planning.request import JointGoal, PathGoal, PathOrientationConstraint, PlanRefusal, PlanRequest, PoseGoal
 from robots.planning.scene.compiled_problem import FREE, FULL, TILT, CompiledProblem

@@ -12,7 +12,7 @@ from engine.errors import RobotError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, TargetViolation
 from robots.model.inverse_kinematics import InverseKinematicsSolver, PoseMatch
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.planning.scene.cell_planning_scene import planning_scene
 from robots.planning.scene.exact_checker import ExactChecker

@@ -10,8 +10,8 @@ import msgspec
 import numpy as np
 
 from engine.messages.shapes import Shape
-from robots.model.mesh_cache import cache_dir, content_key, read_cached, write_cached
 from robots.model.transform import RigidTransform
+from robots.model.urdf.mesh_cache import cache_dir, content_key, read_cached, write_cached
 from robots.planning.scene.convex_shapes import ConvexSolid, convex_solid, to_frame
 from robots.port import Array
 

@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from robots.control.finger_servo import FingerCommand, FingerServo
 from robots.control.motion_event import AnyMotionEvent
+from robots.control.tool_drives.finger_servo import FingerCommand, FingerServo
 from robots.port import Array
 from robots.sim.commands.world_commands import CloseFingers, ToolCommand
 from robots.sim.physics.contacts import ContactReader

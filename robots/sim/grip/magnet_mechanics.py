@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robots.control.magnet_drive import MagnetCommand, MagnetDrive
 from robots.control.motion_event import AnyMotionEvent
+from robots.control.tool_drives.magnet_drive import MagnetCommand, MagnetDrive
 from robots.port import Array
 from robots.sim.commands.world_commands import SwitchMagnet, ToolCommand
 from robots.sim.physics.contacts import ContactReader

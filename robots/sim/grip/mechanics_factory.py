@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robots.control.finger_servo import FingerServo
+from robots.control.tool_drives.finger_servo import FingerServo
 from robots.sim.grip.finger_mechanics import FingerMechanics, SlidingGear, TurningGear
 from robots.sim.grip.magnet_mechanics import MagnetMechanics
 from robots.sim.grip.mechanics import ToolMechanics

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.control.motion_event import AnyMotionEvent
-from robots.control.tendon_servo import TendonCommand, TendonServo
+from robots.control.tool_drives.tendon_servo import TendonCommand, TendonServo
 from robots.sim.commands.world_commands import CloseHand, ToolCommand
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics

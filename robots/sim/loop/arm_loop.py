@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_control_loop import ArmControlLoop
-from robots.control.force_tracking import ForceTracking
-from robots.control.guarded_motion import GUARDED_STOP_S, GuardedMotion
-from robots.control.guiding import GuidingGenerator
-from robots.control.joint_jogging import JointJogGenerator
-from robots.control.joint_streaming import JointStreamGenerator
+from robots.control.force.force_tracking import ForceTracking
+from robots.control.generators.guarded_motion import GUARDED_STOP_S, GuardedMotion
+from robots.control.generators.guiding import GuidingGenerator
+from robots.control.generators.joint_jogging import JointJogGenerator
+from robots.control.generators.joint_streaming import JointStreamGenerator
+from robots.control.generators.motion_generator import MotionGenerator
+from robots.control.generators.tool_jogging import ToolJogGenerator
+from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.control.motion_event import AnyMotionEvent
-from robots.control.motion_generator import MotionGenerator
-from robots.control.tool_jogging import ToolJogGenerator
-from robots.control.trajectory_playback import TrajectoryPlayback
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, Tolerance
 from robots.sim.commands.arm_commands import (

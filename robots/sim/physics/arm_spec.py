@@ -10,8 +10,8 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
-from robots.model.description import resolve_uri
 from robots.model.robot_model import RobotModel
+from robots.model.urdf.description import resolve_uri
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.tool_spec import add_motor, finish_tool
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from engine.messages import Pose, SceneDescription, VisualGeometry
 from engine.messages.pose_algebra import compose_poses
-from robots.model.visual_mesh import LinkVisual, link_visuals
+from robots.model.urdf.visual_mesh import LinkVisual, link_visuals
 from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 from robots.sim.physics.cell_model import tray_boxes
 from robots.sim.physics.person_drawing import person_geometries

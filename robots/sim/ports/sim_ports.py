@@ -8,9 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.errors import RobotError
-from robots.control.force_task_validation import validate_force_task
-from robots.control.settings_validation import validate_settings
-from robots.control.trajectory_playback import validate_trajectory
+from robots.control.force.force_task_validation import validate_force_task
+from robots.control.generators.trajectory_playback import validate_trajectory
+from robots.control.laws.settings_validation import validate_settings
 from robots.model.robot_model import JointLimits
 from robots.port import (
     ArmSample,

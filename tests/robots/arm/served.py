@@ -15,7 +15,7 @@ from engine.skill import Action
 from engine.skills.arm_control import ArmMode, ReadArm
 from engine.skills.motion import JointTrapVel
 from robots.arm import ArmServer
-from robots.arm.output_services import OutputServices
+from robots.arm.services.output_services import OutputServices
 from robots.model import RobotModel
 from tests.robots.fake_port import FakeArmPort, FakeStream
 from tests.robots.panda_arm import BASE, home, panda_model

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.control.motion_generator import MotionGenerator
+from robots.control.generators.motion_generator import MotionGenerator
 from robots.port import Array
 from tests.robots.control.plane_arm import plane_state
 

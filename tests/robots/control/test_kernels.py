@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.control.cholesky import solve_positive_definite
+from robots.control.force.cholesky import solve_positive_definite
 from robots.control.kernels import impedance_torque, interpolate_setpoint, pose_error, solve_in_place
 from robots.model.transform import RigidTransform, conjugate, product, quaternion_of, rotation_vector
 from robots.port import Array

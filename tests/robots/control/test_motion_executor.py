@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.control.motion_executor import MotionExecutor
-from robots.control.trajectory_playback import TrajectoryPlayback
 from robots.port import Array, JointTrajectory, Tolerance
 from tests.robots.control.plane_arm import plane_state
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from engine.errors import CellError, DocumentError
-from robots.model.mesh_file import MAX_BYTES, MAX_TRIANGLES, verify_mesh_file
 from robots.model.registry import robot_model
-from robots.model.urdf_validation import MAX_LINKS
-from tests.robots.model.test_model_folder import BODY, ROBOT, URDF, written
+from robots.model.urdf.mesh_file import MAX_BYTES, MAX_TRIANGLES, verify_mesh_file
+from robots.model.urdf.urdf_validation import MAX_LINKS
+from tests.robots.model.folder.test_model_folder import BODY, ROBOT, URDF, written
 
 LAUGHS = "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 12))
 BOMB = f'<!DOCTYPE robot [<!ENTITY l0 "ha">{LAUGHS}]>'

@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from engine.errors import CellError
-from robots.model.description import installed_share_dir, resolve_uri
 from robots.model.registry import model_by_name
+from robots.model.urdf.description import installed_share_dir, resolve_uri
 
 PANDA = model_by_name("panda")
 DESCRIBED = PANDA.licence_file.parent / "urdf" / "panda.urdf"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from engine.errors import CellError
-from robots.model.kinematics import ArmKinematics
-from robots.model.pinocchio_model import arm_model
+from robots.model.mechanics.kinematics import ArmKinematics
+from robots.model.mechanics.pinocchio_model import arm_model
 from robots.model.registry import ARMS_DIR, OWN_TOOL, model_by_name, robot_model, robot_names, tool_names
 from robots.model.transform import RigidTransform
 from robots.sim.physics.arm_spec import arm_spec

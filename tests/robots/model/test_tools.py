@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from robots.model.pinocchio_model import pin, rest_configuration, whole_model
+from robots.model.mechanics.pinocchio_model import pin, rest_configuration, whole_model
 from robots.model.registry import robot_model
 from robots.model.robot_model import RobotModel
 from robots.model.tool_model import ClawModel, GripperModel, LinkageModel, MagnetModel, Mechanism, PadBox, SynergyModel

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from engine.messages import Pose, Quaternion, Vector3
 from robots.model.inverse_kinematics import InverseKinematicsSolver
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, MotionReport
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene

@@ -16,10 +16,10 @@ from robots.port import Array
 from robots.scene.sim_scene import ArmPlacement, PartBody, SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.vision.arm_body import ArmBody
 from robots.vision.camera_rig import CameraRig
 from robots.vision.known_geometry import ArmConfiguration, KnownGeometry, MeasuredState
-from robots.vision.occupancy_mapper import OccupancyMapper
+from robots.vision.occupancy.arm_body import ArmBody
+from robots.vision.occupancy.occupancy_mapper import OccupancyMapper
 from robots.vision.perception_messages import PerceptionRequest
 from robots.vision.voxel_box import voxel_box
 from tests.robots.vision.watched_cell import PANDA, block, cameras, look, scene, sight, voxels

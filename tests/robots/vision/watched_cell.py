@@ -12,7 +12,7 @@ from robots.port import Array
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.vision.camera import CameraSpec, camera_of
+from robots.vision.cameras.camera import CameraSpec, camera_of
 from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, occupied_centres, voxel_box
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robots.model.pinocchio_model import pin, whole_model
+from robots.model.mechanics.pinocchio_model import pin, whole_model
 from robots.model.registry import robot_model
 from robots.model.transform import RigidTransform
 from robots.workspace.tool_joint_estimator import ToolJointEstimator

@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from benchmarks.ik_arms import BASE, CALIBRATION, calibrated_ur10
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.robot_model import RobotModel
 from robots.port import Array

@@ -11,7 +11,7 @@ from robots.model.inverse_kinematics import PoseMatch
 from robots.model.inverse_kinematics.chain import KinematicChain, chain_of, matrix_of, tool_at
 from robots.model.inverse_kinematics.fast_kinematics import FastKinematics, is_solved, new_fast_kinematics
 from robots.model.inverse_kinematics.ideal_arm import ideal_arm
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.model.inverse_kinematics.ik_arms import ARMS, arm, at_shares, shares

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from benchmarks.ik_arms import requests, solves
 from engine.errors import RobotError
 from robots.model.inverse_kinematics import POSITION_TOLERANCE_M, InverseKinematicsSolver, PoseMatch, analytic
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.model.inverse_kinematics.ik_arms import ARMS, SIX_AXES, arm, at_shares, limits, shares

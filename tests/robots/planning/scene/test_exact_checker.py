@@ -13,7 +13,7 @@ from benchmarks.planning_contacts import compared
 from benchmarks.planning_scenes import ARM, alone, box
 from engine.messages import Pose
 from engine.messages.shapes import Box, Capsule, Hull, Obstacle, Shape, Solid, Sphere
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.transform import RigidTransform
 from robots.planning.scene.exact_checker import ExactChecker

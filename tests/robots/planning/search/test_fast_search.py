@@ -11,7 +11,7 @@ import pytest
 from benchmarks.planning_scenes import ARM, alone, box, shelf_scene
 from engine.messages import Pose
 from engine.messages.shapes import Capsule, Cylinder, Hull, Obstacle, Solid, Sphere
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.planning.scene.compiled_problem import CompiledProblem
 from robots.planning.scene.exact_checker import ExactChecker, PathCollision

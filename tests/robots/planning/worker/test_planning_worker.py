@@ -17,7 +17,7 @@ from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.messages.sensing import OccupancyGrid
 from engine.messages.shapes import Capsule, Obstacle, Solid
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.transform import RigidTransform
 from robots.planning.request import (

@@ -13,7 +13,7 @@ from benchmarks.planning_scenes import ARM, DOWN, alone, box, cases, random_case
 from engine.messages import Pose
 from engine.messages.shapes import Box, Capsule, Obstacle, Solid, Sphere
 from robots.io.message_codec import encode_payload, payload_decoder
-from robots.model.kinematics import ArmKinematics
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.transform import RigidTransform
 from robots.planning.planner_names import OMPL_PLANNERS, PLANNERS

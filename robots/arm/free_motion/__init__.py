@@ -1,0 +1,1 @@
+"""Collision-free motions: planned, monitored, stopped before obstacles and replanned."""

@@ -1,0 +1,390 @@
+"""A motion that monitors its path: stops before an obstacle, then replans around it or resumes once it is gone."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Coroutine
+from typing import TypeVar
+
+from engine.errors import FlexcellError
+from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.free_motion.adaptive_motion_report import AdaptiveMotionListener, AdaptiveMotionReport
+from robots.arm.free_motion.blocked_path_policy import BlockedPathPolicy
+from robots.arm.free_motion.lookahead_path import PathReservation
+from robots.arm.free_motion.path_monitor import PathMonitor, PredictedCollision
+from robots.arm.scene_queries.path_planner import PathPlanner, PathSegment
+from robots.arm.scene_queries.planner_query import QuerySuperseded, await_answer, discard_query
+from robots.planning.request import PlanRefusal
+from robots.port import Motion, MotionEnd, MotionReport
+from robots.workspace.workspace import Workspace
+
+_HELD = "held"
+T = TypeVar("T")
+
+_log = logging.getLogger("flexcell.arm")
+
+
+class AdaptiveMotion:
+    """Implements `robots.port.Motion` by consecutive motions of the port, each along a validated path.
+
+    While it moves, every change of the scene triggers a check of the remaining path. If that is blocked, the arm
+    decelerates on the path. At rest it resumes the remaining path if that is free again, else follows a new path
+    from there, else tries again after the next change. A hold persists through all of that; a cancel ends it.
+
+    Args:
+        segment: The first path, which starts at the set point; or the reason why there is none yet: the motion then
+            starts by waiting.
+        runner: The arm's motion runner.
+        planner: Plans and checks paths.
+        workspace: Notifies of scene changes.
+        adaptation: Whether to monitor the path, and how long to wait.
+        listener: Notified of phase and path changes.
+    """
+
+    def __init__(
+        self,
+        segment: PathSegment | str,
+        *,
+        runner: MotionRunner,
+        planner: PathPlanner,
+        workspace: Workspace,
+        adaptation: Adaptation,
+        listener: AdaptiveMotionListener,
+    ) -> None:
+        self._runner = runner
+        self._planner = planner
+        self._workspace = workspace
+        self._monitor = PathMonitor(runner, planner, workspace)
+        self._reservation = PathReservation(runner, workspace, made=adaptation.watch)
+        self._waiting = BlockedPathPolicy(runner.clock, patience_s=adaptation.patience_s)
+        self._adaptation = adaptation
+        self._listener = listener
+        self._clock = runner.clock
+        self._changed = asyncio.Event()
+        self._phase_waiters: list[asyncio.Future[None]] = []
+        self._held = self._halted = self._checking = False
+        self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._attempts = 0
+        self._detected_late = self._replan_failure = ""
+        self.tally = AdaptiveMotionReport()
+        self.phase: MotionPhase = "moving"
+        self.reason = ""
+        self._segment: PathSegment | None = None
+        self._inner: Motion | None = None
+        self._end: asyncio.Future[MotionReport] | None = None
+        if isinstance(segment, PathSegment):
+            self._follow(segment)
+        else:
+            self._halted, self.phase = True, "planning"
+        self._unwatch = workspace.watch(self._notice) if adaptation.watch else _no_operation
+        self._task = asyncio.create_task(
+            self._run("" if isinstance(segment, PathSegment) else segment), name=f"adaptive motion of {runner.name}"
+        )
+
+    @property
+    def progress(self) -> float:
+        """Elapsed share of the current path's duration, 0 to 1."""
+        return self._inner.progress if self._inner is not None else 0.0
+
+    @property
+    def waited_s(self) -> float:
+        """Total time waited for a free path."""
+        return self._waiting.total_s
+
+    async def report(self) -> MotionReport:
+        """Wait for the end."""
+        return await asyncio.shield(self._task)
+
+    async def hold(self) -> None:
+        """Decelerate on the path and return when at rest; nothing moves the arm before `resume`."""
+        self._held = self._halted = True
+        self._changed.set()
+        if self._inner is not None:
+            await self._inner.hold()
+
+    async def resume(self) -> None:
+        """Check whether the path is free; return when moving, or when the path is known to be blocked."""
+        if not self._held:
+            return
+        self._held, self._checking = False, True
+        self._changed.set()
+        while not self._held and not self._task.done() and self._checking:
+            waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._phase_waiters.append(waiter)
+            await asyncio.wait((waiter, self._task), return_when=asyncio.FIRST_COMPLETED)
+
+    def cancel(self) -> None:
+        """Request deceleration on the path; `report` then returns CANCELED once at rest."""
+        if not self._cancelled:
+            self._cancelling.set_result(None)
+        self._changed.set()
+        if self._inner is not None:
+            self._inner.cancel()
+
+    def _notice(self, names: frozenset[str]) -> None:
+        """Handle a change of the scene."""
+        if self._runner.name in names and not self._halted:
+            self._reservation.update(self._passed_s)
+        others = names - {self._runner.name}
+        if others or not names:
+            self._monitor.note(others)
+            self._waiting.something_changed()
+            self._changed.set()
+
+    async def _run(self, obstacle: str) -> MotionReport:
+        try:
+            return await self._go(obstacle)
+        except Exception as error:
+            # Whatever fails here, the arm must not continue unmonitored, and its goal must end with the reason.
+            _log.exception("%s: the adaptive motion failed", self._runner.name)
+            await self._cancel_inner()
+            return MotionReport(end=MotionEnd.FAILED, reason=f"{type(error).__name__}: {error}")
+        finally:
+            self._unwatch()
+            self._reservation.withdraw()
+            if self._end is not None:
+                self._end.cancel()
+
+    async def _go(self, obstacle: str) -> MotionReport:
+        reason: str | None = obstacle or await self._pass()
+        while reason is not None:
+            report = await self._until_free(reason)
+            if report is not None:
+                return report
+            reason = await self._pass()
+        assert self._end is not None
+        return self._end.result()
+
+    async def _pass(self) -> str | None:
+        """Follow the path; return None when the motion has ended, or why it was stopped."""
+        inner, end, segment = self._inner, self._end, self._segment
+        assert inner is not None
+        assert end is not None
+        assert segment is not None
+        self._enter("moving", "")
+        self._reservation.update(self._passed_s)
+        while not end.done():
+            await self._next_change(end)
+            self._changed.clear()
+            if end.done() or self._cancelled:
+                await asyncio.wait((end,))
+                return None
+            if self._halted:
+                return _HELD
+            if not self._adaptation.watch:
+                continue
+            try:
+                collision = await self._answer(self._monitor.ahead(segment, from_s=self._passed_s))
+            except QuerySuperseded:
+                continue
+            if collision is not None and not end.done():
+                await self._stop_before(inner, collision)
+                return self.reason
+        return None
+
+    async def _stop_before(self, inner: Motion, collision: PredictedCollision) -> None:
+        """Come to rest before a predicted collision, and report if the arm stops too late."""
+        if not self._halted:
+            # If the arm was held meanwhile, that hold stopped it, not this.
+            self.tally.stops += 1
+            self._halted = True
+        self._enter("braking", collision.reason)
+        _log.info("%s stops: %s", self._runner.name, collision.reason)
+        await inner.hold()
+        if self._passed_s >= collision.at_s:
+            self._detected_late = "; it was detected too late to stop before it"
+            self._enter("braking", collision.reason + self._detected_late)
+            _log.warning("%s stopped too late: %s", self._runner.name, collision.reason)
+
+    async def _until_free(self, reason: str) -> MotionReport | None:
+        """Wait at rest until the arm moves again (None), or until the motion has ended."""
+        stopped_here = reason != _HELD
+        self._reservation.withdraw()
+        if self._inner is not None:
+            await self._inner.hold()
+        self._waiting.rest()
+        while True:
+            if (over := await self._over()) is not None:
+                return over
+            if self._held:
+                self._waiting.end()
+                self._enter("waiting", _HELD)
+                await self._next_change(None)
+                self._changed.clear()
+                continue
+            self._changed.clear()
+            try:
+                why = await self._move_again(reused=stopped_here)
+            except QuerySuperseded:
+                continue
+            if not why:
+                self._waiting.end()
+                return None
+            if self._held or self._cancelled:
+                continue
+            if (over := await self._patience_over(why)) is not None:
+                return over
+            await self._next_change(None, timeout_s=self._waiting.next_look_s)
+            # Changes in quick succession count as one: decisions always use the latest scene.
+
+    async def _over(self) -> MotionReport | None:
+        """Return the report of the motion if it was canceled, or ended by itself at rest; else None."""
+        if self._cancelled:
+            self._waiting.end()
+            return await self._cancel_inner() or MotionReport(end=MotionEnd.CANCELED)
+        if self._inner is None:
+            reflex = self._runner.port.reflex_reason
+            return MotionReport(end=MotionEnd.FAILED, reason=reflex) if reflex else None
+        if self._end is not None and self._end.done():
+            self._waiting.end()
+            return self._end.result()
+        return None
+
+    async def _cancel_inner(self) -> MotionReport | None:
+        """Cancel the motion of the port and return its report; None without a motion."""
+        inner, end = self._inner, self._end
+        if inner is None or end is None:
+            return None
+        inner.cancel()
+        await asyncio.wait((end,))
+        return end.result()
+
+    async def _patience_over(self, why: str) -> MotionReport | None:
+        """Continue to wait for the reason `why`, or give up the motion when the patience is exhausted."""
+        self._waiting.begin()
+        self._enter("waiting", why)
+        if not self._waiting.is_over:
+            return None
+        self._waiting.end()
+        self.tally.blocked = why
+        await self._cancel_inner()
+        patience_s = self._adaptation.patience_s
+        waited = f" for {patience_s:g} s" if patience_s > 0.0 else ""
+        return MotionReport(end=MotionEnd.FAILED, reason=f"no path is free{waited}: {why}")
+
+    async def _move_again(self, *, reused: bool) -> str:
+        """Move again, along the current path or a new one; return why that is impossible, empty on success."""
+        monitor, waiting = self._monitor, self._waiting
+        try:
+            if not self._adaptation.watch:
+                return await self._resume(reused=False)
+            if monitor.unobserved_reason:
+                return monitor.unobserved_reason
+            if self.reason and not waiting.has_rested(stops=self.tally.stops):
+                return self.reason
+            # Two processes work in parallel: one checks the path while the other searches in case it is needed.
+            search = self._begin_search() if waiting.may_search and self.phase != "waiting" else None
+            try:
+                if beside := await self._answer(monitor.beside()):
+                    return beside
+                blocked = "no path found yet"
+                if self._inner is not None and self._segment is not None:
+                    blocked = await self._answer(monitor.rest_of(self._segment, from_s=self._passed_s))
+                if not blocked:
+                    return await self._resume(reused=reused)
+                if waiting.may_search:
+                    began_s = self._clock.now_s()
+                    self._replan_failure = await self._follow_new_path(blocked, search or self._begin_search())
+                    if not self._replan_failure:
+                        return ""
+                    waiting.searched(took_s=self._clock.now_s() - began_s)
+                return blocked + self._detected_late + self._replan_failure
+            finally:
+                await discard_query(search)
+        except FlexcellError as error:
+            waiting.searched(took_s=0.0)
+            return error.message
+
+    def _begin_search(self) -> asyncio.Future[PathSegment | PlanRefusal]:
+        self._attempts += 1
+        start = self._runner.port.sample().desired_rad
+        return asyncio.ensure_future(self._planner.find(start, attempt=self._attempts - 1))
+
+    async def _follow_new_path(self, blocked: str, search: asyncio.Future[PathSegment | PlanRefusal]) -> str:
+        """Follow a new path from here once it is planned; return the reason of a failure, empty on success."""
+        if self.phase != "waiting":
+            self._enter("planning", blocked + self._detected_late)
+        segment = await self._answer(search)
+        if isinstance(segment, PlanRefusal):
+            return f"; {segment.message}"
+        # Only this check covers changes since the search began.
+        collision = await self._answer(self._monitor.along(segment))
+        if collision is not None:
+            return f"; on the new path {collision.reason}"
+        if self._held or self._cancelled:
+            return f"; {_HELD}"
+        report = await self._cancel_inner()
+        if report is not None and report.end is MotionEnd.FAILED:
+            return f"; {report.reason}"
+        self._inner = self._end = None
+        if self._held or self._cancelled:
+            return f"; {_HELD}"
+        if self._segment is not None:
+            self.tally.replans += 1
+            _log.info("%s follows a new path", self._runner.name)
+        self._follow(segment)
+        return ""
+
+    async def _resume(self, *, reused: bool) -> str:
+        inner = self._inner
+        if self._held or self._cancelled or inner is None:
+            return _HELD
+        self._halted = False
+        self._detected_late = self._replan_failure = ""
+        await inner.resume()
+        if reused:
+            self.tally.reused += 1
+            _log.info("%s resumes along its path", self._runner.name)
+        return ""
+
+    async def _answer(self, question: Coroutine[object, object, T] | asyncio.Future[T]) -> T:
+        """Wait for the planner; raises QuerySuperseded once the motion is canceled, or has ended by itself."""
+        ends = () if self._end is None else (self._end,)
+        return await await_answer(question, unless=(self._cancelling, *ends))
+
+    def _follow(self, segment: PathSegment) -> None:
+        """Start to follow a path; raises RobotError if the arm rejects it."""
+        runner = self._runner
+        self._inner = inner = runner.port.follow(segment.trajectory, tolerance=runner.tolerance)
+        self._end = asyncio.ensure_future(inner.report())
+        self._segment, self._halted = segment, False
+        self._detected_late = self._replan_failure = ""
+        self._reservation.renew(segment.trajectory)
+        self._listener.follows(segment)
+
+    @property
+    def _cancelled(self) -> bool:
+        return self._cancelling.done()
+
+    @property
+    def _passed_s(self) -> float:
+        """Elapsed time of the current path, in seconds of its own time."""
+        return self.progress * self._segment.trajectory.duration_s if self._segment is not None else 0.0
+
+    async def _next_change(self, end: asyncio.Future[MotionReport] | None, *, timeout_s: float | None = None) -> None:
+        """Return at the next change, when `end` is done, or after `timeout_s`."""
+        changed = asyncio.ensure_future(self._changed.wait())
+        try:
+            waits = (changed,) if end is None else (changed, end)
+            await asyncio.wait(waits, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            changed.cancel()
+
+    def _enter(self, phase: MotionPhase, reason: str) -> None:
+        if (phase, reason) != (self.phase, self.reason):
+            if phase == "waiting" and reason != self.reason:
+                _log.info("%s waits: %s", self._runner.name, reason)
+            self.phase, self.reason = phase, reason
+            self._listener.entered(phase, reason)
+        if phase in ("moving", "waiting"):
+            self._checking = False
+        waiters, self._phase_waiters = self._phase_waiters, []
+        for waiter in waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+
+def _no_operation() -> None:
+    """Do nothing."""

@@ -1,0 +1,1 @@
+"""Jogging of joints and tool, with its limits in the planning scene."""

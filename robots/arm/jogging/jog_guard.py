@@ -1,0 +1,184 @@
+"""Limits the speed of a jog in the planning scene, so that the arm can always stop before a collision."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.errors import FlexcellError
+from engine.skills.jogging import JogCollisionOptions
+from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.scene_queries.path_planner import describe_contacts
+from robots.arm.scene_queries.scene_check import SceneCheck
+from robots.port import Array, JointTrajectory
+from robots.workspace.workspace import Workspace
+
+Row = tuple[float, ...]
+ToJoints = Callable[[Array, Array], Array]
+"""Maps a commanded velocity and joint positions (n,) to joint velocities (n,)."""
+
+# Period of the checks, greatest age of a result when it takes effect, and timeout of a check.
+_CHECK_PERIOD_S, _REACTION_S, _TIMEOUT_S = 0.03, 0.12, 0.3
+_STEP_S, _LONGEST_S = 0.01, 3.0
+# Share of the acceleration limits with which a jog decelerates (0.5, less for its jerk), and of the free path used.
+_BRAKING_SHARE, _USED_SHARE = 0.4, 0.9
+# Below this share of the commanded velocity the arm stands still.
+_CREEP = 0.02
+# A velocity within 11 degrees of the checked direction counts as checked.
+_SAME_DIRECTION = 0.98
+_log = logging.getLogger("flexcell.arm")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _SpeedLimit:
+    """Speed limit of a jog along a unit direction, from the last check."""
+
+    direction: Array
+    fastest: float
+
+
+class JogGuard:
+    """Monitors the path ahead of one jog.
+
+    Args:
+        runner: The arm's motion runner.
+        workspace: Provides the scene.
+        rule: Margin, and the objects that may be touched.
+        to_joints: Maps commanded velocities to joint velocities.
+    """
+
+    def __init__(
+        self, runner: MotionRunner, workspace: Workspace, *, rule: JogCollisionOptions, to_joints: ToJoints
+    ) -> None:
+        self._runner = runner
+        self._workspace = workspace
+        self._scene = SceneCheck(runner.name, workspace, rule=rule)
+        self._to_joints = to_joints
+        self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
+        self._commanded = np.zeros(0)
+        self._limit: _SpeedLimit | None = None
+        self._recheck = asyncio.Event()
+        self._monitoring: asyncio.Task[None] | None = None
+        self.held_by = ""
+
+    async def open(self) -> None:
+        """Return when the scene and the path checks are ready; call `close` when the jog has ended.
+
+        Raises:
+            RobotError: path checks are not available.
+            CellError: the scene is invalid.
+        """
+        self._workspace.require()
+        try:
+            standing = self._runner.port.sample().desired_rad[None]
+            await self._scene.check(JointTrajectory(dt_s=_STEP_S, position_rad=standing, velocity_rad_s=standing * 0.0))
+        except BaseException:
+            self._workspace.release()
+            raise
+
+    def watch_ahead(self, again: Callable[[], None]) -> None:
+        """Start to monitor the path ahead; `again` resends the current command to the arm."""
+        self._monitoring = asyncio.create_task(self._monitor(again), name=f"jog monitoring of {self._runner.name}")
+
+    async def close(self) -> None:
+        """Stop monitoring and release the scene."""
+        self._workspace.release()
+        if self._monitoring is not None:
+            self._monitoring.cancel()
+            await asyncio.wait((self._monitoring,))
+
+    def bounded(self, commanded: Row) -> Row:
+        """Return the velocity that the arm may be commanded now in place of `commanded`."""
+        self._commanded = np.array(commanded)
+        fast, limit = float(np.linalg.norm(self._commanded)), self._limit
+        if fast == 0.0:
+            self.held_by, self._limit = "", None
+            return commanded
+        if limit is None or float(self._commanded @ limit.direction) < _SAME_DIRECTION * fast:
+            # This direction is not checked yet; request a check and stand still until then.
+            self._limit = None
+            self._recheck.set()
+            return (0.0,) * len(commanded)
+        return tuple((self._commanded * min(1.0, limit.fastest / fast)).tolist())
+
+    async def _monitor(self, again: Callable[[], None]) -> None:
+        while True:
+            if not self._commanded.any():
+                await self._recheck.wait()
+            self._recheck.clear()
+            commanded = self._commanded
+            fastest, reason = await self._check(commanded)
+            if reason and not self.held_by:
+                _log.info("%s: jog speed limited: %s", self._runner.name, reason)
+            self.held_by = reason
+            self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest)
+            again()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(_CHECK_PERIOD_S):
+                    await self._recheck.wait()
+
+    async def _check(self, commanded: Array) -> tuple[float, str]:
+        """Return the speed limit in the direction of `commanded`, and the reason for it."""
+        if self._scene.unobserved_reason:
+            return 0.0, self._scene.unobserved_reason
+        path, travelled_s, slowing_s = self._ahead(commanded)
+        try:
+            async with asyncio.timeout(_TIMEOUT_S):
+                check = await self._scene.check(path)
+        except TimeoutError:
+            return 0.0, f"its path was not checked within {_TIMEOUT_S:g} s"
+        except FlexcellError as error:
+            return 0.0, f"path monitoring is not available: {error.message}"
+        if check.blocked_at_s is None:
+            return float(np.linalg.norm(commanded)), ""
+        # The free path ends at the sample before the first contact.
+        free_s = float(travelled_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
+        return float(np.linalg.norm(commanded)) * _stoppable_share(free_s * _USED_SHARE, slowing_s), describe_contacts(
+            check.pairs
+        )
+
+    def _ahead(self, commanded: Array) -> tuple[JointTrajectory, Array, float]:
+        """Return the predicted trajectory: the arm follows `commanded` until the next check takes effect, then stops.
+
+        Also returns the distance travelled at each sample, in seconds at the commanded velocity, and the braking
+        distance from that velocity, in the same unit.
+        """
+        sample = self._runner.port.sample()
+        joints, velocity = sample.desired_rad.copy(), sample.velocity_rad_s.copy()
+        rows, travelled = [joints], [0.0]
+        reaction, longest = round(_REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
+        wanted = self._to_joints(commanded, joints)
+        for k in range(longest):
+            if k < reaction:
+                wanted = self._to_joints(commanded, joints)
+            change = (wanted if k < reaction else 0.0) - velocity
+            most = float((self._braking_rad_s2 * _STEP_S / np.maximum(np.abs(change), 1e-12)).min())
+            velocity = velocity + change * min(1.0, most)
+            joints = joints + velocity * _STEP_S
+            share = float(velocity @ wanted) / max(1e-12, float(wanted @ wanted))
+            rows.append(joints)
+            travelled.append(travelled[-1] + max(0.0, share) * _STEP_S)
+            if k >= reaction and not velocity.any():
+                break
+        path = np.array(rows)
+        slowing_s = 0.5 * float((np.abs(wanted) / self._braking_rad_s2).max())
+        return (
+            JointTrajectory(dt_s=_STEP_S, position_rad=path, velocity_rad_s=path * 0.0),
+            np.array(travelled),
+            slowing_s,
+        )
+
+
+def _stoppable_share(free_s: float, slowing_s: float) -> float:
+    """Return the share of a velocity from which an arm stops within its free path, all in seconds at that velocity.
+
+    At a share k it travels k times the reaction time, plus k² times `slowing_s` while it decelerates.
+    """
+    share = (math.sqrt(_REACTION_S**2 + 4.0 * slowing_s * free_s) - _REACTION_S) / max(1e-9, 2.0 * slowing_s)
+    return 0.0 if share < _CREEP else min(1.0, share)

@@ -1,0 +1,211 @@
+"""Jogging of joints or tool: at a velocity for a time, as commanded on `<arm>/jog`, or step by step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Awaitable, Callable
+from contextlib import AsyncExitStack
+from typing import Any
+
+import numpy as np
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import GoalRejected
+from engine.skills.jogging import (
+    JogCollisionOptions,
+    JogCommand,
+    JogJoints,
+    JogTool,
+    JointJogFeedback,
+    StepJoints,
+    StepTool,
+    ToolJogFeedback,
+)
+from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
+from robots.arm.execution.motion_runner import MotionCompletion, MotionRunner
+from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
+from robots.arm.jogging.jog_guard import JogGuard, Row, ToJoints
+from robots.arm.jogging.jog_run import JogRun
+from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
+from robots.arm.scene_queries.scene_check import SceneCheck
+from robots.control.generators.damped_inverse import joint_velocity, twist_rows
+from robots.model.transform import RigidTransform, product, quaternion_of
+from robots.motion.min_jerk import PEAK_ACCELERATION, PEAK_SPEED
+from robots.port import Array, JointTrajectory, StreamKind
+from robots.workspace.workspace import Workspace
+
+_TWIST = 6
+# Limits of a tool step: rotation speed, linear and angular acceleration.
+_STEP_TURN_RAD_S, _STEP_M_S2, _STEP_RAD_S2 = 0.5, 0.5, 2.0
+_SHORTEST_STEP_S = 0.1
+_MOST_TURN_RAD = 3.1
+
+
+class JogMotions:
+    """Serves JogJoints, JogTool, StepJoints and StepTool, and subscribes to `<arm>/jog`.
+
+    Args:
+        runner: The arm's motion runner.
+        workspace: The workspace shared with other arms; without one jogs are not checked for collisions.
+    """
+
+    def __init__(self, runner: MotionRunner, workspace: Workspace | None = None) -> None:
+        self._runner = runner
+        self._workspace = workspace
+        self._run: JogRun | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skills under the arm's name."""
+        name = self._runner.name
+        bus.advertise_action(JogJoints, self._jog_joints, namespace=name, exclusive=name)
+        bus.advertise_action(JogTool, self._jog_tool, namespace=name, exclusive=name)
+        bus.advertise_action(StepJoints, self._step_joints, namespace=name, exclusive=name)
+        bus.advertise_action(StepTool, self._step_tool, namespace=name, exclusive=name)
+        bus.topic(f"{name}/jog", JogCommand).subscribe_commands(self._take)
+
+    def _take(self, command: JogCommand) -> None:
+        if self._run is not None:
+            self._run.take(command)
+
+    async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointJogFeedback]) -> JointMotionResult:
+        runner = self._runner
+        guard = self._guard(goal.scene, lambda commanded, _: commanded)
+
+        def publish_feedback() -> None:
+            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
+
+        width = runner.model.dof
+        run = JogRun(
+            goal,
+            goal.velocity_rad_s,
+            handle,
+            clock=runner.clock,
+            width=width,
+            to_command=lambda commanded: commanded,
+            guard=guard,
+        )
+        ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
+        return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
+
+    async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[ToolJogFeedback]) -> CartMotionResult:
+        runner = self._runner
+        guard = self._guard(goal.scene, self._joint_velocity)
+
+        def publish_feedback() -> None:
+            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
+
+        def to_command(velocity: Row) -> Row:
+            axes = runner.frames.axes(goal.frame, tool=runner.measured_tool())
+            return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
+
+        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
+        ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
+        return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
+
+    def _guard(self, rule: JogCollisionOptions, to_joints: ToJoints) -> JogGuard | None:
+        if self._workspace is None or not rule.minded:
+            return None
+        return JogGuard(self._runner, self._workspace, rule=rule, to_joints=to_joints)
+
+    def _joint_velocity(self, twist: Array, joints: Array) -> Array:
+        _, jacobian = self._runner.kinematics.tool_pose_and_jacobian(joints)
+        rows = twist_rows(twist, self._runner.model.dof)
+        return joint_velocity(jacobian[rows], twist[rows])
+
+    async def _jog(
+        self,
+        kind: StreamKind,
+        run: JogRun,
+        guard: JogGuard | None,
+        handle: ActiveGoal[Any],
+        publish_feedback: Callable[[], None],
+    ) -> MotionCompletion:
+        runner = self._runner
+        runner.require_ready(handle)
+        async with AsyncExitStack() as stack:
+            if guard is not None:
+                await runner.planned(handle, lambda _: guard.open())
+                stack.push_async_callback(guard.close)
+            else:
+                runner.accept(handle)
+
+            def look(_stream: object) -> None:
+                run.look()
+                publish_feedback()
+
+            self._run = run
+            try:
+                return await runner.carry_out(
+                    lambda: run.start(runner.port.stream(kind, watchdog_s=run.watchdog_s)), handle, look, mode="jogging"
+                )
+            finally:
+                self._run = None
+                run.close()
+
+    async def _free(self, planning: Awaitable[JointTrajectory], rule: JogCollisionOptions) -> JointTrajectory:
+        """Return a planned collision-free step; raises RobotError if there is none."""
+        trajectory = await planning
+        if self._workspace is not None and rule.minded:
+            await SceneCheck(self._runner.name, self._workspace, rule=rule).require_free(trajectory)
+            # The scene allows contact of a part with the object it was picked from, at any depth.
+            await AttachedPartGuard(self._runner.name, self._workspace).require_free(trajectory)
+        return trajectory
+
+    async def _step_joints(self, goal: StepJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
+        runner = self._runner
+        if len(goal.step_rad) != runner.model.dof:
+            raise GoalRejected(
+                f"the step has {len(goal.step_rad)} joints",
+                where=handle.address,
+                hint=f"this arm has {runner.model.dof}",
+            )
+        trajectory = await runner.planned(
+            handle,
+            lambda start: self._free(
+                runner.planner.to_joints(start, start + np.array(goal.step_rad), speed=goal.speed), goal.scene
+            ),
+        )
+        return await follow_joints(runner, trajectory, handle, mode="jogging")
+
+    async def _step_tool(self, goal: StepTool, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+        runner = self._runner
+        runner.require_ready(handle)
+        start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
+        end = self._step_goal(goal, start, handle)
+        trajectory = await runner.planned(
+            handle,
+            lambda joints: self._free(
+                runner.planner.along_line(joints, end, duration_s=_step_time_s(goal)), goal.scene
+            ),
+        )
+        return await follow_tool(runner, trajectory, handle, mode="jogging")
+
+    def _step_goal(
+        self, goal: StepTool, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]
+    ) -> RigidTransform:
+        step = np.array((*goal.step_m, *goal.turn_rad))
+        if not np.isfinite(step).all() or not step.any():
+            raise GoalRejected(
+                "the step is zero or not finite", where=handle.address, hint="give `step_m`, `turn_rad` or both"
+            )
+        turn = math.hypot(*goal.turn_rad)
+        if turn > _MOST_TURN_RAD:
+            # Half a turn or more would be executed in the opposite, shorter direction.
+            raise GoalRejected(
+                f"a step cannot rotate the tool by {turn:.3g} rad",
+                where=handle.address,
+                hint="rotate by less than half a turn",
+            )
+        axes = self._runner.frames.axes(goal.frame, tool=tool)
+        return RigidTransform(xyz=tool.xyz + axes @ step[:3], xyzw=product(quaternion_of(axes @ step[3:]), tool.xyzw))
+
+
+def _step_time_s(goal: StepTool) -> float:
+    distance, turn = math.hypot(*goal.step_m), math.hypot(*goal.turn_rad)
+    return max(
+        _SHORTEST_STEP_S,
+        PEAK_SPEED * distance / goal.speed_m_s,
+        PEAK_SPEED * turn / _STEP_TURN_RAD_S,
+        float(np.sqrt(PEAK_ACCELERATION * distance / _STEP_M_S2)),
+        float(np.sqrt(PEAK_ACCELERATION * turn / _STEP_RAD_S2)),
+    )

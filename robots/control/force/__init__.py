@@ -1,0 +1,1 @@
+"""Force control along a path: admittance, tracking and record; validates its tasks."""

@@ -1,0 +1,1 @@
+"""Motion generators: the set point of an arm in every control period, for each kind of motion."""

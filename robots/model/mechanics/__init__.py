@@ -1,0 +1,1 @@
+"""Kinematics, dynamics and self-collision of one arm with its tool."""

@@ -1,0 +1,113 @@
+"""Kinematics of one arm at its base pose in the cell: tool pose, Jacobian, distance to singularity."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from robots.model.mechanics.pinocchio_model import arm_model, pin
+from robots.model.robot_model import JointLimits, RobotModel
+from robots.model.transform import RigidTransform, product
+from robots.port import Array
+
+_AT_THE_LINK = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+class ArmKinematics:
+    """Pose and velocity of the tool centre point; poses are in the world frame.
+
+    One instance serves one thread at a time; `twin` creates one for another thread.
+
+    Args:
+        model: The arm; its tool's joints are locked at 0.
+        base: Pose of the model's base link in the world.
+        tool: The tool centre point in the frame of the model's tool link; by default its origin.
+    """
+
+    def __init__(
+        self, model: RobotModel, *, base: RigidTransform, tool: RigidTransform | None = None, solver: Any = None
+    ) -> None:
+        self.model = model
+        self.base = base
+        self.tool = tool or _AT_THE_LINK
+        self._solver = arm_model(model) if solver is None else solver
+        self._data = self._solver.createData()
+        self._tool = self._solver.getFrameId(model.tool_link)
+        self._offset = _Offset(self._solver.frames[self._tool], self.tool) if tool is not None else None
+        self._rotation = base.rotation
+        self._turn = np.kron(np.eye(2), self._rotation)
+        self._armature = np.diag(model.armature_kg_m2)
+
+    @property
+    def dof(self) -> int:
+        """Number of arm joints n."""
+        return self.model.dof
+
+    @property
+    def limits(self) -> JointLimits:
+        """Limits of the arm joints."""
+        return self.model.limits
+
+    def twin(self) -> ArmKinematics:
+        """Return an instance for use by another thread."""
+        return ArmKinematics(self.model, base=self.base, tool=self._own_tool(), solver=self._solver)
+
+    def with_tool(self, tool: RigidTransform) -> ArmKinematics:
+        """Return a separate instance with the tool centre point at `tool` in the frame of the tool link."""
+        return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
+
+    def mass_matrix(self, joints: Array) -> Array:
+        """Return the arm's mass matrix, (n, n), kg m², including motor inertia."""
+        return pin.crba(self._solver, self._data, joints) + self._armature
+
+    def tool_pose(self, joints: Array) -> RigidTransform:
+        """Return the tool centre point in the world for joints of shape (n,)."""
+        pin.forwardKinematics(self._solver, self._data, joints)
+        return self._tool_in_world()
+
+    def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
+        """Return the tool pose and the Jacobian, shape (6, n): tool velocity (m/s, then rad/s, in world axes)."""
+        # computeFrameJacobian would keep the frame placements of an earlier configuration.
+        pin.computeJointJacobians(self._solver, self._data, joints)
+        pose = self._tool_in_world()
+        offset = self._offset
+        if offset is None:
+            jacobian = pin.getFrameJacobian(self._solver, self._data, self._tool, pin.LOCAL_WORLD_ALIGNED)
+        else:
+            jacobian = pin.getFrameJacobian(
+                self._solver, self._data, offset.joint, offset.placement, pin.LOCAL_WORLD_ALIGNED
+            )
+        return pose, self._turn @ jacobian
+
+    def dexterity(self, joints: Array) -> float:
+        """Return the distance to a singularity: the smallest singular value of the Jacobian.
+
+        Metres and radians are weighted equally; below about 0.03 a Panda turns some joint more than
+        thirty times as fast as its tool moves.
+        """
+        _, jacobian = self.tool_pose_and_jacobian(joints)
+        return float(np.linalg.svd(jacobian, compute_uv=False)[-1])
+
+    def _own_tool(self) -> RigidTransform | None:
+        return None if self._offset is None else self.tool
+
+    def _tool_in_world(self) -> RigidTransform:
+        offset = self._offset
+        if offset is None:
+            placement = pin.updateFramePlacement(self._solver, self._data, self._tool)
+        else:
+            placement = self._data.oMi[offset.joint] * offset.placement
+        # Equals base.then(…), without recomputing its rotation in every control period.
+        xyzw = np.array(pin.Quaternion(placement.rotation).coeffs())
+        return RigidTransform(
+            xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw)
+        )
+
+
+class _Offset:
+    """A tool centre point away from the origin of the tool link: its parent joint and its pose."""
+
+    def __init__(self, frame: Any, tool: RigidTransform) -> None:
+        self.joint: int = frame.parentJoint
+        self.placement: Any = frame.placement * pin.SE3(tool.rotation, tool.xyz)

@@ -1,0 +1,1 @@
+"""URDF files and their meshes: located, checked, read, joined. Knows no model folders."""

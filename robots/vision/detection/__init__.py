@@ -1,0 +1,1 @@
+"""Detections of known parts: the ideal detector, and its topic and service."""

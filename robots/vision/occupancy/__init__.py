@@ -1,0 +1,1 @@
+"""The map of occupied space from depth images, without what is known."""

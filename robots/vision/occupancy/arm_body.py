@@ -1,0 +1,87 @@
+"""An arm with its tool as balls in the world, at any joint configuration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.errors import CellError
+from robots.model.mechanics.pinocchio_model import pin, rest_configuration, whole_model
+from robots.model.transform import RigidTransform
+from robots.planning.search.arm_spheres import arm_spheres
+from robots.port import Array
+from robots.scene.sim_scene import ArmPlacement
+from robots.vision.known_geometry import ArmConfiguration
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Link:
+    frame: int
+    balls: Array
+    """(k, 4), in the frame of the link"""
+
+
+class ArmBody:
+    """The balls that cover all links of one arm; raises CellError if its model cannot be read."""
+
+    def __init__(self, placement: ArmPlacement) -> None:
+        model = placement.robot()
+        self._base = RigidTransform.from_pose(placement.base)
+        self._name = placement.name
+        self._joints = model.arm_joints
+        self._solver: Any = whole_model(model)
+        self._data: Any = self._solver.createData()
+        self._rest: Array = np.array(rest_configuration(self._solver, model))
+        self._places = {
+            str(name): int(self._solver.joints[number].idx_q)
+            for number, name in enumerate(self._solver.names)
+            if number > 0
+        }
+        fitted = arm_spheres(model, ())
+        self._links = {
+            link: _Link(
+                frame=int(self._solver.getFrameId(link, pin.FrameType.BODY)),
+                balls=_moved(fitted.frames[link][1].inverse(), spheres),
+            )
+            for link, spheres in zip(fitted.links, fitted.spheres, strict=True)
+        }
+        self.tool_link = model.tool_link
+
+    def balls(self, posture: ArmConfiguration) -> Array:
+        """Return the balls in the world, (k, 4); raises CellError for a posture of another arm."""
+        self._move_to(posture)
+        return np.vstack([_moved(self._at(link.frame), link.balls) for link in self._links.values()])
+
+    def link_pose(self, posture: ArmConfiguration, link: str) -> RigidTransform:
+        """Return the pose of a link in the world; raises CellError for an unknown link."""
+        if not self._solver.existFrame(link, pin.FrameType.BODY):
+            raise CellError(f"the arm has no link {link}", where=self._name, hint="name a link of the URDF")
+        self._move_to(posture)
+        return self._at(int(self._solver.getFrameId(link, pin.FrameType.BODY)))
+
+    def _move_to(self, posture: ArmConfiguration) -> None:
+        if len(posture.joints) != len(self._joints) or not np.isfinite(posture.joints).all():
+            raise CellError(
+                f"{list(posture.joints)} are not a joint configuration of this arm",
+                where=self._name,
+                hint=f"give {len(self._joints)} numbers",
+            )
+        q = self._rest.copy()
+        for name, value in (*zip(self._joints, posture.joints, strict=True), *posture.tool_joints.items()):
+            if name not in self._places:
+                raise CellError(f"the arm has no joint {name}", where=self._name, hint="name a joint of the URDF")
+            q[self._places[name]] = value
+        pin.framesForwardKinematics(self._solver, self._data, q)
+
+    def _at(self, frame: int) -> RigidTransform:
+        found = self._data.oMf[frame]
+        xyzw = np.array(pin.Quaternion(found.rotation).coeffs())
+        return self._base.then(RigidTransform(xyz=np.array(found.translation), xyzw=xyzw))
+
+
+def _moved(pose: RigidTransform, balls: Array) -> Array:
+    moved = balls.copy()
+    moved[:, :3] = balls[:, :3] @ pose.rotation.T + pose.xyz
+    return moved

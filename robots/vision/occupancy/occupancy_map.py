@@ -1,0 +1,92 @@
+"""The latest occupancy map with its validity and its change subscribers."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+
+from engine.messages.sensing import OccupancyGrid
+from robots.vision.occupancy.occupancy_source import Unsubscribe
+
+_log = logging.getLogger("flexcell.vision")
+
+
+class LiveOccupancyMap:
+    """Holds the latest map; owned by the event loop's thread.
+
+    Args:
+        now_s: Clock for the age of the map.
+        fresh_s: Maximum age of a valid map.
+    """
+
+    def __init__(self, *, now_s: Callable[[], float], fresh_s: float) -> None:
+        self._now_s = now_s
+        self._fresh_s = fresh_s
+        self._looked_at_s = -math.inf
+        self._callbacks: list[Callable[[], None]] = []
+        self._told: tuple[int, str] = (0, "")
+        self.latest: OccupancyGrid | None = None
+        self.required = 0
+        self.starting = False
+        """Whether the cameras are still starting."""
+        self.lost_reason = ""
+        """Why no images arrive; empty while they can."""
+
+    @property
+    def stale_reason(self) -> str:
+        """Why the map is not valid; empty while it is valid."""
+        if self.lost_reason:
+            return self.lost_reason
+        if self.latest is None:
+            return "the cameras are still starting" if self.starting else "no camera image yet"
+        age_s = self._now_s() - self._looked_at_s
+        if math.isinf(age_s):
+            return "no camera image since the cell was restored to an earlier state"
+        return f"the newest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""
+
+    def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
+        """Call `callback` whenever the revision or the stale reason has changed."""
+        self._callbacks.append(callback)
+
+        def unsubscribe() -> None:
+            if callback in self._callbacks:
+                self._callbacks.remove(callback)
+
+        return unsubscribe
+
+    def arrived(self, grid: OccupancyGrid, *, looked_at_s: float) -> bool:
+        """Set a new map of images taken at `looked_at_s`; return whether its voxels changed."""
+        changed = self.latest is None or grid.revision != self.latest.revision
+        if self.stale_reason:
+            # A map becomes stale without notification; that it is valid again is still a change.
+            self._told = (self._told[0], "stale")
+        self.latest, self._looked_at_s, self.lost_reason = grid, looked_at_s, ""
+        self.tell()
+        return changed
+
+    def outdated(self) -> None:
+        """Invalidate the map until the next image."""
+        self._looked_at_s = -math.inf
+        self.tell()
+
+    def lost(self, reason: str) -> None:
+        """Set the reason why no more images arrive."""
+        self.lost_reason = reason
+        self.tell()
+
+    def tell(self) -> None:
+        """Notify subscribers of changes; only this checks the age of the map."""
+        # A rising age is not a change.
+        stale = self.lost_reason or ("stale" if self.stale_reason else "")
+        now = (self.latest.revision if self.latest is not None else 0, stale)
+        if now == self._told:
+            return
+        self._told = now
+        for callback in tuple(self._callbacks):
+            try:
+                callback()
+            except Exception:
+                # A listener may fail in any way; the cameras, on which others rely, must continue.
+                _log.exception("a listener to the occupancy map failed and was removed")
+                self._callbacks.remove(callback)
