@@ -12,7 +12,7 @@ from engine.errors import CellError
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
 
-CELL = Path(__file__).parents[4] / "behaviors" / "cells" / "dual_panda.yaml"
+CELL = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
 
 
 @pytest.fixture(name="document")
