@@ -88,6 +88,7 @@ def test(options: list[str]) -> int:
     """Run lint, types, import contracts and the tests; pytest's own line is the last one."""
     install("development")
     if "--fast" in options:
+        options = ["-m", "fast", *(option for option in options if option != "--fast")]
         _run_checks(CHECKS)
     else:
         ensure_browser()

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
-from tests.tiers import kinds_of
+from tests.tiers import SECOND_TRY, kinds_of
 
 # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
 settings.register_profile("flexcell", deadline=None)
@@ -28,13 +28,13 @@ PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.pos
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add what chooses how much is run."""
-    parser.addoption("--fast", action="store_true", help="run only what needs no browser, process or physics")
     parser.addoption("--nightly", action="store_true", help="also run the values marked `nightly`: more of the same")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Name the markers; a fast run lets no test start a process, a browser among them."""
     for line in (
+        "fast: has none of the next three; a run of these alone (`-m fast`) does not even read the others",
         "virtual: run this async test on a virtual event loop",
         "browser: drives a real browser (set by what the file imports, see tests/tiers.py)",
         "process: starts processes (set by what the file imports)",
@@ -42,26 +42,24 @@ def pytest_configure(config: pytest.Config) -> None:
         "nightly: more of what other values show already; run with --nightly",
     ):
         config.addinivalue_line("markers", line)
-    if config.getoption("--fast"):
+    if _is_fast(config):
         sys.addaudithook(_refuse_process)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Leave out files with a marker in a fast run, unread: what they import takes longest."""
     is_test = collection_path.suffix == ".py" and collection_path.name.startswith("test_")
-    return True if is_test and config.getoption("--fast") and kinds_of(collection_path) else None
+    return True if is_test and _is_fast(config) and kinds_of(collection_path) else None
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark tests by what they need, and leave out those for the night.
-
-    What runs against wall time gets a second try; see docs/decisions/0020-second-try.md.
-    """
+    """Mark tests by what they need, and leave out those for the night."""
     for item in items:
-        for kind in sorted(kinds_of(item.path)):
+        for kind in sorted(kinds_of(item.path)) or ("fast",):
             item.add_marker(getattr(pytest.mark, kind))
-        if isinstance(item, pytest.Function) and _is_against_wall_time(item):
-            item.add_marker(pytest.mark.flaky(reruns=1))
+        if isinstance(item, pytest.Function) and "browser" in item.fixturenames:
+            item.add_marker(SECOND_TRY)
     left_out = [item for item in items if _is_left_out(item, config)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
@@ -74,8 +72,6 @@ def pytest_collection_finish() -> None:
 
 
 def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:
-    if config.getoption("--fast") and kinds_of(item.path):
-        return True
     is_more = item.get_closest_marker("nightly") is not None or _is_in_the_dark(item)
     return is_more and not config.getoption("--nightly")
 
@@ -93,8 +89,8 @@ def _refuse_process(event: str, arguments: tuple[Any, ...]) -> None:
         raise AssertionError(f"a fast test starts a process ({event} {arguments[:1]}): see tests/tiers.py")
 
 
-def _is_against_wall_time(item: pytest.Function) -> bool:
-    return "browser" in item.fixturenames or "process" in _values(item)
+def _is_fast(config: pytest.Config) -> bool:
+    return config.getoption("-m") == "fast"
 
 
 def _values(item: pytest.Function) -> list[str]:

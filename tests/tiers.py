@@ -35,6 +35,12 @@ FOLDERS = {
 FILES = {"tests/editor_web/test_frontend.py": "process", "tests/house/test_audit.py": "process"}
 
 
+# In the words of Playwright.
+BROWSER_DIED = r"Target crashed|Page crashed|[Bb]rowser has been closed|Connection closed while reading from the driver"
+SECOND_TRY = pytest.mark.flaky(reruns=1, only_rerun=[BROWSER_DIED])
+"""For tests that drive a browser: once more where the browser itself has died; docs/decisions/0020-second-try.md."""
+
+
 def nightly(*values: object) -> ParameterSet:
     """Make a value of a parametrized test, or those of one row, one of those that only run with `--nightly`."""
     return pytest.param(*values, marks=pytest.mark.nightly)

@@ -1,6 +1,6 @@
 /** How the page is built: into the Python package, in files whose names carry their content's hash. */
 import react from '@vitejs/plugin-react'
-import { defineConfig } from 'vite'
+import { defineConfig } from 'vitest/config'
 import { notices } from './notices/plugin.ts'
 
 /** Where `flexcell serve` listens, for `npm run dev`. */
@@ -17,5 +17,16 @@ export default defineConfig({
       '/api': { target: server, ws: true },
       '/cell': { target: server, ws: true },
     },
+  },
+  test: {
+    // How long a test takes depends on what else the machine does; one that never ends still fails.
+    testTimeout: 60_000,
+    projects: [
+      { extends: true, test: { name: 'functions', include: ['src/**/*.test.ts'] } },
+      {
+        extends: true,
+        test: { name: 'components', include: ['src/**/*.test.tsx'], environment: 'happy-dom', isolate: false, setupFiles: 'testing/setup.ts' },
+      },
+    ],
   },
 })

@@ -37,6 +37,7 @@ from tests.robots.panda_arm import home
 T = TypeVar("T")
 RESTS_RAD_S = 0.01
 """A joint that is slower than this rests."""
+UP_S = 4 * GUARD_S
 
 CELL = """\
 flexcell: 1
@@ -209,7 +210,13 @@ class TeachSite:
     def __enter__(self) -> Self:
         self._open.enter_context(patch.object(jogging, "IDLE_S", GUARD_S))
         self._thread.start()
-        self.call(self._up())
+        try:
+            # A world and its planners that start while others do take minutes on a busy machine.
+            self.call(self._up(), within_s=UP_S)
+        except BaseException:
+            # A thread that goes on would keep the tests from ever ending.
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:

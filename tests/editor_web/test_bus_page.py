@@ -10,11 +10,10 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.security.authentication import VIEWER
-from engine.bus import Holder, SkillBus
+from engine.bus import SkillBus
 from engine.messages import JointState
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
-from tests.editor_web.fake_plant import FakePlant, TravelProgress
+from tests.editor_web.fake_plant import FakePlant
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
 LAPTOP: Size = (1280, 800)
@@ -41,12 +40,11 @@ def at_bus(
     kind: str = "Topics",
     size: Size = LAPTOP,
     scheme: Scheme = "light",
-    login: str = "",
 ) -> Generator[Page]:
     """The page of a behavior with its bus in front."""
     path = f"/behaviors/{SHIFT_ID}"
     # The browser reports refused requests as errors.
-    with opened_page(browser, shop.running, path, size=size, scheme=scheme, login=login, quiet=False) as page:
+    with opened_page(browser, shop.running, path, size=size, scheme=scheme, quiet=False) as page:
         page.get_by_role("tab", name="Bus").click()
         chooser = page.get_by_label("What of the bus")
         expect(chooser).to_be_visible()
@@ -84,48 +82,6 @@ def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop
         expect(page.get_by_text("Nothing matches")).to_be_visible()
 
 
-def test_a_service_is_called_from_its_form_and_a_refusal_is_shown(browser: Browser, shop: Workshop) -> None:
-    """Fields come from the schema, defaults filled in; what is missing is said before anything is sent."""
-    with at_bus(browser, shop, kind="Services") as page:
-        entry(page, "add_numbers").click()
-        form = page.get_by_role("form", name="Request to plant/add_numbers")
-        expect(form.get_by_label("right")).to_have_value("1")
-        form.get_by_role("button", name="Call").click()
-        expect(form).to_contain_text("A value is required")
-        form.get_by_label("left").fill("41")
-        form.get_by_role("button", name="Call").click()
-        expect(page.get_by_role("status", name="Course of the request")).to_contain_text("Answered")
-        expect(page.get_by_role("list", name="Answer")).to_contain_text("42")
-        form.get_by_label("left").fill("5000")
-        form.get_by_role("button", name="Call").click()
-        expect(form.get_by_role("alert")).to_contain_text("these numbers are too large – add smaller ones")
-
-
-def test_a_goal_shows_its_feedback_and_can_be_cancelled(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
-    """Who holds the arm meanwhile stands under leases; afterwards it is free."""
-    with at_bus(browser, shop, kind="Actions") as page:
-        entry(page, "travel").click()
-        expect(page.get_by_text("This may move the robot.")).to_be_visible()
-        form = page.get_by_role("form", name="Request to plant/travel")
-        target = form.get_by_label("target")
-        expect(target).to_have_value('{"xyz":[0,0,0]}')
-        target.fill('{"xyz": [0.4, 0, 0.3]}')
-        form.get_by_role("button", name="Send goal").click()
-        course = page.get_by_role("status", name="Course of the request")
-        expect(course).to_contain_text("Under way")
-        expect(course).to_contain_text("0.25")
-        assert shop.on_loop(lambda: plant.asked[0].target.xyz) == (0.4, 0.0, 0.3)
-        shop.on_loop(lambda: plant.goals[0].feedback(TravelProgress(progress=0.75)))
-        expect(course.get_by_role("progressbar")).to_have_attribute("aria-valuenow", "75")
-        expect(form.get_by_label("speed")).to_be_disabled()
-        page.get_by_label("What of the bus").get_by_text("Leases", exact=True).click()
-        expect(page.get_by_role("row", name="plant")).to_contain_text("plant/travel (active)")
-        page.get_by_label("What of the bus").get_by_text("Actions", exact=True).click()
-        page.get_by_role("button", name="Cancel goal").click()
-        expect(course).to_contain_text("Cancelled, the device is at rest")
-        assert shop.on_loop(shop.session.desk.leases) == ()
-
-
 def test_a_goal_is_cancelled_when_its_page_is_left(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
     """Closing the browser must not leave a robot moving."""
     with at_bus(browser, shop, kind="Actions") as page:
@@ -140,18 +96,6 @@ async def ended(bus: SkillBus) -> None:
     """Wait until no goal is under way."""
     for goal in bus.goals():
         await goal.result()
-
-
-def test_leases_tell_who_holds_what_and_for_how_long(browser: Browser, shop: Workshop) -> None:
-    """A run's node and goal; before anybody holds anything, that is said."""
-    with at_bus(browser, shop, kind="Leases") as page:
-        expect(page.get_by_text("Nobody holds anything")).to_be_visible()
-        bus = shop.session.cell.bus
-        shop.on_loop(lambda: bus.leases.acquire(("plant",), Holder("run-7", "root/move")))
-        row = page.get_by_role("row", name="plant")
-        expect(row).to_contain_text("run run-7")
-        expect(row).to_contain_text("root/move")
-        expect(row).to_contain_text(" s")
 
 
 def test_a_parameter_is_set_and_a_topic_that_takes_commands_published_on(
@@ -174,15 +118,6 @@ def test_a_parameter_is_set_and_a_topic_that_takes_commands_published_on(
         page.get_by_role("button", name="Publish").click()
         expect(page.get_by_role("region", name="plant/lamp")).to_contain_text("0.5")
     assert [each.brightness for each in plant.lamp] == [0.5]
-
-
-def test_viewers_see_the_bus_and_cannot_send(browser: Browser, shop: Workshop) -> None:
-    """The form says why."""
-    viewer = shop.running.new_login_url(VIEWER)
-    with at_bus(browser, shop, kind="Actions", login=viewer) as page:
-        entry(page, "travel").click()
-        expect(page.get_by_text("You may look only")).to_be_visible()
-        expect(page.get_by_role("button", name="Send goal")).to_be_disabled()
 
 
 def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> None:

@@ -13,7 +13,7 @@ from engine.messages import Pose
 from engine.state import Context, Outcome, State
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
 from tests.editor_web.fake_plant import FakePlant, Travel, TravelProgress
-from tests.editor_web.workshop import SHIFT_ID, Workshop
+from tests.editor_web.workshop import Workshop
 
 LAPTOP: Size = (1280, 800)
 TRIP_ID = "behaviors/trip.yaml"
@@ -70,39 +70,6 @@ def shop(tmp_path: Path, loopback: str, plant: FakePlant) -> Generator[Workshop]
 def open_data(page: Page) -> None:
     """Bring the data in front."""
     page.get_by_role("tab", name="Data", exact=True).click()
-
-
-def test_every_value_is_shown_with_its_writer_and_time(browser: Browser, shop: Workshop) -> None:
-    """Those of a container that was left stay; what nobody wrote is from the start."""
-    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=LAPTOP) as page:
-        open_data(page)
-        expect(page.get_by_text("No run is shown")).to_be_visible()
-        page.get_by_role("button", name="Start").click()
-        behavior = page.get_by_role("region", name="Behavior")
-        count = behavior.get_by_role("listitem").filter(has_text="count")
-        expect(count).to_contain_text("root/count")
-        expect(count.locator(".data-value")).to_have_text("1")
-        expect(behavior.get_by_role("listitem").filter(has_text="found")).to_contain_text("from the start")
-        left = page.get_by_role("region", name="root/look")
-        expect(left).to_contain_text("over")
-        expect(left).to_contain_text("a long note")
-        expect(behavior).to_contain_text("[0.1, 0.2, 0.3]")
-        page.get_by_label("Find in the data").fill("note local")
-        expect(behavior).to_have_count(0)
-        expect(left).to_be_visible()
-        left.get_by_role("button", name="root/look/note").click()
-        expect(page.locator(".react-flow__node[data-id='root/look/note'] .is-selected")).to_be_visible()
-
-
-def test_what_is_written_while_one_looks_is_lit(browser: Browser, shop: Workshop) -> None:
-    """And told with how often it was written."""
-    run = shop.start(SHIFT_ID)
-    assert run
-    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=LAPTOP) as page:
-        open_data(page)
-        value = page.get_by_role("region", name="Behavior").get_by_role("listitem").filter(has_text="value")
-        expect(value).to_contain_text("root/set")
-        expect(value.locator("[data-written]")).to_have_text("1")
 
 
 def test_the_progress_of_a_goal_is_on_its_node_and_in_its_card(

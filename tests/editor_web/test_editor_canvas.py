@@ -238,42 +238,6 @@ def test_a_tree_is_drawn_as_one_and_grows_under_its_branches(browser: Browser, s
     assert text.index("flow.Decide") > text.index("name: short")
 
 
-WATCHED = """
-flexcell: 1
-name: watched
-outcomes: [success, failure]
-success: [success]
-root:
-  tree:
-    sequence:
-      memory: false
-      children:
-        - {state: test.Give, name: look}
-        - {state: flow.Wait, name: work, with: {duration_s: 0.2}}
-"""
-WATCHED_ID = "behaviors/watched.yaml"
-
-
-def test_how_often_a_check_is_asked_again_is_set_in_its_form(browser: Browser, shop: Workshop) -> None:
-    """Where the composite has no memory, and only there."""
-    (shop.project / WATCHED_ID).write_text(WATCHED, encoding="utf-8")
-    with at_editor(browser, shop, WATCHED_ID) as page:
-        card(page, "root/sequence/look").click()
-        page.get_by_role("button", name="Guard, timeout, retry").click()
-        every = page.get_by_role("combobox", name="Ask again every")
-        every.fill("200 ms")
-        every.press("Enter")
-        idle(page)
-        card(page, "root/sequence").click()
-        page.get_by_role("switch", name="Memory").click(force=True)
-        idle(page)
-        card(page, "root/sequence/work").click()
-        expect(page.get_by_role("combobox", name="Ask again every")).to_have_count(0)
-        behavior = saved(page, shop, WATCHED_ID)
-    (look, _) = behavior.root.children["sequence"].children.values()
-    assert look.every == "200 ms"
-
-
 def test_one_goes_into_containers_and_out_again_by_mouse_and_keyboard(browser: Browser, shop: Workshop) -> None:
     """Enter, Escape, arrows, the breadcrumb, and open or close in place."""
     with at_editor(browser, shop, SHIFT_ID) as page:
@@ -297,29 +261,6 @@ def test_one_goes_into_containers_and_out_again_by_mouse_and_keyboard(browser: B
         expect(crumb).to_have_text("shiftboth")
         crumb.get_by_role("button", name="shift").click()
         expect(card(page, "root/both").locator(".card")).to_contain_class("is-selected")
-
-
-def test_the_rules_of_a_concurrency_are_edited_as_a_table(browser: Browser, shop: Workshop) -> None:
-    """A line for each rule, a column for each child."""
-    with at_editor(browser, shop, SHIFT_ID) as page:
-        card(page, "root/both").locator(".frame-head").click()
-        table = page.get_by_role("region", name="Rules")
-        expect(table.get_by_role("row")).to_have_count(6)
-        page.get_by_label("right in rule 1").select_option("b")
-        page.get_by_label("How many in rule 1").select_option("1")
-        page.get_by_role("button", name="Delete rule 3").click()
-        expect(table.get_by_role("row")).to_have_count(5)
-        page.get_by_role("button", name="Move rule 2 up").click()
-        idle(page)
-        save(page)
-        node = load_behavior(shop.project / SHIFT_ID).root.children["both"]
-    assert node.concurrency is not None
-    assert [(dict(rule.when), rule.at_least) for rule in node.concurrency.rules] == [
-        ({"left": "b"}, None),
-        ({"left": "a", "right": "b"}, 1),
-        ({"left": "c"}, None),
-        ({"right": "c"}, None),
-    ]
 
 
 def test_a_rule_preempts_some_branches_while_the_others_go_on(browser: Browser, shop: Workshop) -> None:

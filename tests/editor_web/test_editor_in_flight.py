@@ -58,19 +58,6 @@ def first_held(page: Page) -> list[Route]:
     return held
 
 
-def test_a_rule_that_is_changed_while_another_change_is_on_its_way_keeps_both(browser: Browser, shop: Workshop) -> None:
-    """The table is sent as a whole; what has changed meanwhile is in it."""
-    with at_editor(browser, shop, SHIFT_ID) as page:
-        card(page, "root/both").locator(".frame-head").click()
-        held = first_held(page)
-        page.get_by_label("right in rule 1").select_option("b")
-        until(page, lambda: bool(held))
-        page.get_by_role("button", name="Delete rule 3").click()
-        held[0].continue_()
-        expect(page.get_by_role("region", name="Rules").get_by_role("row")).to_have_count(5)
-        expect(page.get_by_label("right in rule 1")).to_have_value("b")
-
-
 def test_what_is_declared_while_another_change_is_on_its_way_is_declared_as_well(
     browser: Browser, shop: Workshop
 ) -> None:

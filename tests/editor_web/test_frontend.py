@@ -12,7 +12,7 @@ import pytest
 import hatch_build
 
 SOURCES = hatch_build.SOURCE / "src"
-FILES = sorted(p for p in SOURCES.rglob("*.ts*") if not p.name.endswith((".test.ts", ".d.ts")))
+FILES = sorted(p for p in SOURCES.rglob("*.ts*") if not p.name.endswith((".test.ts", ".test.tsx", ".d.ts")))
 IMPORT = re.compile(r"""(?:from|import\()\s*['"](\.[^'"]+)['"]""")
 INITIAL_LIMIT_BYTES = 250_000
 # What each floor may stand on, besides itself.
@@ -32,7 +32,7 @@ def imports(file: Path) -> list[str]:
 
 
 def test_its_unit_tests_pass() -> None:
-    """Everything under `*.test.ts`."""
+    """Pure functions in `*.test.ts`; in `*.test.tsx` components, with a faked server and without a browser."""
     hatch_build.install()
     hatch_build.npm("test")
 

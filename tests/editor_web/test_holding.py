@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from engine.event import NodeEntered, NodeExited, OperatorCommanded
+from engine.event import NodeExited
 from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import Size, opened_page, until
 from tests.editor_web.workshop import SHIFT_ID, Workshop
@@ -115,25 +115,6 @@ def test_a_locked_node_is_held_with_its_reason_until_it_is_unlocked(browser: Bro
         expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
 
 
-def test_an_active_node_is_forced_or_run_again(browser: Browser, shop: Workshop) -> None:
-    """One that is not active says so."""
-    run = shop.start()
-    with at_shift(browser, shop) as page:
-        idle = card(page, "root/first")
-        forced = idle.get_by_role("group", name="Force an outcome").get_by_role("button", name="b", exact=True)
-        expect(forced).to_be_disabled()
-        expect(forced).to_have_attribute("title", "Not possible: this node is not active")
-        expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
-        chosen = card(page, "root/rest")
-        chosen.get_by_role("button", name="Run again").click()
-        expect(node(page, "root/rest")).to_contain_text("×2")
-        chosen.get_by_role("group", name="Force an outcome").get_by_role("button", name="done").click()
-        expect(page.locator(".page-head .badge")).to_have_text("finished: good")
-    events = shop.events(run)
-    assert [event.visit for event in events if isinstance(event, NodeEntered) and event.path == "root/rest"] == [1, 2]
-    assert [event.command for event in events if isinstance(event, OperatorCommanded)] == ["repeat", "force"]
-
-
 def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Workshop) -> None:
     """Several at once, each with its ways; one is agreed to, one ended otherwise."""
     run = shop.start(supervision=RunOptions(autonomy="low", demand_operator=True))
@@ -155,21 +136,6 @@ def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Works
         expect(page.locator(".page-head .badge")).to_have_text("finished: bad")
     ends = {event.path: event.outcome for event in shop.events(run) if isinstance(event, NodeExited)}
     assert ends["root/both"] == "odd"
-
-
-def test_a_question_that_has_become_void_vanishes(browser: Browser, shop: Workshop) -> None:
-    """Answered elsewhere, or not asked any more at another autonomy."""
-    run = shop.start(supervision=RunOptions(autonomy="low", demand_operator=True))
-    with at_shift(browser, shop) as page:
-        asked = page.get_by_role("region", name="The run asks")
-        expect(asked.get_by_role("listitem")).to_have_count(2)
-        shop.on_loop(lambda: shop.session.control(run).answer("root/both/right"))
-        expect(asked.get_by_role("listitem")).to_have_count(1)
-        slider = page.get_by_label("Autonomy", exact=True)
-        slider.focus()
-        page.keyboard.press("End")
-        expect(asked).to_have_count(0)
-        expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
 
 
 def test_a_page_that_starts_a_run_below_full_autonomy_operates_it(browser: Browser, shop: Workshop) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.editor_web.browsing import opened_page, require_accessible
-from tests.editor_web.workshop import SHIFT_ID, Workshop
+from tests.editor_web.workshop import Workshop
 
 REASON = "the world's process ended with signal 9"
 REFUSAL = {"message": "the world cannot be started", "where": "cell", "hint": "see the log of the server"}
@@ -48,17 +48,3 @@ def test_a_lost_cell_says_why_and_is_connected_again(browser: Browser, shop: Wor
         cell.refuses = False
         banner.get_by_role("button", name="Connect again").click()
         expect(banner).to_have_count(0)
-
-
-def test_a_start_that_the_lost_cell_refuses_says_so_beside_the_button(browser: Browser, shop: Workshop) -> None:
-    """Whichever tab is open; and the page learns that the cell is lost."""
-    refusal = {"message": "the cell is not connected", "where": "", "hint": "flexcell cell connect"}
-    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", quiet=False) as page:
-        Cell(page)
-        page.route("**/api/v1/runs", lambda route: route.fulfill(status=409, json=refusal))
-        page.get_by_role("tab", name="Outline").click()
-        page.get_by_role("button", name="Start", exact=True).click()
-        expect(page.get_by_role("alert").filter(has_text="Start was refused")).to_contain_text(
-            "the cell is not connected – flexcell cell connect"
-        )
-        expect(page.get_by_role("alert").filter(has_text="The cell is not connected:")).to_contain_text(REASON)

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_accessible, require_fit
-from tests.editor_web.fake_behaviors import BROKEN, SINGLE, TRANSFER
+from tests.editor_web.fake_behaviors import SINGLE, TRANSFER
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.site import Site
 from tests.tiers import nightly
@@ -109,19 +109,6 @@ def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
         expect(page.locator(".leaf.is-active")).to_have_count(2)
 
 
-def test_what_is_wrong_with_a_parameter_stands_at_its_field(visit: Visit, site: Site) -> None:
-    """First by the page itself, then in the engine's words."""
-    with visit(address(SINGLE.id), quiet=False) as page:
-        page.get_by_role("button", name="Start").click()
-        expect(page.get_by_text("A value is required")).to_be_visible()
-        part = page.get_by_label("Part")
-        part.fill("ghost")
-        page.get_by_role("button", name="Start").click()
-        expect(page.get_by_text("no entry is named 'ghost' (see the store)")).to_be_visible()
-        expect(part).to_have_attribute("aria-invalid", "true")
-    assert site.backend.runs() == ()
-
-
 def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> None:
     """From what was measured on."""
     site.backend.step_s = 0.05
@@ -133,14 +120,6 @@ def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> 
         expect(page.locator(".page-head .badge")).to_have_text("finished: failed")
         page.get_by_role("log").get_by_role("button", name="3 causes").last.click()
         expect(page.locator(".causes li").first).to_contain_text("no contact on either pad")
-
-
-def test_a_broken_document_shows_where_and_cannot_be_started(visit: Visit) -> None:
-    """File, line, column and advice."""
-    with visit(address(BROKEN.id)) as page:
-        expect(page.locator(".finding")).to_contain_text("palletise.yaml:14:21")
-        expect(page.locator(".finding")).to_contain_text("did you mean motion.MoveJoints?")
-        expect(page.get_by_role("button", name="Start")).to_be_disabled()
 
 
 def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: Site) -> None:
@@ -179,6 +158,7 @@ def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> No
             require_accessible(page, f"outline, {scheme}")
             page.get_by_role("link", name="palletise").click()
             expect(page.locator(".finding")).to_be_visible()
+            expect(page.get_by_role("button", name="Start")).to_be_disabled()
             require_accessible(page, f"broken, {scheme}")
             page.set_viewport_size({"width": 390, "height": 844})
             require_accessible(page, f"small, {scheme}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Generator
 from contextlib import contextmanager
 from importlib import import_module
@@ -80,51 +79,6 @@ def at_confirmed(browser: Browser, shop: Shop, *, size: Size = DESK, scheme: Sch
     with opened_page(browser, shop.running, f"/behaviors/{CONFIRMED_ID}", size=size, scheme=scheme) as page:
         expect(page.get_by_role("heading", name="confirmed")).to_be_visible()
         yield page
-
-
-@pytest.mark.parametrize(
-    ("answer", "end"), [("Agree: planned", "finished: good"), ("Instead: no_way", "finished: bad")]
-)
-def test_a_question_about_a_way_says_what_it_is_and_that_it_can_be_seen(
-    browser: Browser, shop: Shop, answer: str, end: str
-) -> None:
-    shop.start(CONFIRMED_ID, supervision=ASKED)
-    with at_confirmed(browser, shop) as page:
-        question = asked(page).get_by_role("listitem", name="Question of root/plan")
-        expect(question).to_contain_text("wants to end with planned")
-        expect(question).to_contain_text(
-            re.compile(r"left: 3\.25 s for 1\.\d\d m of the tool's path, found by RRTConnect in 0\.12 s")
-        )
-        expect(question).to_contain_text("shown in the 3D view")
-        shop.on_loop(lambda: shop.planner.show("none"))
-        expect(question).to_contain_text("not in the 3D view any more")
-        question.get_by_role("button", name=answer).click()
-        expect(page.locator(".page-head .badge")).to_have_text(end)
-
-
-def test_an_arm_that_waits_for_a_free_way_says_for_what_and_for_how_long(browser: Browser, shop: Shop) -> None:
-    with at_confirmed(browser, shop) as page:
-        shop.on_loop(lambda: shop.planner.show("moving"))
-        expect(blocked(page)).to_have_count(0)
-        shop.on_loop(lambda: shop.planner.show("blocked", reason="left/fore would touch anna/hand"))
-        expect(blocked(page)).to_contain_text(re.compile(r"left waits: left/fore would touch anna/hand, since \d+ s"))
-        waited = page.get_by_role("timer")
-        expect(waited).to_have_text(re.compile("^[2-9] s|^[1-9][0-9]+ s"))
-        # Another reason is the same wait.
-        before_s = seconds(waited)
-        shop.on_loop(lambda: shop.planner.show("blocked", reason="left/fore would touch anna/fore"))
-        expect(blocked(page)).to_contain_text("touch anna/fore, since")
-        assert seconds(waited) >= before_s
-        page.reload()
-        expect(blocked(page)).to_contain_text("touch anna/fore, since")
-        assert seconds(waited) >= before_s
-        shop.on_loop(lambda: shop.planner.show("moving"))
-        expect(blocked(page)).to_have_count(0)
-
-
-def seconds(timer: Locator) -> int:
-    """How long it says."""
-    return int(timer.inner_text().removesuffix(" s"))
 
 
 def view_of(page: Page) -> FrameLocator:

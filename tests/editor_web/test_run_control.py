@@ -8,10 +8,9 @@ from contextlib import contextmanager
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.security.authentication import VIEWER
 from engine.event import GateReached, OperatorChanged, OperatorCommanded
 from engine.runtime.run_options import RunOptions
-from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit, switch, until
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit, switch
 from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
 from tests.tiers import nightly
 
@@ -26,11 +25,10 @@ def at_shift(
     size: Size = LAPTOP,
     scheme: Scheme = "light",
     quiet: bool = True,
-    login: str = "",
 ) -> Generator[Page]:
     """The page of the behavior `shift`."""
     path = f"/behaviors/{SHIFT_ID}"
-    with opened_page(browser, shop.running, path, size=size, scheme=scheme, quiet=quiet, login=login) as page:
+    with opened_page(browser, shop.running, path, size=size, scheme=scheme, quiet=quiet) as page:
         expect(node(page, "root/first")).to_be_visible()
         yield page
 
@@ -53,28 +51,6 @@ def standing(page: Page) -> Locator:
 def commands_of(shop: Workshop, run: str) -> list[str]:
     """What was commanded, in order."""
     return [event.command for event in shop.events(run) if isinstance(event, OperatorCommanded)]
-
-
-def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Workshop) -> None:
-    """Also to those who press it."""
-    with at_shift(browser, shop) as page:
-        for name in (
-            "Pause",
-            "Step into",
-            "Step over",
-            "Step out",
-            "Step back",
-            "Operate",
-            "Take file",
-            "Take file and preempt",
-        ):
-            expect(command(page, name)).to_be_disabled()
-            expect(command(page, name)).to_have_attribute("title", "Not possible: no run is under way")
-        expect(page.get_by_label("Autonomy", exact=True)).to_be_disabled()
-        command(page, "Pause").click(force=True)
-        expect(page.get_by_role("alert")).to_contain_text("Pause was refused: no run is under way")
-        page.get_by_role("button", name="Put the refusal away").click()
-        expect(page.get_by_role("alert")).to_have_count(0)
 
 
 def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -> None:
@@ -130,40 +106,6 @@ def test_a_run_is_stepped_back_by_button_and_by_key(browser: Browser, shop: Work
         expect(page.get_by_role("alert")).to_contain_text("test.Give does not declare how to undo what it did")
         expect(waits).to_have_text("root/set before its entry: paused")
     assert commands_of(shop, run)[-1] == "step_back"
-
-
-def test_what_the_engine_refuses_is_said_in_its_words(browser: Browser, shop: Workshop) -> None:
-    """A page that is behind by a moment asks for what is not possible any more."""
-    run = shop.start(supervision=RunOptions(start_paused=True))
-    with at_shift(browser, shop, quiet=False) as page:
-        expect(standing(page)).to_have_text("Paused, everything rests")
-        # The answer is made by hand: the command reaches a run that has just gone on.
-        page.route(
-            "**/control/step",
-            lambda route: (shop.on_loop(lambda: shop.session.control(run).resume()), route.continue_()),
-        )
-        command(page, "Step over").click()
-        expect(page.get_by_role("alert")).to_contain_text("Step over was refused: the run is not paused")
-        expect(page.get_by_role("alert")).to_contain_text("pause it first, or set a breakpoint")
-
-
-def test_autonomy_is_a_slider_that_says_what_it_means(browser: Browser, shop: Workshop) -> None:
-    """By key, by pointer, and from another console."""
-    run = shop.start(supervision=RunOptions(start_paused=True))
-    with at_shift(browser, shop) as page:
-        slider = page.get_by_label("Autonomy", exact=True)
-        expect(slider).to_have_attribute("aria-valuetext", "full")
-        slider.focus()
-        page.keyboard.press("ArrowLeft")
-        expect(page.get_by_text("Autonomy high: outcomes that require high or full ask.")).to_be_visible()
-        until(page, lambda: shop.on_loop(lambda: shop.session.control(run).view().autonomy) == "high")
-        box = slider.bounding_box()
-        assert box is not None
-        page.mouse.click(box["x"] + 3, box["y"] + box["height"] / 2)
-        expect(page.get_by_text("Autonomy off: every outcome asks.")).to_be_visible()
-        shop.on_loop(lambda: shop.session.control(run).set_autonomy("low"))
-        expect(slider).to_have_attribute("aria-valuetext", "low")
-        expect(slider).to_have_value("1")
 
 
 def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: Workshop) -> None:
@@ -253,26 +195,6 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
         expect(standing(page)).not_to_have_text("Paused, everything rests")
         page.keyboard.press("Shift+S")
         expect(page.locator(".page-head .badge")).to_have_text("stopped")
-
-
-def test_a_viewer_sees_the_state_and_no_command_is_open(browser: Browser, shop: Workshop) -> None:
-    """State yes, commands no, each with the reason."""
-    shop.start(supervision=RunOptions(start_paused=True))
-    login = shop.running.new_login_url(VIEWER)
-    assert VIEWER == "viewer"
-    with at_shift(browser, shop, login=login) as page:
-        expect(standing(page)).to_have_text("Paused, everything rests")
-        for name in ("Resume", "Step into", "Operate", "Take file"):
-            expect(command(page, name)).to_be_disabled()
-            expect(command(page, name)).to_have_attribute(
-                "title", "Not possible: you may look only; log in with the operator token"
-            )
-        node(page, "root/first").click()
-        expect(page.get_by_label("Pause before its entry")).to_be_disabled()
-        expect(page.get_by_label("Speed")).to_be_disabled()
-        expect(page.get_by_role("button", name="Stop the cell")).to_have_count(0)
-        page.get_by_role("button", name="Breakpoint before root/first").click(force=True)
-        expect(page.get_by_role("alert")).to_contain_text("You may look only")
 
 
 def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Workshop) -> None:

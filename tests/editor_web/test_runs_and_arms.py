@@ -9,9 +9,8 @@ from playwright.sync_api import Browser, expect
 
 from engine.event import StopRequested
 from engine.runtime.run_options import RunOptions
-from engine.skills.arm_control import ArmStatus
 from tests.editor_web.browsing import opened_page, require_accessible, switch
-from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
+from tests.editor_web.workshop import NAP, NAP_ID, Workshop
 from tests.engine.cli.process import entered, run_id_in, started, until
 
 
@@ -65,69 +64,6 @@ def test_an_interrupted_run_asks_and_goes_on(browser: Browser, tmp_path: Path, l
         page.get_by_role("link", name="flexcell").click()
         expect(page.get_by_role("heading", name="Interrupted runs")).to_have_count(0)
         assert shop.session.run(run).outcome == "good"
-
-
-def test_a_run_of_a_changed_file_says_why_it_is_not_resumed(browser: Browser, tmp_path: Path, loopback: str) -> None:
-    """The operator may go on in the new version all the same."""
-    (tmp_path / "behaviors").mkdir()
-    (tmp_path / NAP_ID).write_text(NAP.replace("3000", "2000"), encoding="utf-8")
-    with started("run", tmp_path / NAP_ID, "-q", cwd=tmp_path) as process:
-        until(process, tmp_path, entered("root/only"))
-    with Workshop(host=loopback, project=tmp_path) as shop, opened_page(browser, shop.running, quiet=False) as page:
-        found = page.get_by_role("listitem", name="Interrupted run of nap")
-        found.get_by_role("button", name="Resume").click()
-        expect(found.get_by_role("alert")).to_contain_text("the behavior nap has changed since")
-        switch(found.get_by_label("Also if its file has changed since"))
-        found.get_by_role("button", name="Resume").click()
-        switch(found.get_by_label("Run it again"))
-        found.get_by_role("button", name="Go on with these answers").click()
-        expect(page.locator(".page-head .badge")).to_have_text("running")
-        expect(page.locator(".leaf.is-active")).to_have_count(1)
-
-
-def test_the_strip_tells_what_an_arm_does_and_slows_it_down(browser: Browser, shop: Workshop) -> None:
-    """By key or pointer, from this page or elsewhere."""
-    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}") as page:
-        arm = page.get_by_role("listitem", name="Arm left")
-        state = arm.get_by_role("status", name="State of left")
-        expect(state).to_have_text("idle")
-        shop.on_loop(lambda: shop.arm.become("moving", activity="move_joints"))
-        expect(state).to_have_text("carries outmove_joints")
-        speed = arm.get_by_label("Speed")
-        expect(speed).to_have_attribute("aria-valuetext", "100 %")
-        speed.focus()
-        for _ in range(3):
-            page.keyboard.press("ArrowLeft")
-        expect(speed).to_have_attribute("aria-valuetext", "85 %")
-        page.wait_for_function("() => document.querySelector('.robot output').textContent === '85 %'")
-        # A page that is left before it has asked has asked nothing.
-        with page.expect_response(lambda answer: "0.05" in (answer.request.post_data or "")):
-            page.keyboard.press("Home")
-        expect(speed).to_have_attribute("aria-valuetext", "5 %")
-        page.get_by_role("tab", name="Outline").click()
-        page.reload()
-        expect(speed).to_have_attribute("aria-valuetext", "5 %")
-    assert shop.arm.share == 0.05
-
-
-def test_an_arm_in_a_reflex_is_recovered(browser: Browser, shop: Workshop) -> None:
-    """Why it stopped, why it cannot be recovered yet, and that it could."""
-    with opened_page(browser, shop.running, quiet=False) as page:
-        arm = page.get_by_role("listitem", name="Arm left")
-        expect(arm.get_by_role("button", name="Recover")).to_have_count(0)
-        shop.arm.stuck = True
-        shop.on_loop(lambda: shop.arm.become("reflex", error="external torque of joint 4"))
-        expect(arm).to_contain_text("stopped by a reflex")
-        expect(arm).to_contain_text("external torque of joint 4")
-        arm.get_by_role("button", name="Recover").click()
-        expect(arm.get_by_role("alert")).to_contain_text("the arm has not recovered within 1 s – clear what pushes it")
-        shop.arm.stuck = False
-        arm.get_by_role("button", name="Recover").click()
-        expect(arm.get_by_role("status", name="State of left")).to_have_text("idle")
-        expect(arm.get_by_role("button", name="Recover")).to_have_count(0)
-    latest = shop.on_loop(lambda: shop.session.latest("left/status"))
-    assert isinstance(latest, ArmStatus)
-    assert latest.mode == "idle"
 
 
 def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Workshop) -> None:

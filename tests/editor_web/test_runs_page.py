@@ -8,12 +8,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
-from editor_web.security.authentication import VIEWER
-from engine.bus import Holder
-from engine.event import OperatorChanged, RunStarted
+from engine.event import OperatorChanged
 from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, require_fit, switch
-from tests.editor_web.workshop import NAP_ID, SHIFT, SHIFT_ID, Workshop
+from tests.editor_web.workshop import NAP_ID, SHIFT, Workshop
 
 ASKS = RunOptions(autonomy="low", demand_operator=True)
 NIGHT_ID = "behaviors/night.yaml"
@@ -56,27 +54,6 @@ def three_runs(shop: Workshop) -> dict[str, str]:
     }
 
 
-def test_each_card_tells_of_its_own_run(browser: Browser, shop: Workshop) -> None:
-    """What is active, what waits and asks, what it holds, and how far it is."""
-    runs = three_runs(shop)
-    bus = shop.session.cell.bus
-    shop.on_loop(lambda: bus.leases.acquire(("left",), Holder(runs["nap"], "root/only")))
-    with opened_page(browser, shop.running, "/runs") as page:
-        expect(page.get_by_text("3 are under way, one asks")).to_be_visible()
-        nap, shift, night = (card(page, name) for name in ("nap", "shift", "night"))
-        expect(standing(nap, "nap")).to_have_text("Running")
-        expect(nap.get_by_role("list", name="Active nodes")).to_contain_text("only")
-        expect(nap.get_by_role("img", name="0 of 1 step done, 1 active")).to_be_visible()
-        expect(nap.get_by_role("definition").last).to_have_text("left")
-        expect(standing(shift, "shift")).to_have_text("Asks for 2 answers")
-        expect(shift.get_by_role("listitem", name="Question of root/both/left")).to_contain_text("which requires high")
-        expect(shift.get_by_role("img", name="2 of 5 steps done, 2 wait")).to_be_visible()
-        expect(shift.get_by_role("definition").last).to_have_text("no arm or device")
-        expect(standing(night, "night")).to_have_text("Paused, everything rests")
-        expect(night.get_by_role("list", name="Nodes that wait")).to_have_text("root before its entry: paused")
-        expect(night.get_by_role("img", name="0 of 5 steps done")).to_be_visible()
-
-
 def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Workshop) -> None:
     """Pause, answer, force and stop, each beside runs that go on as they were."""
     runs = three_runs(shop)
@@ -104,26 +81,11 @@ def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Worksh
     assert [statuses[runs[name]] for name in ("nap", "shift", "night")] == ["running", "running", "stopped"]
 
 
-def test_a_refusal_names_the_run(browser: Browser, shop: Workshop) -> None:
-    """A page that is behind by a moment asks for what is not possible any more."""
-    runs = three_runs(shop)
-    with opened_page(browser, shop.running, "/runs", quiet=False) as page:
-        page.route(
-            "**/control/answer",
-            lambda route: (
-                shop.on_loop(lambda: shop.session.control(runs["shift"]).answer("root/both/left")),
-                route.continue_(),
-            ),
-        )
-        question = card(page, "shift").get_by_role("listitem", name="Question of root/both/left")
-        command(question, "Agree: a").click()
-        expect(page.get_by_role("alert")).to_contain_text("shift: Agree was refused")
-
-
 def test_the_page_operates_one_run_at_a_time(browser: Browser, shop: Workshop) -> None:
     """Operating another one leaves the one before; leaving the page of all runs keeps it."""
     runs = three_runs(shop)
-    with opened_page(browser, shop.running, "/runs") as page:
+    with opened_page(browser, shop.running) as page:
+        page.get_by_role("link", name="All runs under way").click()
         nap, night = card(page, "nap"), card(page, "night")
         command(nap, "Operate").click()
         expect(nap).to_contain_text("You operate this run")
@@ -135,35 +97,6 @@ def test_the_page_operates_one_run_at_a_time(browser: Browser, shop: Workshop) -
     told = [[e.status for e in shop.events(runs[name]) if isinstance(e, OperatorChanged)] for name in ("nap", "night")]
     assert told[0] == ["attached", "detached"]
     assert told[1][0] == "attached"
-
-
-def test_a_viewer_sees_all_runs_and_commands_none(browser: Browser, shop: Workshop) -> None:
-    """Each button says why."""
-    three_runs(shop)
-    login = shop.running.new_login_url(VIEWER)
-    with opened_page(browser, shop.running, "/runs", login=login) as page:
-        shift = card(page, "shift")
-        expect(standing(shift, "shift")).to_have_text("Asks for 2 answers")
-        for name in ("Pause", "Operate", "Stop"):
-            expect(command(shift, name)).to_have_attribute(
-                "title", "Not possible: you may look only; log in with the operator token"
-            )
-        expect(shift.get_by_role("button", name="Agree: a").first).to_be_disabled()
-        expect(page.get_by_role("button", name="Stop the cell")).to_have_count(0)
-
-
-def test_with_several_runs_the_header_stops_only_the_one_of_the_page(browser: Browser, shop: Workshop) -> None:
-    """Elsewhere it leads to all of them."""
-    runs = three_runs(shop)
-    with opened_page(browser, shop.running, f"/runs/{runs['nap']}") as page:
-        header = page.get_by_role("banner")
-        expect(header.get_by_role("button", name="Stop")).to_be_visible()
-        header.get_by_role("link", name="+ 2 others").click()
-        expect(page.get_by_role("article")).to_have_count(3)
-        expect(header.get_by_role("button", name="Stop")).to_have_count(0)
-        page.get_by_role("link", name="flexcell").click()
-        header.get_by_role("link", name="3 runs under way").click()
-        expect(page.get_by_role("heading", name="Runs", level=1)).to_be_visible()
 
 
 def test_two_runs_stand_side_by_side(browser: Browser, shop: Workshop) -> None:
@@ -213,14 +146,6 @@ def test_a_run_that_is_over_is_compared_with_one_under_way(browser: Browser, sho
         expect(column(page, "right").locator("[data-id='root/only'] .step")).to_have_attribute("data-status", "active")
         page.goto(f"{shop.running.url.rstrip('/')}/beside/{nap}/nothing")
         expect(column(page, "right")).to_contain_text("This server knows no such run")
-
-
-def test_no_run_under_way_says_what_to_do(browser: Browser, shop: Workshop) -> None:
-    """On the way to the list from anywhere."""
-    with opened_page(browser, shop.running) as page:
-        page.get_by_role("link", name="All runs under way").click()
-        expect(page.get_by_text("Choose a behavior in the menu and start it")).to_be_visible()
-        expect(page.get_by_text("None is under way")).to_be_visible()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -280,38 +205,3 @@ def test_a_card_whose_connection_is_lost_comes_back(browser: Browser, shop: Work
         is_cut = False
         expect(standing(nap, "nap")).to_have_text("Paused, everything rests")
         expect(command(nap, "Resume")).to_be_enabled()
-
-
-def test_a_run_is_started_once_more_as_it_was(browser: Browser, shop: Workshop) -> None:
-    """The form takes over the parameters, the userdata and the seed of the run that is shown."""
-    first = shop.call(shop.session.start(SHIFT_ID, parameters={"dwell": 0.25}, inputs={"value": 5}, seed=77))
-    shop.call(shop.session.stop(first, reason="enough"))
-    with opened_page(browser, shop.running, f"/runs/{first}") as page:
-        dwell = page.get_by_label("dwell")
-        expect(dwell).to_have_value("0")
-        page.get_by_role("button", name="Same as the shown run").click()
-        expect(dwell).to_have_value("0.25")
-        page.get_by_role("button", name="Start", exact=True).click()
-        expect(page.locator(".page-head .badge")).to_have_text("running")
-    (again,) = (run.id for run in shop.session.runs() if run.status == "running")
-    started = [event for event in shop.events(again) if isinstance(event, RunStarted)]
-    assert [(event.parameters, event.inputs, event.seed) for event in started] == [({"dwell": 0.25}, {"value": 5}, 77)]
-
-
-def test_a_run_begins_with_the_userdata_of_the_form(browser: Browser, shop: Workshop) -> None:
-    """What is no JSON object is not sent; a key that the document does not have is refused in words."""
-    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", quiet=False) as page:
-        page.get_by_role("button", name="Initial userdata").click()
-        data = page.get_by_label("Userdata", exact=True)
-        start = page.get_by_role("button", name="Start", exact=True)
-        data.fill("[1]")
-        expect(page.get_by_text("This is not a JSON object")).to_be_visible()
-        start.click()
-        data.fill('{"valu": 1}')
-        start.click()
-        expect(page.get_by_role("alert")).to_contain_text("there is no userdata key 'valu'")
-        data.fill('{"value": 9}')
-        start.click()
-        expect(page.locator(".page-head .badge")).to_have_text("running")
-    (run,) = (run.id for run in shop.session.runs())
-    assert [e.inputs for e in shop.events(run) if isinstance(e, RunStarted)] == [{"value": 9}]

@@ -13,7 +13,6 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, Route, expect
 
 import hatch_build
-from editor_web.security.authentication import VIEWER
 from engine.event import StopRequested
 from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, until
 from tests.editor_web.real_server import dashboard_of
@@ -131,20 +130,6 @@ def test_a_page_that_is_left_before_the_answer_gives_stop_again(
     assert again.content_type.startswith("text/plain")
 
 
-def test_an_arm_that_does_not_come_to_rest_is_an_alarm(browser: Browser, shop: Workshop, loopback: str) -> None:
-    """After five seconds of the page's clock, and it is not hidden by the next words."""
-    with (
-        StopProcess(host=loopback, origin=shop.running.url.rstrip("/"), at_rest=False, engine="informed") as stop,
-        opened_page(browser, shop.running) as page,
-    ):
-        page.clock.install()
-        tell_of_stop(page, stop)
-        stop_button(page).click()
-        expect(stop_news(page)).to_contain_text("Stop acknowledged")
-        page.clock.fast_forward(5100)
-        expect(stop_news(page).get_by_role("alert")).to_contain_text("not at rest: world")
-
-
 def test_stop_by_the_engine_alone_ends_every_run(browser: Browser, shop: Workshop) -> None:
     """Where the server names no stop process; the words go away by themselves, or are put away."""
     run = shop.start()
@@ -249,19 +234,6 @@ def view_of(page: Page) -> Frame:
     assert frame is not None
     frame.wait_for_load_state()
     return frame
-
-
-def test_a_viewer_has_no_stop(browser: Browser, shop: Workshop) -> None:
-    """Neither the button nor its key."""
-    login = shop.running.new_login_url(VIEWER)
-    with opened_page(browser, shop.running, login=login) as page:
-        expect(page.locator(".connection")).to_have_text("Live")
-        stops: list[str] = []
-        page.on("request", lambda request: stops.append(request.url) if request.url.endswith("/cell/stop") else None)
-        page.keyboard.press(KEY)
-        page.evaluate("() => new Promise(requestAnimationFrame)")
-        expect(stop_button(page)).to_have_count(0)
-        assert stops == []
 
 
 def test_every_modal_dialog_lets_stop_through() -> None:

@@ -1,0 +1,107 @@
+/** The runs of the journal: found by words, days and how they ended; and the recordings of the project. */
+import { fireEvent, screen, waitFor } from '@testing-library/react'
+import { expect, it, vi } from 'vitest'
+import { live, server, show } from '../../../testing/page'
+import { Refusal } from '../../../testing/server'
+import type { PastRunBody } from '../../api/types'
+import { dayEndS, dayStartS } from './days'
+import { PastRuns } from './PastRuns'
+import { Recordings } from './Recordings'
+
+const opened = vi.fn()
+const queries: Record<string, string>[] = []
+
+function past(told: Partial<PastRunBody>): PastRunBody {
+  return {
+    id: 'r1',
+    behavior: 'shift',
+    status: 'finished',
+    outcome: 'good',
+    success: true,
+    failed: false,
+    cause: '',
+    started_at_s: 1000,
+    duration_s: 2.5,
+    events: 40,
+    recording: '',
+    here: false,
+    ...told,
+  }
+}
+
+const RUNS = [past({ recording: 'r1.mcap' }), past({ id: 'r2', status: 'running', outcome: null }), past({ id: 'r3', failed: true, success: false, outcome: 'bad', cause: 'no contact' })]
+
+/** The page, once the server has answered it. */
+async function at(runs: readonly PastRunBody[], total = runs.length) {
+  queries.length = 0
+  opened.mockReset()
+  server().on('GET /past-runs', ({ query }: { query: URLSearchParams }) => {
+    queries.push(Object.fromEntries(query))
+    return { runs, total, counts: { all: total, failed: 1 } }
+  })
+  live()
+  const user = show(<PastRuns href={(id) => `/runs/${id}`} onOpen={opened} />)
+  await waitFor(() => expect(queries).toHaveLength(1))
+  return user
+}
+
+it('lists the runs with how they ended, and opens one', async () => {
+  const user = await at(RUNS)
+  const [good, lost, bad] = await screen.findAllByRole('listitem')
+  expect(good).toHaveTextContent('finished: good')
+  expect(good).toHaveTextContent('2.50 s · 40 events · recorded')
+  expect(lost).toHaveTextContent('interrupted')
+  expect(bad).toHaveTextContent('no contact')
+  expect(screen.getByRole('button', { name: 'Failed 1' })).toHaveAttribute('aria-pressed', 'false')
+  await user.click(screen.getAllByRole('link')[2] ?? document.body)
+  expect(opened.mock.calls).toEqual([['r3']])
+})
+
+it('asks for words, days and endings together', async () => {
+  const user = await at([])
+  expect(await screen.findByText('No past runs')).toBeVisible()
+  await user.type(screen.getByLabelText('Find a run'), 'shift bad')
+  fireEvent.change(screen.getByLabelText('from'), { target: { value: '2026-03-01' } })
+  fireEvent.change(screen.getByLabelText('to'), { target: { value: '2026-03-02' } })
+  await user.click(screen.getByRole('button', { name: /^Failed/ }))
+  const wanted = { text: 'shift bad', kind: 'failed', since_s: String(dayStartS('2026-03-01')), until_s: String(dayEndS('2026-03-02')) }
+  await waitFor(() => expect(queries.at(-1)).toMatchObject(wanted))
+  expect(await screen.findByText('No run matches')).toBeVisible()
+  expect(screen.getByRole('button', { name: /^Failed/ })).toHaveAttribute('aria-pressed', 'true')
+})
+
+it('shows more of many, up to as many as can be looked through', async () => {
+  const user = await at(RUNS, 300)
+  await user.click(await screen.findByRole('button', { name: 'Show more of 300' }))
+  await waitFor(() => expect(queries.at(-1)).toMatchObject({ limit: '100' }))
+  await user.click(screen.getByRole('button', { name: 'Show more of 300' }))
+  await user.click(screen.getByRole('button', { name: 'Show more of 300' }))
+  expect(await screen.findByRole('button', { name: '297 older ones: narrow the search' })).toBeDisabled()
+})
+
+it('says why the journal cannot be read', async () => {
+  server().on('GET /past-runs', new Refusal(503, { message: 'the journal is locked', hint: 'end the other server' }))
+  live()
+  show(<PastRuns href={(id) => id} onOpen={opened} />)
+  expect(await screen.findByRole('alert')).toHaveTextContent('the journal is locked – end the other server')
+})
+
+it('lists recordings with their size, and why one cannot be opened', async () => {
+  opened.mockReset()
+  const file = { path: 'runs/a.mcap', behavior: 'shift', started_at_s: 1000, size_bytes: 2_400_000, problem: '' }
+  server().on('GET /recordings', [file, { ...file, path: 'runs/b.mcap', behavior: '', size_bytes: 10, problem: 'it is cut off' }])
+  const user = show(<Recordings href={(path) => `/recordings/${path}`} onOpen={opened} />)
+  const [whole, cut] = await screen.findAllByRole('listitem')
+  expect(whole).toHaveTextContent('2.4 MB')
+  expect(cut).toHaveTextContent('b.mcap')
+  expect(cut).toHaveTextContent('1 kB')
+  expect(cut).toHaveTextContent('it is cut off')
+  await user.click(screen.getByRole('link'))
+  expect(opened.mock.calls).toEqual([['runs/a.mcap']])
+})
+
+it('says how recordings come to be where there are none', async () => {
+  server().on('GET /recordings', [])
+  show(<Recordings href={(path) => path} onOpen={opened} />)
+  expect(await screen.findByText('No recordings')).toBeVisible()
+})
