@@ -18,7 +18,8 @@ from tests.editor_web.limits import GUARD_S
 
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 FADED = """() => {
-    for (const each of document.getAnimations()) if (each.effect?.getComputedTiming().endTime !== Infinity) each.finish()
+    const ends = (each) => each.effect?.getComputedTiming().endTime !== Infinity
+    document.getAnimations().filter(ends).forEach((each) => each.finish())
 }"""
 """Ends what fades: to wait for it lasts for ever where a part is out of sight, and where something turns endlessly."""
 OF_COLOURS = ("color-contrast", "link-in-text-block")
