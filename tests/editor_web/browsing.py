@@ -14,7 +14,7 @@ from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Locator, P
 import bootstrap
 import hatch_build
 from editor_web.server import Dashboard
-from tests.editor_web.limits import GUARD_S
+from tests.editor_web.limits import GUARD_MS, GUARD_S
 
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 FADED = """() => {
@@ -54,6 +54,8 @@ def opened_page(
 ) -> Generator[Page]:
     """Log in, as the operator unless `login` says otherwise, and open an address; console errors fail a quiet page."""
     context = browser.new_context(locale="en-US", viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
+    # A click waits until a part rests for two frames, which a 3D view without a graphics card holds up.
+    context.set_default_timeout(2 * GUARD_MS)
     page = context.new_page()
     said: list[str] = []
 
