@@ -1,4 +1,4 @@
-"""Too much, too slow, or garbage, on every route and both websockets: refused soon, and the memory stays flat."""
+"""Too much, too slow, or garbage, on every route and websocket: refused soon, and the memory stays flat."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from editor_web.transport.request_limits import MAX_BODY_BYTES
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fuzzing import Operation, Target, opened_target, operations
 from tests.editor_web.limits import GUARD_S
+from tests.editor_web.socket_paths import socket_paths
 from tests.editor_web.workshop import NAP_ID
 from tests.tiers import nightly
 
@@ -186,7 +187,7 @@ async def test_no_frame_hurts_a_websocket(
     assert [record for record in caplog.records if record.exc_info or record.levelname == "ERROR"] == []
 
 
-@pytest.mark.parametrize("path", ["data", "teach/live", "cell/past/p1", "cell/grip/p1"])
+@pytest.mark.parametrize("path", [each for each in socket_paths("p1") if not each.startswith("/cell")])
 @pytest.mark.parametrize(
     "message", [b"\xff\xfe\x00garbage", "[[[[", '{"k":"none"}'], ids=["bytes", "no JSON", "no word"]
 )
@@ -196,7 +197,7 @@ async def test_what_a_websocket_does_not_know_ends_it(
     """With the code for a page that is at fault, so that it does not come back again and again."""
     async with serve(cell_view=True) as served:
         async with websockets.asyncio.client.connect(
-            f"{served.origin.replace('http', 'ws', 1)}/api/v1/{path}",
+            f"{served.origin.replace('http', 'ws', 1)}{path}",
             additional_headers=served.cookie,
             origin=websockets.Origin(served.origin),
             proxy=None,

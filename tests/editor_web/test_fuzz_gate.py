@@ -1,4 +1,4 @@
-"""Every route and both websockets from the wrong place, and every path parameter as a way out of the project."""
+"""Every route and every websocket from the wrong place, and every path parameter as a way out of the project."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from editor_web.security.middleware import cookie_name
 from editor_web.security.request_rules import SAFE_METHODS
 from tests.editor_web.fuzzing import HOSTILE_PATHS, Operation, Target, opened_target, operations
 from tests.editor_web.limits import GUARD_S
+from tests.editor_web.socket_paths import socket_paths
 from tests.editor_web.workshop import SHIFT_ID
 
 EVIL = "evil.example"
@@ -67,7 +68,7 @@ def test_every_route_is_shut_from_outside(target: Target, operation: Operation) 
     assert target.log.said == []
 
 
-@pytest.mark.parametrize("path", ["/api/v1/live", "/api/v1/teach/live", "/cell/", "/cell/page1/"])
+@pytest.mark.parametrize("path", socket_paths("page1"))
 def test_every_websocket_is_shut_from_outside(target: Target, path: str) -> None:
     """Before it opens."""
     own = {"Cookie": session(target)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from engine.document.faults import FAULT_KINDS
 from engine.event import FaultInjected, GoalFinished, GoalSent, RunEnded
 from engine.journal import encode_event_log
 from tests.engine.faults.device import run_with_faults
@@ -31,29 +32,32 @@ root:
         transitions: {both: read, one: read}
       read: {state: gripper.Read, with: {times: 2}, timeout: {after: 4 s, to: bad}, transitions: {read: good, failed: bad}}
 """  # noqa: E501
-KINDS = st.sampled_from(
-    [
-        "late: 0",
-        "late: 500 ms",
-        "late: 9 s",
-        "hang: {}",
-        "hang: {ignore_cancel: true}",
-        "error: it broke",
-        "error: {message: it broke, after: 1 s}",
-        "error: {message: it broke, by: reject}",
-        "error: {message: it broke, by: raise}",
-        "duplicate: at_once",
-        "duplicate: after_end",
-        "lost: request",
-        "lost: answer",
-        "crash: {on_request: after}",
-    ]
-)
+KINDS = [
+    "late: 0",
+    "late: 500 ms",
+    "late: 9 s",
+    "hang: {}",
+    "hang: {ignore_cancel: true}",
+    "error: it broke",
+    "error: {message: it broke, after: 1 s}",
+    "error: {message: it broke, by: reject}",
+    "error: {message: it broke, by: raise}",
+    "duplicate: at_once",
+    "duplicate: after_end",
+    "lost: request",
+    "lost: answer",
+    "crash: {on_request: after}",
+]
 PLACES = st.sampled_from(
     ["", "at: root/both/*, ", "at: root/read, ", "address: left/gripper/state, ", "address: left/**, "]
 )
 TURNS = st.sampled_from(["", "request: 1, ", "request: 2, ", "times: 1, ", "probability: 0.5, "])
-FAULTS = st.lists(st.builds("- {{{}{}{}}}".format, PLACES, TURNS, KINDS), min_size=1, max_size=4).map("\n".join)
+FAULT = st.builds("- {{{}{}{}}}".format, PLACES, TURNS, st.sampled_from(KINDS))
+FAULTS = st.lists(FAULT, min_size=1, max_size=4).map("\n".join)
+
+
+def test_every_kind_of_fault_is_among_the_random_ones() -> None:
+    assert {kind.partition(":")[0] for kind in KINDS} == set(FAULT_KINDS)
 
 
 @settings(deadline=None, max_examples=150)
