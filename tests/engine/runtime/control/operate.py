@@ -17,7 +17,7 @@ from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from engine.state import State
 from tests.engine.fake_states import CATALOGUE
-from tests.engine.run_document import HEAD, Told
+from tests.engine.run_document import HEAD, ObservedRun
 from tests.engine.runtime.control.turntable import TurnTable
 
 Act = Callable[[Run], object]
@@ -42,7 +42,7 @@ def operate(
     inputs: Mapping[str, object] | None = None,
     prepare: Callable[[SkillBus], object] = lambda bus: None,
     states: Mapping[str, type[State]] | None = None,
-) -> Told:
+) -> ObservedRun:
     """Run a document; at each time in seconds do what `acts` says with the run."""
     body = dedent(text)
     plan = new_plan(
@@ -50,7 +50,7 @@ def operate(
         {**CATALOGUE, "test.TurnTable": TurnTable, **(states or {})},
     )
 
-    async def main() -> Told:
+    async def main() -> ObservedRun:
         bus = SkillBus(new_clock())
         events: list[Event] = []
         async with bus:
@@ -72,6 +72,6 @@ def operate(
                 timer.cancel()
             for task in under_way:
                 await task
-        return Told(result, tuple(events))
+        return ObservedRun(result, tuple(events))
 
     return run_virtual(main())

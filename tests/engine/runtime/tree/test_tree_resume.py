@@ -13,7 +13,7 @@ from engine.journal import decode_event, encode_event
 from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
-from tests.engine.runtime.tree.run_tree import Told, tree_plan
+from tests.engine.runtime.tree.run_tree import ObservedRun, tree_plan
 from tests.engine.runtime.tree.scripted_states import COUNTS
 
 TREES = {
@@ -169,19 +169,19 @@ TREES = {
 }
 
 
-def _run(plan: Plan, known: list[Event] | None) -> Told:
+def _run(plan: Plan, known: list[Event] | None) -> ObservedRun:
     events: list[Event] = []
     COUNTS.clear()
     for event in known or ():
         if isinstance(event, NodeExited) and not event.preempted:
             COUNTS[event.path] = event.visit
 
-    async def main() -> Told:
+    async def main() -> ObservedRun:
         async with SkillBus(new_clock()) as bus:
             history = RunStateReducer(plan, run="r1").read(known) if known is not None else None
             run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
             run.watch(events.append)
-            return Told(await run.execute(), tuple(events))
+            return ObservedRun(await run.execute(), tuple(events))
 
     return run_virtual(main())
 

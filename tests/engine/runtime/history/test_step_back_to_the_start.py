@@ -18,7 +18,7 @@ from engine.skill import Service
 from engine.state import ActivationRecord, Context, Outcome, State
 from tests.engine.at_once import at_once
 from tests.engine.fake_states import WITH_FLOW
-from tests.engine.run_document import Told
+from tests.engine.run_document import ObservedRun
 from tests.engine.runtime.control.operate import Act, operate, pause, resume
 
 Node = dict[str, Any]
@@ -171,7 +171,7 @@ class BackAgain:
         assert self.table is not None
         self.left.append(+self.table.tokens)
 
-    def run(self, text: str, acts: Mapping[float, Act]) -> Told:
+    def run(self, text: str, acts: Mapping[float, Act]) -> ObservedRun:
         return operate(text, acts, prepare=self.connect, states={**WITH_FLOW, "test.Put": Put})
 
 

@@ -1,4 +1,4 @@
-"""A bench with a device, a camera and a ticking topic, the states that use them, and how a run there is recorded."""
+"""A rig with a device, a camera and a ticking topic, the states that use them, and how a run there is recorded."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Tick(Message, frozen=True, kw_only=True):
     number: int
 
 
-class Bench:
+class Rig:
     """Answers at `bench` and ticks on `bench/tick`."""
 
     def __init__(self, bus: SkillBus) -> None:
@@ -243,11 +243,11 @@ def behavior_of(text: str, *, file: str = "test.yaml") -> Behavior:
 
 
 @asynccontextmanager
-async def open_bench() -> AsyncGenerator[SkillBus]:
-    """Open a bus with the bench on it."""
+async def open_rig() -> AsyncGenerator[SkillBus]:
+    """Open a bus with the rig on it."""
     async with SkillBus(new_clock()) as bus:
-        bench = Bench(bus)
-        ticking = asyncio.create_task(bench.tick(), name="ticking")
+        rig = Rig(bus)
+        ticking = asyncio.create_task(rig.tick(), name="ticking")
         try:
             yield bus
         finally:
@@ -277,7 +277,7 @@ async def record_run(
         path=path, documents=RecordedDocuments(behavior="test.yaml", texts=texts), rate_hz=rate_hz, topics=topics
     )
     loop = asyncio.get_running_loop()
-    async with open_bench() as bus, RunRecording.open(order, inline=bus.clock.virtual) as recording:
+    async with open_rig() as bus, RunRecording.open(order, inline=bus.clock.virtual) as recording:
         prepare(bus)
         run = Run(
             new_plan(behavior, CATALOGUE),

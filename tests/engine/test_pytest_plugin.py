@@ -13,7 +13,7 @@ import pytest
 
 from engine.clock import run_virtual
 from tests.engine.cli.command import flexcell
-from tests.engine.replay.bench import record_run
+from tests.engine.replay.rig import record_run
 from tests.tiers import nightly
 
 WAIT = """flexcell: 1

@@ -12,7 +12,7 @@ import pytest
 from engine.event import MessageLogged
 from engine.runtime.run import Run
 from engine.state import Context, Outcome, State
-from tests.engine.run_document import Told
+from tests.engine.run_document import ObservedRun
 from tests.engine.runtime.control.operate import Act, operate, pause, resume
 from tests.engine.runtime.control.turntable import BRAKING_S, Turn, Turntable
 
@@ -66,7 +66,7 @@ def one(kind: type[State]) -> str:
     return ONE.replace("test.Hang, with: {cleanup_s: 2}", kind.state_name)
 
 
-def cleaned(told: Told) -> list[str]:
+def cleaned(told: ObservedRun) -> list[str]:
     """The clean-ups that came to their end."""
     return [line for line in told.story if line.endswith("cleaned up")]
 

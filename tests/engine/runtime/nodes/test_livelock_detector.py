@@ -12,7 +12,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.event import Event, NodeEntered
 from engine.runtime.run import Run
-from tests.engine.run_document import Told, plan_of, run_document
+from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 BESIDE = """
 root:
@@ -35,22 +35,24 @@ GIVE = "{state: test.Give, transitions: {a: pong, b: bad, c: bad}}"
 HARDLY = "{state: test.Give, with: {after_s: 1.0e-12}, transitions: {a: pong, b: bad, c: bad}}"
 
 
-def run_in_real_time(text: str) -> Told:
+def run_in_real_time(text: str) -> ObservedRun:
     """Run a document with the clock on the wall."""
     plan = plan_of(dedent(text))
     events: list[Event] = []
 
-    async def main() -> Told:
+    async def main() -> ObservedRun:
         run = Run(plan, run="r", bus=SkillBus(new_clock()))
         run.watch(events.append)
-        return Told(await run.execute(), tuple(events))
+        return ObservedRun(await run.execute(), tuple(events))
 
     return asyncio.run(main())
 
 
 @pytest.mark.parametrize("ping", [GIVE, HARDLY])
 @pytest.mark.parametrize("run", [run_document, run_in_real_time])
-def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(ping: str, run: Callable[[str], Told]) -> None:
+def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(
+    ping: str, run: Callable[[str], ObservedRun]
+) -> None:
     told = run(BESIDE.replace("PING", ping))
     cause = str(told.result.cause)
     assert told.result.status == "errored"

@@ -20,7 +20,7 @@ from engine.registry import load_states
 from engine.runtime.plan import Plan, new_plan
 from engine.runtime.run import Run, RunResult
 
-BEHAVIORS = Path(__file__).parents[2] / "behaviors"
+BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 WAVE = """
 flexcell: 1
 name: wave

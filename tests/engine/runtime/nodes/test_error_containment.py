@@ -10,7 +10,7 @@ from engine.cause_chain import describe_cause
 from engine.event import Cause, MessageLogged
 from engine.journal import decode_event, encode_event
 from engine.state import Context, Outcome, State
-from tests.engine.run_document import Told
+from tests.engine.run_document import ObservedRun
 from tests.engine.runtime.control.operate import operate, pause, resume
 
 HALF = "half a character: \ud83d"
@@ -91,7 +91,7 @@ class Mumbling(State, frozen=True, kw_only=True):
 STATES: dict[str, type[State]] = {kind.state_name: kind for kind in (Greedy, Stillborn, Sloppy, Sulky, Mumbling)}
 
 
-def run(kind: type[State], *, more: str = "") -> Told:
+def run(kind: type[State], *, more: str = "") -> ObservedRun:
     """Run one state of this kind."""
     return operate(DOCUMENT.replace("NAME", kind.state_name).replace("MORE", more), {}, states=STATES)
 

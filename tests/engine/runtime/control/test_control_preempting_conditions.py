@@ -12,7 +12,7 @@ from engine.event import BranchesPreempted, NodeEntered, NodeExited
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE
-from tests.engine.run_document import HEAD, Told
+from tests.engine.run_document import HEAD, ObservedRun
 from tests.engine.runtime.control.operate import Act, operate, pause, resume
 
 TEXT = """
@@ -52,15 +52,15 @@ def _force(path: str, outcome: str) -> Act:
     return act
 
 
-def _cleaned(told: Told) -> list[str]:
+def _cleaned(told: ObservedRun) -> list[str]:
     return [line for line in told.story if line.endswith("cleaned up")]
 
 
-def _preempted(told: Told) -> list[tuple[float, str]]:
+def _preempted(told: ObservedRun) -> list[tuple[float, str]]:
     return [(e.time_s, e.path) for e in told.events if isinstance(e, NodeExited) and e.preempted]
 
 
-def _fired(told: Told) -> list[tuple[float, tuple[str, ...]]]:
+def _fired(told: ObservedRun) -> list[tuple[float, tuple[str, ...]]]:
     return [(e.time_s, e.branches) for e in told.events if isinstance(e, BranchesPreempted)]
 
 

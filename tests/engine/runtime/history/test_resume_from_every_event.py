@@ -11,7 +11,7 @@ from engine.journal import decode_event, encode_event
 from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
-from tests.engine.run_document import Told, plan_of
+from tests.engine.run_document import ObservedRun, plan_of
 
 BEHAVIORS = {
     "machine with a counter": """
@@ -126,7 +126,7 @@ BEHAVIORS = {
 }
 
 
-async def _run(plan: Plan, checkpoint_of: list[Event] | None) -> Told:
+async def _run(plan: Plan, checkpoint_of: list[Event] | None) -> ObservedRun:
     bus = SkillBus(new_clock())
     events: list[Event] = []
     async with bus:
@@ -134,7 +134,7 @@ async def _run(plan: Plan, checkpoint_of: list[Event] | None) -> Told:
         run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
         run.watch(events.append)
         result = await run.execute()
-    return Told(result, tuple(events))
+    return ObservedRun(result, tuple(events))
 
 
 def _plain(events: list[Event]) -> list[Event]:

@@ -23,7 +23,7 @@ from engine.runtime.history.resume import (
 from engine.runtime.plan import Plan, new_plan
 from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE, Use
-from tests.engine.run_document import HEAD, Told
+from tests.engine.run_document import HEAD, ObservedRun
 
 
 class Ask(Use, frozen=True, kw_only=True):
@@ -37,26 +37,26 @@ def _plan(text: str) -> Plan:
     return new_plan(parse_behavior(HEAD + dedent(text), file="test.yaml"), {**CATALOGUE, "test.Ask": Ask})
 
 
-def _whole(plan: Plan) -> Told:
-    async def main() -> Told:
+def _whole(plan: Plan) -> ObservedRun:
+    async def main() -> ObservedRun:
         bus = SkillBus(new_clock())
         events: list[Event] = []
         async with bus:
             run = Run(plan, run="r1", bus=bus)
             run.watch(events.append)
-            return Told(await run.execute(), tuple(events))
+            return ObservedRun(await run.execute(), tuple(events))
 
     return run_virtual(main())
 
 
-def _events_until(told: Told, path: str) -> list[Event]:
+def _events_until(told: ObservedRun, path: str) -> list[Event]:
     """Return the events up to the entry of a node."""
     at = next(i for i, event in enumerate(told.events) if isinstance(event, NodeEntered) and event.path == path)
     return list(told.events[: at + 1])
 
 
-def _go_on(plan: Plan, events: list[Event], answers: Mapping[str, str], *, demanded: bool = False) -> Told:
-    async def main() -> Told:
+def _go_on(plan: Plan, events: list[Event], answers: Mapping[str, str], *, demanded: bool = False) -> ObservedRun:
+    async def main() -> ObservedRun:
         bus = SkillBus(new_clock())
         new: list[Event] = []
         history = read_history(plan, "r1", events)
@@ -66,7 +66,7 @@ def _go_on(plan: Plan, events: list[Event], answers: Mapping[str, str], *, deman
         async with bus:
             run = Run(plan, run="r1", bus=bus, checkpoint=checkpoint)
             run.watch(new.append)
-            return Told(await run.execute(), tuple(new))
+            return ObservedRun(await run.execute(), tuple(new))
 
     return run_virtual(main())
 
@@ -141,13 +141,13 @@ def test_the_data_of_a_moment_start_a_new_run_at_a_chosen_step() -> None:
     assert last_entered_state(events, events[-1].seq) == "root/two"
     history = read_history(plan, "r1", whole.events, until_seq=events[-1].seq)
 
-    async def main(path: str) -> Told:
+    async def main(path: str) -> ObservedRun:
         bus = SkillBus(new_clock())
         new: list[Event] = []
         async with bus:
             run = Run(plan, run="r2", bus=bus, checkpoint=start_checkpoint(history, plan, path))
             run.watch(new.append)
-            return Told(await run.execute(), tuple(new))
+            return ObservedRun(await run.execute(), tuple(new))
 
     again = run_virtual(main("root/two"))
     assert (again.result.outcome, again.result.userdata) == ("good", {"value": 22})

@@ -19,7 +19,7 @@ from tests.engine.store.mongod import RUNS_HERE, Mongod
 from tests.engine.store.proxy import Proxy
 from tests.engine.store.stores import DURABLE_KINDS, database_of, opener_of
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 # Writes entries one after the other, and says of each when it is acknowledged.
 WRITER = """
 import asyncio, sys

@@ -15,7 +15,7 @@ import pytest
 from benchmarks.crash_trial import Trial
 from tests.tiers import nightly
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[4]
 
 
 def trials(folder: Path, subject: str, *options: str) -> list[Trial]:

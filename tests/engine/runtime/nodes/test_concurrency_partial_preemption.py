@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.event import BranchesPreempted
-from tests.engine.run_document import Told, run_document
+from tests.engine.run_document import ObservedRun, run_document
 
 LOST = "camera: {state: test.Give, with: {outcome: a, after_s: 1.0}}"
 LIGHT = "light: {state: test.Give, with: {outcome: b, after_s: 5.0}}"
@@ -13,7 +13,7 @@ HANGING = "mover: {state: test.Hang, with: {cleanup_s: 2.0}}"
 PREEMPT = "{preempt: [mover], when: {camera: a}}"
 
 
-def _run(*branches: str, conditions: str, more: str = "otherwise: bad", stop_at_s: float | None = None) -> Told:
+def _run(*branches: str, conditions: str, more: str = "otherwise: bad", stop_at_s: float | None = None) -> ObservedRun:
     states = "\n".join(f"              {branch}" for branch in branches)
     return run_document(
         f"""
@@ -28,7 +28,7 @@ def _run(*branches: str, conditions: str, more: str = "otherwise: bad", stop_at_
     )
 
 
-def _fired(told: Told) -> list[tuple[float, str, tuple[str, ...]]]:
+def _fired(told: ObservedRun) -> list[tuple[float, str, tuple[str, ...]]]:
     return [(e.time_s, e.condition, e.branches) for e in told.events if isinstance(e, BranchesPreempted)]
 
 

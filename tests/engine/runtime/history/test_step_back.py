@@ -23,7 +23,7 @@ from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from tests.engine.at_once import at_once
 from tests.engine.fake_states import WITH_FLOW
-from tests.engine.run_document import Told
+from tests.engine.run_document import ObservedRun
 from tests.engine.runtime.control.operate import Act, operate, pause, resume
 from tests.engine.runtime.control.slide import MoveSlide, PushSlide, Slide
 
@@ -71,7 +71,7 @@ class Operator:
         *,
         inputs: Mapping[str, object] | None = None,
         supervision: RunOptions | None = None,
-    ) -> Told:
+    ) -> ObservedRun:
         return operate(text, acts, prepare=self.connect, states=STATES, inputs=inputs, supervision=supervision)
 
 

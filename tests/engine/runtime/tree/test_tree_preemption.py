@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.event import MessageLogged, NodeEntered, NodeExited
 from engine.journal import encode_event_log
-from tests.engine.runtime.tree.run_tree import Told, run_tree
+from tests.engine.runtime.tree.run_tree import ObservedRun, run_tree
 from tests.engine.runtime.tree.specimen import SLOTS, Specimen, specimens
 
 stops = st.none() | st.sampled_from([0.0, 0.5, 0.75, 1.0, 2.5])
@@ -32,7 +32,7 @@ def _with(document: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
     return {**document, kind: {**inner, "children": [_with(child, more) for child in inner["children"]]}}
 
 
-def _run(specimen: Specimen, stop_at_s: float | None, **more: object) -> Told:
+def _run(specimen: Specimen, stop_at_s: float | None, **more: object) -> ObservedRun:
     document = _with(specimen.document(), dict(more))
     return run_tree(json.dumps(document), stop_at_s=8.0 if stop_at_s is None else stop_at_s, instant_limit=100)
 

@@ -27,7 +27,7 @@ from engine.runtime.control import Breakpoint
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from tests.engine.at_once import at_once
-from tests.engine.replay.bench import CATALOGUE, Act, recorded
+from tests.engine.replay.rig import CATALOGUE, Act, recorded
 
 GRID = st.integers(0, 12).map(lambda n: n / 8)
 OFF_GRID = st.integers(0, 2047).map(lambda n: (2 * n + 1) / 4096)

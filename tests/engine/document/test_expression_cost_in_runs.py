@@ -12,7 +12,7 @@ from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.event import NodeEntered
 from engine.runtime.run import Run, RunResult
-from tests.engine.run_document import Told, plan_of, run_document
+from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 XS = f"[{', '.join(map(str, range(250)))}]"
 COSTLY = f"""
@@ -144,7 +144,7 @@ def test_more_rounds_than_anybody_counts_are_refused(rounds: str, says: str) -> 
     assert says in told.result.cause.message
 
 
-def _run_foreach(rounds: str) -> Told:
+def _run_foreach(rounds: str) -> ObservedRun:
     return run_document(f"""
     userdata: {{n: 1}}
     root:

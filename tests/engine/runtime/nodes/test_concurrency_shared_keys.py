@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from engine.event import NodeExited, UserdataWritten
 from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.userdata.userdata import Scope
-from tests.engine.run_document import Told, plan_of, run_document
+from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 ADD = '{state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}, transitions: {done: done}}'
 COUNT = f"""
@@ -28,7 +28,7 @@ COUNT = f"""
 """
 
 
-def _count(shared: str) -> Told:
+def _count(shared: str) -> ObservedRun:
     return run_document(COUNT.replace("SHARED", shared))
 
 

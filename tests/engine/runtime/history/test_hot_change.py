@@ -15,7 +15,7 @@ from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
 from engine.state import Context, Outcome
 from tests.engine.fake_states import CATALOGUE, Give
-from tests.engine.run_document import HEAD, Told
+from tests.engine.run_document import HEAD, ObservedRun
 from tests.engine.runtime.control.operate import Act, operate
 
 OLD = """
@@ -38,10 +38,10 @@ root:
 """
 
 
-class Tell(Give, frozen=True, kw_only=True):
+class Announce(Give, frozen=True, kw_only=True):
     """End as told, and say when it is preempted."""
 
-    state_name: ClassVar[str] = "test.Tell"
+    state_name: ClassVar[str] = "test.Announce"
 
     async def run(self, ctx: Context) -> Outcome:
         try:
@@ -51,7 +51,7 @@ class Tell(Give, frozen=True, kw_only=True):
             raise
 
 
-STATES = {"test.Tell": Tell}
+STATES = {"test.Announce": Announce}
 
 
 def _change(text: str, said: list[str], *, preempt: bool = False) -> Act:
@@ -66,7 +66,9 @@ def _change(text: str, said: list[str], *, preempt: bool = False) -> Act:
     return act
 
 
-def _changed(text: str, *, paused: bool = True, preempt: bool = False, at_s: float = 1.0) -> tuple[Told, list[str]]:
+def _changed(
+    text: str, *, paused: bool = True, preempt: bool = False, at_s: float = 1.0
+) -> tuple[ObservedRun, list[str]]:
     said: list[str] = []
     acts: dict[float, Act] = {at_s: lambda run: run.control.pause()} if paused else {}
     change = _change(text, said, preempt=preempt)
@@ -133,7 +135,7 @@ def test_a_run_that_is_neither_paused_nor_locked_is_left_alone() -> None:
     assert told.result.duration_s == pytest.approx(4.0)
 
 
-OTHER_CLASS = OLD.replace(ONE, ONE.replace("test.Give", "test.Tell"))
+OTHER_CLASS = OLD.replace(ONE, ONE.replace("test.Give", "test.Announce"))
 THIRD = OLD.replace(
     "            right:\n", "            third: {state: test.Give, with: {after_s: 6}}\n            right:\n"
 ).replace("right: out}", "right: out, third: a}")
@@ -142,10 +144,10 @@ PREEMPT = " (the run continues with the old version; `preempt` preempts what can
 
 def test_with_the_consent_of_the_operator_a_running_state_of_another_class_is_preempted_and_entered_anew() -> None:
     refused, said = _changed(OTHER_CLASS)
-    assert said == [f"refused: root/both/right/one is active as test.Give and becomes test.Tell{PREEMPT}"]
+    assert said == [f"refused: root/both/right/one is active as test.Give and becomes test.Announce{PREEMPT}"]
     assert refused.result.duration_s == pytest.approx(8.0)
     told, said = _changed(OTHER_CLASS, preempt=True)
-    assert said == ["root/both/right/one becomes test.Tell", "root/both/right/one is preempted and entered anew"]
+    assert said == ["root/both/right/one becomes test.Announce", "root/both/right/one is preempted and entered anew"]
     assert told.story.count("-root/both/right/one preempted") == 1
     assert told.story.count("+root/both/right/one") == 2
     assert told.result.outcome == "good"
@@ -171,9 +173,9 @@ def test_a_running_node_of_another_kind_is_entered_anew_as_what_it_is_now() -> N
 
 
 def test_what_only_waits_for_its_entry_may_become_anything_else() -> None:
-    text = OLD.replace("two: {state: test.Give", "two: {state: test.Tell")
+    text = OLD.replace("two: {state: test.Give", "two: {state: test.Announce")
     told, said = _changed(text, at_s=3.0)
-    assert said == ["root/both/right/two becomes test.Tell"]
+    assert said == ["root/both/right/two becomes test.Announce"]
     assert told.result.outcome == "good"
 
 
@@ -188,9 +190,11 @@ def test_a_new_branch_of_an_active_concurrency_container_enters_at_once() -> Non
     assert told.result.duration_s == pytest.approx(5.0 + 6.0)
 
 
-def _without_third(at_s: float, *, preempt: bool) -> tuple[Told, list[str]]:
+def _without_third(at_s: float, *, preempt: bool) -> tuple[ObservedRun, list[str]]:
     said: list[str] = []
-    third = THIRD.replace("after_s: 6", "after_s: 2").replace("third: {state: test.Give", "third: {state: test.Tell")
+    third = THIRD.replace("after_s: 6", "after_s: 2").replace(
+        "third: {state: test.Give", "third: {state: test.Announce"
+    )
     acts: dict[float, Act] = {
         at_s: lambda run: run.control.pause(),
         at_s + 1.0: _change(OLD, said, preempt=preempt),

@@ -7,7 +7,7 @@ import pytest
 from engine.event import GateReached, NodeEntered
 from engine.runtime.control import Breakpoint
 from engine.runtime.run import Run
-from tests.engine.runtime.control.operate import Told, operate
+from tests.engine.runtime.control.operate import ObservedRun, operate
 
 HEAD = "flexcell: 1\nname: test\noutcomes: [success, failure]\nsuccess: [success]\nroot:\n  tree:\n"
 
@@ -25,7 +25,7 @@ def _go_on(run: Run) -> None:
     run.control.resume()
 
 
-def _times(told: Told, name: str) -> list[float]:
+def _times(told: ObservedRun, name: str) -> list[float]:
     return [e.time_s for e in told.events if isinstance(e, NodeEntered) and e.path.endswith(name)]
 
 

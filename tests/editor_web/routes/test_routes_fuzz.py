@@ -1,6 +1,6 @@
 """Every route, with requests that keep its schema, nearly keep it, or break it: refused in words or done, never broken.
 
-`FLEXCELL_FUZZ_EXAMPLES=500 pytest tests/editor_web/test_fuzz_routes.py` fuzzes for longer.
+`FLEXCELL_FUZZ_EXAMPLES=500 pytest tests/editor_web/routes/test_routes_fuzz.py` fuzzes for longer.
 """
 
 from __future__ import annotations

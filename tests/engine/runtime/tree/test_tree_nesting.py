@@ -13,13 +13,13 @@ from engine.document import load_behavior, parse_behavior
 from engine.event import NodeEntered
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
-from tests.engine.runtime.tree.run_tree import HEAD, Told, run_plan, run_tree, tree_plan
+from tests.engine.runtime.tree.run_tree import HEAD, ObservedRun, run_plan, run_tree, tree_plan
 from tests.engine.runtime.tree.scripted_states import CATALOGUE
 
 ACT = "{state: test.Act, with: {script: [[1, true]]}}"
 
 
-def _run(text: str) -> Told:
+def _run(text: str) -> ObservedRun:
     return run_plan(new_plan(parse_behavior(HEAD + text, file="test.yaml"), CATALOGUE))
 
 

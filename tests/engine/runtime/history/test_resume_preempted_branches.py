@@ -11,7 +11,7 @@ from engine.runtime.history.resume import start_checkpoint
 from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
-from tests.engine.run_document import Told, plan_of, run_document
+from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 TEXT = """
     root:
@@ -28,13 +28,13 @@ MESSY = TEXT.replace("MOVER", "{state: test.Messy}")
 TRYING = TEXT.replace("MOVER", "{state: test.Raise, retry: {times: 9, backoff: 10}}")
 
 
-def _go_on(plan: Plan, checkpoint: Checkpoint, *, run: str = "r") -> Told:
-    async def main() -> Told:
+def _go_on(plan: Plan, checkpoint: Checkpoint, *, run: str = "r") -> ObservedRun:
+    async def main() -> ObservedRun:
         events: list[Event] = []
         async with SkillBus(new_clock()) as bus:
             made = Run(plan, run=run, bus=bus, checkpoint=checkpoint)
             made.watch(events.append)
-            return Told(await made.execute(), tuple(events))
+            return ObservedRun(await made.execute(), tuple(events))
 
     return run_virtual(main())
 
@@ -43,17 +43,17 @@ def _history(plan: Plan, events: list[Event], *, run: str = "r") -> RunStateRedu
     return RunStateReducer(plan, run=run).read([decode_event(encode_event(event)) for event in events])
 
 
-def _after(text: str, count: int) -> Told:
+def _after(text: str, count: int) -> ObservedRun:
     """Go on after so many events of the run."""
     plan = plan_of(text)
     return _go_on(plan, _history(plan, list(run_document(text).events[:count])).checkpoint())
 
 
-def _place(told: Told, kind: type[Event], path: str) -> int:
+def _place(told: ObservedRun, kind: type[Event], path: str) -> int:
     return next(i for i, e in enumerate(told.events) if isinstance(e, kind) and getattr(e, "path", "") == path) + 1
 
 
-def _entered(told: Told) -> list[str]:
+def _entered(told: ObservedRun) -> list[str]:
     return [event.path for event in told.events if isinstance(event, NodeEntered)]
 
 
