@@ -77,7 +77,8 @@ def mutated(file: Path, number: int) -> ast.Module:
     """Return the source of a file with this mutant in it."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     change = list(_changes(tree))[number]
-    return ast.fix_missing_locations(_Replacement(change).visit(tree))
+    _Replacement(change).visit(tree)
+    return ast.fix_missing_locations(tree)
 
 
 class _Replacement(ast.NodeTransformer):
@@ -109,7 +110,8 @@ def _nodes(parent: ast.AST, function: tuple[int, int] | None) -> Iterator[tuple[
         inside = function
         if inside is None and isinstance(parent, ast.FunctionDef | ast.AsyncFunctionDef) and name == "body":
             inside = (parent.lineno, parent.end_lineno or parent.lineno)
-        for child in value if isinstance(value, list) else [value]:
+        children: list[object] = list(value) if isinstance(value, list) else [value]  # pyright: ignore[reportUnknownArgumentType] # fields of a node have no types
+        for child in children:
             if not isinstance(child, ast.AST) or isinstance(child, ast.Import | ast.ImportFrom | ast.arg):
                 continue
             if inside is not None and isinstance(child, ast.expr | ast.stmt):

@@ -63,6 +63,7 @@ class MutantRun:
                 chosen = sorted(_tests_of(mutant, lines), key=lambda index: took_s[index])
                 if not chosen:
                     self.verdicts[mutant] = NO_TEST
+                    sys.stdout.write(f"{NO_TEST}: {mutant}\n")
                     continue
                 pid = _fork(mutant, [session.items[index] for index in chosen], functions)
                 limit_s = time.monotonic() + _PATIENCE_S + 3.0 * sum(took_s[index] for index in chosen)
@@ -88,9 +89,9 @@ class MutantRun:
                 continue
             os.close(handle)
             del running[handle]
-            if sys.stderr.isatty():
-                counts = dict(Counter(self.verdicts.values()))
-                sys.stderr.write(f"\r{len(self.verdicts)} of {len(self._mutants)}: {counts}  ")
+            if self.verdicts[mutant] == SURVIVED:
+                sys.stdout.write(f"{len(self.verdicts)} of {len(self._mutants)} done; {SURVIVED}: {mutant}\n")
+                sys.stdout.flush()
 
 
 def _tests_of(mutant: Mutant, lines: Sequence[set[tuple[str, int]]]) -> list[int]:
@@ -243,9 +244,9 @@ def main() -> None:
         sys.exit(1)
     if asked.json:
         asked.json.write_text(json.dumps({str(m): v for m, v in run.verdicts.items()}, indent=1), encoding="utf-8")
-    missed = [mutant for mutant, verdict in run.verdicts.items() if verdict in (SURVIVED, NO_TEST)]
-    sys.stdout.write(f"\n{asked.package}: {len(mutants)} mutants, {len(mutants) - len(missed)} killed\n")
-    sys.stdout.writelines(f"{run.verdicts[mutant]}: {mutant}\n" for mutant in missed)
+    counts = Counter(run.verdicts.values())
+    missed = counts[SURVIVED] + counts[NO_TEST]
+    sys.stdout.write(f"\n{asked.package}: {len(mutants)} mutants, {len(mutants) - missed} noticed, {dict(counts)}\n")
 
 
 if __name__ == "__main__":
