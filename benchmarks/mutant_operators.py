@@ -141,7 +141,7 @@ def _mistakes(node: _Node) -> Iterator[_Node]:
             yield ast.While(test=ast.UnaryOp(op=ast.Not(), operand=test), body=body, orelse=orelse)
         case ast.IfExp(test=test, body=body, orelse=orelse):
             yield ast.IfExp(test=test, body=orelse, orelse=body)
-        case ast.Return(value=ast.expr() as value) if not _is_none(value):
+        case ast.Return(value=ast.expr() as value) if not _is_none_or_false(value):
             yield ast.Return(value=ast.Constant(value=None))
         case ast.Break():
             yield ast.Continue()
@@ -155,8 +155,8 @@ def _mistakes(node: _Node) -> Iterator[_Node]:
             return
 
 
-def _is_none(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and node.value is None
+def _is_none_or_false(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and (node.value is None or node.value is False)
 
 
 def _is_type_or_text(node: ast.expr) -> bool:

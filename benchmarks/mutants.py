@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import gc
 import json
+import math
 import os
 import random
 import select
@@ -24,6 +25,7 @@ import threading
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FrameType, FunctionType
 from typing import Any
@@ -37,8 +39,8 @@ from benchmarks.mutant_operators import Mutant, mutants_of, mutated
 ROOT = Path(__file__).resolve().parents[1]
 KILLED, SURVIVED, HUNG, NO_TEST = "killed", "survived", "hung", "no test"
 _OPTIONS = ("-q", "-p", "no:randomly", "-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning")
-_PATIENCE_S = 20.0
-"""Beside three times what the tests of a mutant took with tracing: after that it counts as noticed."""
+_PATIENCE_S = 5
+"""Beside five times what a test took with tracing: then it hangs, which counts as noticed."""
 
 
 class MutantRun:
@@ -55,7 +57,7 @@ class MutantRun:
         lines, took_s = _traced(session.items, files)
         gc.unfreeze()
         functions = _functions(files)
-        running: dict[int, tuple[Mutant, int, float]] = {}
+        running: dict[int, tuple[Mutant, int]] = {}
         waiting = list(reversed(self._mutants))
         while waiting or running:
             while waiting and len(running) < self._jobs:
@@ -65,30 +67,23 @@ class MutantRun:
                     self.verdicts[mutant] = NO_TEST
                     sys.stdout.write(f"{NO_TEST}: {mutant}\n")
                     continue
-                pid = _fork(mutant, [session.items[index] for index in chosen], functions)
-                limit_s = time.monotonic() + _PATIENCE_S + 3.0 * sum(took_s[index] for index in chosen)
-                running[os.pidfd_open(pid)] = (mutant, pid, limit_s)
+                tests = [(session.items[index], took_s[index]) for index in chosen]
+                pid = _fork(mutant, tests, functions)
+                running[os.pidfd_open(pid)] = (mutant, pid)
             self._collect(running)
         return True
 
-    def _collect(self, running: dict[int, tuple[Mutant, int, float]]) -> None:
-        """Wait for children that have ended, and end those that take too long."""
-        if not running:
-            return
-        nearest_s = min(limit_s for _, _, limit_s in running.values()) - time.monotonic()
-        ended = select.select(list(running), [], [], max(0.0, nearest_s))[0]
-        for handle, (mutant, pid, limit_s) in list(running.items()):
-            if handle in ended:
-                failed = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) != 0
-                self.verdicts[mutant] = KILLED if failed else SURVIVED
-            elif time.monotonic() > limit_s:
-                os.killpg(pid, signal.SIGKILL)
-                os.waitpid(pid, 0)
-                self.verdicts[mutant] = HUNG
-            else:
-                continue
+    def _collect(self, running: dict[int, tuple[Mutant, int]]) -> None:
+        """Wait for one of the children."""
+        for handle in select.select(list(running), [], [])[0] if running else ():
+            mutant, pid = running.pop(handle)
             os.close(handle)
-            del running[handle]
+            ended = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+            if ended < 0:
+                # What the tests had started.
+                with suppress(ProcessLookupError):
+                    os.killpg(pid, signal.SIGKILL)
+            self.verdicts[mutant] = HUNG if ended < 0 else KILLED if ended else SURVIVED
             if self.verdicts[mutant] == SURVIVED:
                 sys.stdout.write(f"{len(self.verdicts)} of {len(self._mutants)} done; {SURVIVED}: {mutant}\n")
                 sys.stdout.flush()
@@ -153,18 +148,24 @@ def _fails(item: pytest.Item, following: pytest.Item | None) -> bool:
 
 
 def _fork(
-    mutant: Mutant, items: Sequence[pytest.Item], functions: dict[tuple[str, str, int], list[FunctionType]]
+    mutant: Mutant,
+    tests: Sequence[tuple[pytest.Item, float]],
+    functions: dict[tuple[str, str, int], list[FunctionType]],
 ) -> int:
-    """Start a child that exits with 1 as soon as a test notices the mutant."""
+    """Start a child that exits with 1 as soon as a test notices the mutant, and is ended by a test that hangs."""
     pid = os.fork()
     if pid:
         return pid
     os.setsid()
     _silence()
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
     _apply(mutant, functions)
-    # Tests with the same fixtures of a module stay together as far as the order by duration lets them.
-    noticed = any(_fails(item, following) for item, following in zip(items, [*items[1:], None], strict=True))
-    os._exit(1 if noticed else 0)
+    following = [item for item, _ in tests[1:]]
+    for (item, took_s), next_item in zip(tests, [*following, None], strict=True):
+        signal.alarm(_PATIENCE_S + math.ceil(5.0 * took_s))
+        if _fails(item, next_item):
+            os._exit(1)
+    os._exit(0)
 
 
 def _silence() -> None:
