@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from engine.errors import ControlError
@@ -18,7 +20,7 @@ from engine.runtime.control.gate import GateWait
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from tests.engine.run_document import ObservedRun
-from tests.engine.runtime.control.operate import operate, pause, resume
+from tests.engine.runtime.control.operate import Act, operate, pause, resume
 
 ASKS = """
 root:
@@ -48,6 +50,21 @@ def lose(run: Run) -> None:
 def answer(run: Run) -> None:
     """Let the first outcome pass."""
     run.control.answer("root/one")
+
+
+def end(run: Run) -> None:
+    """Enough is seen."""
+    run.stop("enough")
+
+
+def step(run: Run) -> None:
+    """Let one branch go on to its next gate."""
+    run.control.step()
+
+
+def lock(run: Run) -> None:
+    """Keep the outcome of the first."""
+    run.control.lock("root/one")
 
 
 def options(policy: LossPolicy, *, demanded: bool = False) -> RunOptions:
@@ -93,10 +110,9 @@ def test_a_run_whose_operator_is_lost_is_stopped_if_told_so() -> None:
 
 @pytest.mark.parametrize("back", [attach, detach])
 @pytest.mark.parametrize("policy", ["hold", "stop"])
-def test_an_operator_who_is_back_in_time_was_not_lost(back: object, policy: LossPolicy) -> None:
+def test_an_operator_who_is_back_in_time_was_not_lost(back: Act, policy: LossPolicy) -> None:
     """Or has taken leave properly."""
-    assert callable(back)
-    acts = {0.5: attach, 1.0: lose, 3.9: back, 5.0: detach}
+    acts: dict[float, Act] = {0.5: attach, 1.0: lose, 3.9: back, 5.0: detach}
     told = operate(ASKS, acts, supervision=options(policy))
     assert (told.result.outcome, told.result.duration_s, commands(told)) == (
         "good",
@@ -122,8 +138,8 @@ def test_what_is_shown_of_a_run_is_how_it_stands() -> None:
         run.control.set_autonomy("low")
         run.control.set_breakpoints([Breakpoint(path="root/two")])
 
-    acts = {0.5: look, 1.0: attach, 1.1: prepare, 1.2: pause, 5.0: look, 6.0: lambda run: run.control.step(), 6.5: look}
-    operate(ASKS, {**acts, 20.0: lambda run: run.stop("enough")}, supervision=options("stop"))
+    acts: dict[float, Act] = {0.5: look, 1.0: attach, 1.1: prepare, 1.2: pause, 5.0: look, 6.0: step, 6.5: look}
+    operate(ASKS, {**acts, 20.0: end}, supervision=options("stop"))
     assert seen[0] == ControlView(
         paused=False, confirmed=False, cannot=(), waiting=(), locks=(), breakpoints=(), autonomy="high",
         operator="none", active=("root", "root/one"), loss_policy="stop", loss_timeout_s=3.0,
@@ -147,7 +163,7 @@ def test_a_breakpoint_that_matches_nothing_is_kept_and_named() -> None:
         )
         assert len(run.control.view().breakpoints) == 3
 
-    told = operate(ASKS, {0.5: set_them, 3.0: lambda run: run.stop("enough")})
+    told = operate(ASKS, {0.5: set_them, 3.0: end})
     warnings = [event.message for event in told.events if isinstance(event, MessageLogged) and event.level == "warning"]
     assert warnings == ["the breakpoint at root/tow matches no node; did you mean root/two or root/one or root?"]
 
@@ -160,7 +176,7 @@ def test_a_step_in_a_branch_where_nobody_waits_is_refused() -> None:
             run.control.step("into", "root/three")
         said.append(str(refused.value))
 
-    operate(ASKS, {0.5: pause, 30.0: wrong, 31.0: lambda run: run.stop("enough")})
+    operate(ASKS, {0.5: pause, 30.0: wrong, 31.0: end})
     assert said[0].startswith("root/three: no node waits there")
 
 
@@ -175,10 +191,7 @@ def test_who_waits_at_the_gate_is_shown_with_the_reasons() -> None:
     def look(run: Run) -> None:
         seen.append(run.control.view().waiting)
 
-    acts = {0.5: attach, 1.0: lambda run: run.control.lock("root/one"), 3.0: look, 4.0: pause, 5.0: look}
-    operate(ASKS, {**acts, 6.0: lambda run: run.stop("enough")}, supervision=options("hold"))
-    wait = {"path": "root/one", "visit": 1, "point": "after", "outcome": "a", "required": "high"}
-    assert seen == [
-        (GateWait(**wait, reasons=("lock", "autonomy")),),
-        (GateWait(**wait, reasons=("pause", "lock", "autonomy")),),
-    ]
+    acts: dict[float, Act] = {0.5: attach, 1.0: lock, 3.0: look, 4.0: pause, 5.0: look}
+    operate(ASKS, {**acts, 6.0: end}, supervision=options("hold"))
+    wait = GateWait(path="root/one", visit=1, point="after", outcome="a", required="high", reasons=("lock", "autonomy"))
+    assert seen == [(wait,), (replace(wait, reasons=("pause", "lock", "autonomy")),)]
