@@ -43,7 +43,7 @@ def operate(
     prepare: Callable[[SkillBus], object] = lambda bus: None,
     states: Mapping[str, type[State]] | None = None,
 ) -> ObservedRun:
-    """Run a document; at each time in seconds do what `acts` says with the run."""
+    """Run a document; at each time in seconds do what `acts` says with the run; raises what that raises."""
     body = dedent(text)
     plan = new_plan(
         parse_behavior(body if "flexcell" in body else HEAD + body, file="test.yaml"),
@@ -60,9 +60,15 @@ def operate(
             run.watch(events.append)
             loop = asyncio.get_running_loop()
             under_way: list[asyncio.Task[object]] = []
+            failures: list[Exception] = []
 
             def do(act: Act) -> None:
-                made = act(run)
+                try:
+                    made = act(run)
+                except Exception as error:
+                    # A timer's callback that raises is only logged: the test must fail by it.
+                    failures.append(error)
+                    return
                 if isinstance(made, Coroutine):
                     under_way.append(loop.create_task(cast("Coroutine[object, object, object]", made)))
 
@@ -72,6 +78,8 @@ def operate(
                 timer.cancel()
             for task in under_way:
                 await task
+            if failures:
+                raise failures[0]
         return ObservedRun(result, tuple(events))
 
     return run_virtual(main())

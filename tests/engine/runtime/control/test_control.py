@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import replace
 
 import pytest
 
+from engine.bus import SkillBus
+from engine.clock import new_clock, run_virtual
 from engine.errors import ControlError
 from engine.event import (
+    Event,
     MessageLogged,
     OperatorChanged,
     OperatorCommanded,
     OutcomeRequested,
     PauseConfirmed,
+    RunEnded,
 )
 from engine.runtime.control import Breakpoint
 from engine.runtime.control.control import ControlView, LossPolicy
 from engine.runtime.control.gate import GateWait
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
-from tests.engine.run_document import ObservedRun
+from tests.engine.run_document import ObservedRun, plan_of
 from tests.engine.runtime.control.operate import Act, operate, pause, resume
 
 ASKS = """
@@ -195,3 +200,33 @@ def test_who_waits_at_the_gate_is_shown_with_the_reasons() -> None:
     operate(ASKS, {**acts, 6.0: end}, supervision=options("hold"))
     wait = GateWait(path="root/one", visit=1, point="after", outcome="a", required="high", reasons=("lock", "autonomy"))
     assert seen == [(wait,), (replace(wait, reasons=("pause", "lock", "autonomy")),)]
+
+
+def test_who_has_commanded_sees_what_came_of_it_at_once() -> None:
+    seen: list[tuple[str, ...]] = []
+
+    async def force(run: Run) -> None:
+        run.control.force("root/one", "a")
+        await run.control.settled()
+        seen.append(run.control.view().active)
+
+    operate(ASKS, {1.0: force})
+    assert seen == [("root", "root/two")]
+
+
+def test_an_operator_who_is_lost_just_before_the_end_changes_nothing_after_it() -> None:
+    """The events of a run end with its end."""
+    events: list[Event] = []
+
+    async def main() -> None:
+        async with SkillBus(new_clock()) as bus:
+            run = Run(plan_of(ASKS), run="r1", bus=bus, supervision=options("hold"))
+            run.watch(events.append)
+            loop = asyncio.get_running_loop()
+            for at_s, act in ((1.0, attach), (2.5, answer), (21.5, lose)):
+                loop.call_at(at_s, act, run)
+            await run.execute()
+            await asyncio.sleep(60.0)
+
+    run_virtual(main())
+    assert (type(events[-1]), events[-1].time_s) == (RunEnded, 22.5)

@@ -224,3 +224,30 @@ def test_a_run_is_still_when_it_is_paused_and_executes_nothing_else() -> None:
         "still",
         "the run is not paused",
     ]
+
+
+def test_a_node_that_waits_follows_the_order_of_the_operator() -> None:
+    """Its lock holds the outcome that it had, not the one that is chosen."""
+    acts: dict[float, Act] = {
+        1.0: lambda run: run.control.lock("root/one"),
+        5.0: lambda run: run.control.force("root/one", "c"),
+    }
+    ran = operate(LINE, acts)
+    assert (ran.result.outcome, ran.result.duration_s) == ("bad", 5.0)
+
+
+def test_a_node_that_runs_again_is_held_by_the_next_pause_like_any_other() -> None:
+    """It was let go to clean up, for that alone."""
+    acts: dict[float, Act] = {
+        0.5: pause,
+        1.0: lambda run: run.control.repeat("root/one"),
+        10.0: resume,
+        11.0: pause,
+        21.0: resume,
+    }
+    ran = operate(LINE, acts)
+    assert [(e.time_s, e.path) for e in ran.events if isinstance(e, NodeEntered) and e.path != "root"] == [
+        (0.0, "root/one"),
+        (10.0, "root/one"),
+        (22.0, "root/two"),
+    ]
