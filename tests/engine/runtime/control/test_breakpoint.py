@@ -42,7 +42,7 @@ def test_a_condition_is_read_from_the_userdata_with_or_without_its_braces(condit
     each = Breakpoint(path="root", condition=condition)
     assert each.holds({"n": 3}.__getitem__)
     assert not each.holds({"n": 2}.__getitem__)
-    assert Breakpoint(path="root").holds({}.__getitem__)
+    assert Breakpoint(path="root").holds(dict[str, object]().__getitem__)
 
 
 def test_a_condition_that_is_a_number_is_refused_in_words() -> None:
