@@ -186,3 +186,15 @@ async def test_another_thread_has_its_work_done_on_the_loop() -> None:
     bus, done = SkillBus(new_clock()), asyncio.Event()
     await asyncio.to_thread(bus.post, done.set)
     await asyncio.wait_for(done.wait(), timeout=30.0)
+
+
+async def test_what_is_withdrawn_is_found_no_more_and_its_neighbours_are() -> None:
+    """A device that is replaced takes its own skills along, not those of one whose name begins alike."""
+    bus = _bus()
+    bus.advertise_action(GripperOpen, _work, namespace="left/gripper_two")
+    bus.withdraw("left/gripper")
+    assert list(bus.skills()) == [
+        "right/gripper/gripper_open",
+        "right/gripper/gripper_move",
+        "left/gripper_two/gripper_open",
+    ]

@@ -107,3 +107,27 @@ async def test_people_hold_an_arm_until_the_last_of_their_goals_has_ended() -> N
     with pytest.raises(asyncio.CancelledError):
         await waiting
     assert (long.status, bus.leases.held()) == (GoalStatus.CANCELED, ())
+
+
+async def test_who_goes_away_gives_the_arm_back_only_when_it_is_at_rest() -> None:
+    bus = SkillBus(new_clock())
+    at_rest = asyncio.Event()
+
+    async def stop_slowly(goal: GripperOpen, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        handle.accept()
+        handle.on_cancel(lambda: None)
+        await at_rest.wait()
+        return HELD
+
+    bus.advertise_action(GripperOpen, stop_slowly, namespace="left/gripper")
+    people = LocalJsonBus(bus)
+    performing = asyncio.ensure_future(people.perform("left/gripper/gripper_open", {}))
+    await asyncio.sleep(0)
+    performing.cancel()
+    for _ in range(5):
+        await asyncio.sleep(0)
+    assert (performing.done(), bus.leases.owner("left")) == (False, "cli")
+    at_rest.set()
+    with pytest.raises(asyncio.CancelledError):
+        await performing
+    assert bus.leases.held() == ()

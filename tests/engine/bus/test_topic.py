@@ -75,6 +75,11 @@ async def test_a_waiting_reader_wakes_with_the_next_message() -> None:
         await asyncio.sleep(0)
         topic.publish(_state(0.05))
         assert (await waiting).width_m == 0.05
+        again = asyncio.create_task(stream.next())
+        await asyncio.sleep(0)
+        assert not again.done()
+        topic.publish(_state(0.06))
+        assert (await again).width_m == 0.06
 
 
 async def test_a_provider_makes_the_latest_on_demand() -> None:
