@@ -92,7 +92,8 @@ async def test_a_provider_makes_the_latest_on_demand() -> None:
 @pytest.mark.virtual
 async def test_the_rate_of_a_topic_is_that_of_its_last_messages() -> None:
     """None before the second; messages at one instant have no rate."""
-    topic = SkillBus(new_clock()).topic("t", GripperState)
+    bus = SkillBus(new_clock())
+    topic = bus.topic("t", GripperState)
     assert (topic.count, topic.latest_at_s, topic.rate_hz, topic.is_made_on_demand) == (0, None, 0.0, False)
     topic.publish(_state(0.01))
     topic.publish(_state(0.01))
@@ -101,7 +102,7 @@ async def test_the_rate_of_a_topic_is_that_of_its_last_messages() -> None:
     topic.publish(_state(0.01))
     await asyncio.sleep(0.5)
     topic.publish(_state(0.01))
-    assert (topic.count, topic.rate_hz) == (4, pytest.approx(3.0))
+    assert (topic.count, topic.rate_hz, topic.latest_at_s) == (4, pytest.approx(3.0), bus.clock.now_s())
     for _ in range(100):
         await asyncio.sleep(0.1)
         topic.publish(_state(0.01))
