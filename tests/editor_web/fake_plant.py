@@ -50,7 +50,7 @@ class AddNumbers(Service[Added], frozen=True, kw_only=True):
     right: float = 1.0
 
 
-class Wanted(Message, frozen=True, kw_only=True):
+class LampCommand(Message, frozen=True, kw_only=True):
     """What the lamp is to do."""
 
     brightness: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
@@ -61,7 +61,7 @@ class FakePlant:
 
     def __init__(self) -> None:
         self.asked: list[Travel] = []
-        self.lamp: list[Wanted] = []
+        self.lamp: list[LampCommand] = []
         self.goals: list[ActiveGoal[TravelProgress]] = []
         self.arrive = asyncio.Event()
         self.joints: Topic[JointState]
@@ -71,7 +71,7 @@ class FakePlant:
         """Put everything on a bus."""
         self.joints = bus.topic("plant/joint_state", JointState)
         self.gripper = bus.topic("plant/gripper/state", GripperState)
-        bus.topic("plant/lamp", Wanted).subscribe_commands(self.lamp.append)
+        bus.topic("plant/lamp", LampCommand).subscribe_commands(self.lamp.append)
         bus.advertise_action(Travel, self.travel, namespace="plant")
         bus.advertise_service(AddNumbers, self.add_numbers, namespace="plant")
         kind = Annotated[float, msgspec.Meta(ge=0.0, le=900.0)]

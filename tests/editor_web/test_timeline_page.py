@@ -16,7 +16,7 @@ from engine.clock import run_virtual
 from engine.event import Event, NodeExited
 from tests.editor_web.browsing import DESK, PHONE, Scheme, Size, opened_page, require_accessible
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
-from tests.engine.replay.bench import record_run
+from tests.engine.replay.rig import record_run
 from tests.tiers import nightly
 
 SORT_ID = "behaviors/sort.yaml"

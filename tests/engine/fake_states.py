@@ -158,10 +158,10 @@ class Messy(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
-class Stray(State, frozen=True, kw_only=True):
+class SelfCancelling(State, frozen=True, kw_only=True):
     """Let a CancelledError out that nobody asked for."""
 
-    state_name: ClassVar[str] = "test.Stray"
+    state_name: ClassVar[str] = "test.SelfCancelling"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
 
     async def run(self, ctx: Context) -> Outcome:
@@ -169,7 +169,8 @@ class Stray(State, frozen=True, kw_only=True):
 
 
 CATALOGUE: dict[str, type[State]] = {
-    state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Deaf, Messy, Stray)
+    state.state_name: state
+    for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Deaf, Messy, SelfCancelling)
 }
 WITH_FLOW = {**CATALOGUE, **{state.state_name: state for state in (Decide, Log, SetValue, Wait)}}
 """Also what ships to hold a behavior together."""

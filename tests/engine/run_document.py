@@ -17,7 +17,7 @@ from tests.engine.fake_states import WITH_FLOW
 
 
 @dataclass(frozen=True)
-class Told:
+class ObservedRun:
     """A run's result and its events."""
 
     result: RunResult
@@ -58,7 +58,7 @@ def run_document(
     inputs: Mapping[str, object] | None = None,
     seed: int = 0,
     polling_limit: int = 20_000,
-) -> Told:
+) -> ObservedRun:
     """Run a document to its end in virtual time."""
     plan = plan_of(text)
     events: list[Event] = []
@@ -73,4 +73,4 @@ def run_document(
             asyncio.get_running_loop().call_later(stop_at_s, run.stop, "test")
         return await run.execute()
 
-    return Told(run_virtual(main()), tuple(events))
+    return ObservedRun(run_virtual(main()), tuple(events))

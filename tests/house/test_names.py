@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
@@ -20,8 +20,8 @@ SHARED_FILE_NAMES = {"__init__", "models", "errors", "kernels"}
 """A folder's layers share these by design."""
 
 
-def _public_classes() -> Iterator[tuple[str, Path]]:
-    for path in SOURCES:
+def _public_classes(files: Iterable[Path] = SOURCES) -> Iterator[tuple[str, Path]]:
+    for path in files:
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 yield node.name, path
@@ -66,9 +66,12 @@ def test_a_file_name_occurs_once_in_a_package(package: str) -> None:
     assert {name: count for name, count in names.items() if count > 1 and name not in SHARED_FILE_NAMES} == {}
 
 
-def test_retired_words_are_in_no_name_of_a_file_or_class() -> None:
-    """The field's word is beside each in `docs/reference/glossary.md`."""
+@pytest.mark.parametrize("package", [*PACKAGES, "tests", "benchmarks"])
+def test_retired_words_are_in_no_name_of_a_file_or_class(package: str) -> None:
+    """The field's word is beside each in `docs/reference/glossary.md`; names of test functions are sentences."""
     retired = _retired()
     assert len(retired) > 20
-    used = [(path.stem, path) for path in SOURCES] + list(_public_classes())
+    files = [path for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts]
+    assert files
+    used = [(path.stem, path) for path in files] + list(_public_classes(files))
     assert [(name, str(path)) for name, path in used if _words(name) & retired] == []

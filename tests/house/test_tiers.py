@@ -15,10 +15,10 @@ from tests.tiers import ROOT, kinds_of
     ("file", "kind"),
     [
         ("tests/editor_web/test_page.py", "browser"),
-        ("tests/engine/journal/test_durability.py", "process"),
+        ("tests/engine/journal/test_journal_durability.py", "process"),
         ("tests/engine/cli/test_check.py", "process"),
         ("tests/robots/arm/test_arm_in_physics.py", "physics"),
-        ("tests/editor_web/cell_view/test_real_cells.py", "physics"),
+        ("tests/editor_web/cell_view/test_cell_view_of_real_cells.py", "physics"),
     ],
 )
 def test_a_file_has_the_markers_of_what_it_and_its_helpers_import(file: str, kind: str) -> None:

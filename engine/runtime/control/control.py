@@ -122,7 +122,6 @@ class Control:
     def resume(self) -> None:
         """Resume the run."""
         self._record("resume")
-        self._confirmed = False
         self._gate.resume()
 
     def step(self, mode: StepMode = "into", path: str = "") -> None:

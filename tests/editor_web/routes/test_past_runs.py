@@ -17,7 +17,7 @@ from tests.editor_web.fake_behaviors import TRANSFER
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 from tests.engine.archive.test_archive import GOES_WRONG
-from tests.engine.replay.bench import record_run
+from tests.engine.replay.rig import record_run
 
 WRONG_ID = "behaviors/wrong.yaml"
 RECORDED = """

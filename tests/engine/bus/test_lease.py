@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.bus import Holder, LeaseTable, SkillBus
+from engine.bus.lease import Lease
 from engine.clock import new_clock
 from engine.errors import LeaseRefused
 from engine.messages import Message
@@ -93,3 +94,73 @@ async def test_who_holds_what_is_told_with_the_time_since_when() -> None:
     assert table.held() == ()
     table.acquire(("left",), TWO)
     assert [(each.run, each.since_s) for each in table.held()] == [("run-2", 3.0)]
+
+
+def test_a_run_that_commands_a_part_of_an_arm_owns_all_of_it() -> None:
+    """The refusal names who commands it, what asked, and what to do."""
+    leases = LeaseTable()
+    leases.acquire(("left/gripper",), ONE)
+    for resource in ("left", "left/gripper", "left/camera"):
+        with pytest.raises(LeaseRefused) as refused:
+            leases.acquire((resource,), TWO)
+        said = f"run run-2 at root/b: {resource} is commanded by run run-1 at root/a"
+        assert str(refused.value) == f"{said} (wait for run run-1 to end or stop it)"
+    leases.acquire(("right",), TWO)
+    assert (leases.owner("left/gripper"), leases.owner("right/gripper"), leases.owner("base")) == (
+        "run-1",
+        "run-2",
+        None,
+    )
+
+
+def test_of_several_resources_all_are_leased_or_none() -> None:
+    leases = LeaseTable()
+    leases.acquire(("left",), ONE)
+    with pytest.raises(LeaseRefused):
+        leases.acquire(("right", "left"), TWO)
+    assert leases.listing() == (("left", "run run-1 at root/a"),)
+    leases.acquire(("right",), Holder("run-3"))
+    assert leases.listing() == (("left", "run run-1 at root/a"), ("right", "run run-3"))
+
+
+def test_what_a_branch_has_leased_twice_it_gives_back_twice() -> None:
+    leases, other = LeaseTable(), Holder("run-1", "root/c")
+    leases.acquire(("left",), ONE)
+    leases.acquire(("left",), ONE)
+    leases.release(("left", "never leased"), ONE)
+    leases.release(("left",), other)
+    with pytest.raises(LeaseRefused, match="left is commanded by run run-1 at root/a in another branch"):
+        leases.acquire(("left",), other)
+    leases.release(("left",), ONE)
+    leases.acquire(("left",), other)
+    assert leases.listing() == (("left", "run run-1 at root/c"),)
+
+
+def test_a_run_that_ends_gives_back_what_it_holds_and_nothing_else() -> None:
+    """Also what its branches have not given back; the next holder's time begins when it leases."""
+    now_s = 1.0
+    leases = LeaseTable(now_s=lambda: now_s)
+    leases.acquire(("left", "left/gripper"), ONE)
+    leases.acquire(("right",), TWO)
+    now_s = 2.0
+    leases.release_run("run-1")
+    assert leases.held() == (Lease(resource="right", run="run-2", branch="root/b", since_s=1.0),)
+    now_s = 3.0
+    leases.acquire(("left/gripper",), TWO)
+    leases.release(("left/gripper",), TWO)
+    now_s = 4.0
+    leases.acquire(("left/gripper",), TWO)
+    assert leases.held() == (
+        Lease(resource="left", run="run-2", branch="", since_s=3.0),
+        Lease(resource="left/gripper", run="run-2", branch="root/b", since_s=4.0),
+        Lease(resource="right", run="run-2", branch="root/b", since_s=1.0),
+    )
+
+
+def test_a_run_whose_branches_hold_nothing_is_named_alone() -> None:
+    """A refusal names the branch of the resource that it is about, not one of another arm."""
+    leases = LeaseTable()
+    leases.acquire(("right", "left/gripper"), ONE)
+    leases.release(("left/gripper",), ONE)
+    with pytest.raises(LeaseRefused, match=r"left is commanded by run run-1 \(wait"):
+        leases.acquire(("left",), TWO)

@@ -75,6 +75,11 @@ async def test_a_waiting_reader_wakes_with_the_next_message() -> None:
         await asyncio.sleep(0)
         topic.publish(_state(0.05))
         assert (await waiting).width_m == 0.05
+        again = asyncio.create_task(stream.next())
+        await asyncio.sleep(0)
+        assert not again.done()
+        topic.publish(_state(0.06))
+        assert (await again).width_m == 0.06
 
 
 async def test_a_provider_makes_the_latest_on_demand() -> None:
@@ -82,3 +87,39 @@ async def test_a_provider_makes_the_latest_on_demand() -> None:
     topic = SkillBus(new_clock()).topic("t", GripperState)
     topic.provide(lambda: _state(0.07))
     assert topic.latest == _state(0.07)
+
+
+@pytest.mark.virtual
+async def test_the_rate_of_a_topic_is_that_of_its_last_messages() -> None:
+    """None before the second; messages at one instant have no rate."""
+    bus = SkillBus(new_clock())
+    topic = bus.topic("t", GripperState)
+    assert (topic.count, topic.latest_at_s, topic.rate_hz, topic.is_made_on_demand) == (0, None, 0.0, False)
+    topic.publish(_state(0.01))
+    topic.publish(_state(0.01))
+    assert (topic.count, topic.rate_hz) == (2, 0.0)
+    await asyncio.sleep(0.5)
+    topic.publish(_state(0.01))
+    await asyncio.sleep(0.5)
+    topic.publish(_state(0.01))
+    assert (topic.count, topic.rate_hz, topic.latest_at_s) == (4, pytest.approx(3.0), bus.clock.now_s())
+    for _ in range(100):
+        await asyncio.sleep(0.1)
+        topic.publish(_state(0.01))
+    assert topic.rate_hz == pytest.approx(10.0)
+
+
+async def test_who_only_looks_on_has_no_messages_built_for_them() -> None:
+    """They see what is published; whoever is closed sees nothing more, and a second closing is none."""
+    topic, seen, asked = SkillBus(new_clock()).topic("t", GripperState), list[float](), list[float]()
+    passive = topic.subscribe_passively(lambda message: seen.append(message.width_m))
+    active = topic.subscribe(lambda message: asked.append(message.width_m))
+    assert (topic.subscriber_count, topic.takes_commands) == (1, False)
+    topic.publish(_state(0.01))
+    active.close()
+    active.close()
+    topic.publish(_state(0.02))
+    assert (seen, asked, topic.subscriber_count) == ([0.01, 0.02], [0.01], 0)
+    passive.close()
+    topic.publish(_state(0.03))
+    assert seen == [0.01, 0.02]

@@ -88,7 +88,7 @@ class Untyped(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
-class Stray(State, frozen=True, kw_only=True):
+class Dangling(State, frozen=True, kw_only=True):
     """Calls an outcome success that it does not have."""
 
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
@@ -107,7 +107,7 @@ class Stray(State, frozen=True, kw_only=True):
         (Blocking, "is not a coroutine"),
         (Positional, "`part` of `run` is positional"),
         (Untyped, "`part` of `run` has no type"),
-        (Stray, "`good`, which is not one of its outcomes"),
+        (Dangling, "`good`, which is not one of its outcomes"),
     ],
 )
 def test_a_class_that_breaks_the_rules_is_refused_by_name(state: type[State], says: str) -> None:

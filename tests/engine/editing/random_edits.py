@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
+import msgspec
 from hypothesis import strategies as st
 
+from engine.document import node_spec
+from engine.document.node_kind import KINDS, TREE_KINDS, WRAPPERS
+from engine.editing.edit import AnyEdit, GroupNodes
 from engine.editing.outline import NodeRef, Outline
 from tests.engine.editing.layouts import Plain
 
@@ -60,31 +64,18 @@ def _one(draw: st.DrawFn, refs: list[NodeRef]) -> NodeRef | None:
 
 
 _NAMES = st.sampled_from(["fresh", "s0", "s1", "x", "b0", "child", "a b", ""])
-_KINDS = st.sampled_from(
-    [
-        "state",
-        "behavior",
-        "machine",
-        "concurrency",
-        "tree",
-        "foreach",
-        "sequence",
-        "retry",
-        "inverter",
-        "if_then_else",
-        "while_do_else",
-        "zzz",
-    ]
-)
+_KINDS = st.sampled_from([*KINDS, *TREE_KINDS, *WRAPPERS, "zzz"])
 _ODD = st.sampled_from(
     [None, 1, 0.5, "text", "${k}", [], ["s0"], {}, {"after": 1, "to": "x"}, {"a": "b"}, [{"x": {"b0": "a"}}]]
 )
-_FIELDS = st.sampled_from(
-    ["description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
-     "notes", "state", "name", "initial", "conditions", "otherwise", "userdata", "items", "times", "as", "next",
-     "collect", "memory", "policy", "order", "child", "states", "colour"]
-)  # fmt: skip
-_GROUPS = st.sampled_from(["machine", "concurrency", "sequence", "selector", "parallel"])
+_OF_NODES = sorted(
+    each.encode_name
+    for kind in vars(node_spec).values()
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct)
+    for each in msgspec.structs.fields(kind)
+)
+_FIELDS = st.sampled_from([*dict.fromkeys(_OF_NODES), "order", "colour"])
+_GROUPS = st.sampled_from(get_args(get_type_hints(GroupNodes)["kind"]))
 _CLIPBOARDS = st.sampled_from(["a: {state: data.Put}", "x: 1", ": :", "a: {tree: {sequence: [{state: data.Put}]}}"])
 _KEYS = st.sampled_from(["name", "outcomes", "userdata", "cell", "root"])
 
@@ -117,4 +108,5 @@ def any_edits(paths: list[str]) -> st.SearchStrategy[Plain]:
         "auto_connect": {"paths": some},
         "set_document": {"changes": st.dictionaries(_KEYS, _ODD, max_size=2)},
     }  # fmt: skip
-    return st.one_of([st.fixed_dictionaries({"edit": st.just(name), **each}) for name, each in fields.items()])
+    tags = [str(kind.__struct_config__.tag) for kind in get_args(AnyEdit)]
+    return st.one_of([st.fixed_dictionaries({"edit": st.just(tag), **fields[tag]}) for tag in tags])

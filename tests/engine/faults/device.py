@@ -113,7 +113,7 @@ STATES: dict[str, type[State]] = {**CATALOGUE, **{s.state_name: s for s in (Gras
 
 
 @dataclass(frozen=True)
-class Told:
+class ObservedRun:
     """What came of a run: its result, its events, and what the gripper and the killer saw."""
 
     result: RunResult
@@ -157,7 +157,7 @@ def run_with_faults(
     pause_s: tuple[float, float] | None = None,
     messages: int = 0,
     breaks_at_read: int | None = None,
-) -> Told:
+) -> ObservedRun:
     """Run `root:` of a behavior with `faults:` in virtual time; the topic gets a message a second."""
     plan = new_plan(parse_behavior(HEAD + dedent(behavior), file="test.yaml"), STATES)
     events: list[Event] = []
@@ -185,4 +185,4 @@ def run_with_faults(
             loop.call_later(second, topic.publish, gripper.state(float(second)))
         return await run.execute()
 
-    return Told(run_virtual(main()), tuple(events), tuple(log), tuple(killer.seen))
+    return ObservedRun(run_virtual(main()), tuple(events), tuple(log), tuple(killer.seen))

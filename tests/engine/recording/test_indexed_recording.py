@@ -16,7 +16,7 @@ from engine.clock import run_virtual
 from engine.errors import RecordingError
 from engine.recording import part_file, run_recording
 from engine.recording.indexed_recording import IndexedRecording
-from tests.engine.replay.bench import Tick, record_run
+from tests.engine.replay.rig import Tick, record_run
 
 TEXT = """
 root:

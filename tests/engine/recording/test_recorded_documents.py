@@ -10,7 +10,7 @@ from engine.document import load_behavior
 from engine.document.cell import load_cell
 from engine.errors import RecordingError
 from engine.recording import RecordedDocuments, collect_documents
-from tests.engine.replay.bench import behavior_of
+from tests.engine.replay.rig import behavior_of
 
 OUTER = """flexcell: 1
 name: outer

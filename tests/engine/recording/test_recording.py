@@ -17,7 +17,7 @@ from engine.clock import run_virtual
 from engine.errors import RecordingError
 from engine.recording import Recording, load_recording, part_file
 from engine.recording.description import RECORD_NAME
-from tests.engine.replay.bench import record_run
+from tests.engine.replay.rig import record_run
 
 TEXT = """
 root:

@@ -28,7 +28,7 @@ from engine.recording import load_recording, part_file, recovered_file
 from engine.recording.recording import RecordedEvent
 from engine.runtime.run import Run
 from tests.engine.recording.foxglove_rules import complaints
-from tests.engine.replay.bench import Tick, record_run, recorded
+from tests.engine.replay.rig import Tick, record_run, recorded
 from tests.engine.run_document import run_document
 
 PROJECT = Path(__file__).parents[3]
@@ -187,7 +187,7 @@ def test_recording_changes_nothing_in_the_run(tmp_path: Path) -> None:
 KILLED = """
 import asyncio, sys
 from pathlib import Path
-from tests.engine.replay.bench import record_run
+from tests.engine.replay.rig import record_run
 
 WAIT = "root: {machine: {initial: w, states: {w: {state: test.Give, with: {after_s: 100}, transitions: {a: good}}}}}"
 asyncio.run(record_run(WAIT, Path(sys.argv[1]), acts={0.2: lambda run: print("going on", flush=True)}))

@@ -15,14 +15,14 @@ from tests.engine.reference.act import CATALOGUE
 
 
 @dataclass(frozen=True)
-class Told:
+class ObservedRun:
     """What the engine made of a behavior."""
 
     result: RunResult
     events: tuple[Event, ...]
 
 
-def run_to_end(behavior: Behavior, stop_at_s: float, seed: int = 0) -> Told:
+def run_to_end(behavior: Behavior, stop_at_s: float, seed: int = 0) -> ObservedRun:
     """Run it to its end, or to the stop."""
     plan = new_plan(behavior, CATALOGUE)
     events: list[Event] = []
@@ -36,4 +36,4 @@ def run_to_end(behavior: Behavior, stop_at_s: float, seed: int = 0) -> Told:
         finally:
             timer.cancel()
 
-    return Told(run_virtual(main()), tuple(events))
+    return ObservedRun(run_virtual(main()), tuple(events))

@@ -32,7 +32,7 @@ from engine.runtime.plan import new_plan
 from engine.runtime.record.skill_port import BusPort
 from engine.state import Context, Outcome
 from tests.engine.at_once import at_once
-from tests.engine.replay.bench import CATALOGUE, Act, DoLook, Look, Range, behavior_of, record_run, recorded, replayed
+from tests.engine.replay.rig import CATALOGUE, Act, DoLook, Look, Range, behavior_of, record_run, recorded, replayed
 
 TEXT = """
 root:

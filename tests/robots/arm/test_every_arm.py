@@ -37,7 +37,7 @@ REST_RAD_S = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bench:
+class ArmCase:
     """An arm with its tool, a place for the tool a hand's breadth above a table, and one higher up."""
 
     model: str
@@ -54,12 +54,12 @@ class Bench:
 
 
 BENCHES = (
-    Bench(model="panda", tool="panda_hand", above=(0.5, 0.0, 0.3), higher=(0.5, 0.0, 0.35)),
-    Bench(model="panda", tool="softhand", above=(0.5, 0.0, 0.3), higher=(0.5, 0.0, 0.35), table_below_m=0.15),
-    Bench(model="ur10", tool="robotiq_2f85", above=(0.7, 0.2, 0.3), higher=(0.7, 0.2, 0.35)),
-    Bench(model="irb4600", tool="magnet", above=(1.2, 0.3, 0.8), higher=(1.2, 0.3, 0.85)),
+    ArmCase(model="panda", tool="panda_hand", above=(0.5, 0.0, 0.3), higher=(0.5, 0.0, 0.35)),
+    ArmCase(model="panda", tool="softhand", above=(0.5, 0.0, 0.3), higher=(0.5, 0.0, 0.35), table_below_m=0.15),
+    ArmCase(model="ur10", tool="robotiq_2f85", above=(0.7, 0.2, 0.3), higher=(0.7, 0.2, 0.35)),
+    ArmCase(model="irb4600", tool="magnet", above=(1.2, 0.3, 0.8), higher=(1.2, 0.3, 0.85)),
     # Its claw moves on a sphere: there is a position for every place on it, and no line.
-    Bench(
+    ArmCase(
         model="servo_arm",
         tool="servo_claw",
         above=(0.0, 0.225, 0.275),
@@ -109,7 +109,7 @@ class Driven:
 
 
 @asynccontextmanager
-async def opened(bench: Bench, folder: Path) -> AsyncGenerator[Driven]:
+async def opened(bench: ArmCase, folder: Path) -> AsyncGenerator[Driven]:
     """The bench, in lockstep."""
     file = folder / "cell.yaml"
     file.write_text(bench.document(), encoding="utf-8")
@@ -124,7 +124,7 @@ def words(end: GoalEnd[Any]) -> str:
     return f"{end.status.value}: {list(end.cause.chain())[-1].message}"
 
 
-async def driven_through(arm: Driven, bench: Bench) -> dict[str, str]:
+async def driven_through(arm: Driven, bench: ArmCase) -> dict[str, str]:
     """Everything that an arm can be told, one after the other, and how each of it ended."""
     model = robot_model(bench.model, gripper=bench.tool)
     home = np.array(model.home_rad)
@@ -212,7 +212,7 @@ def expected(dof: int) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("bench", BENCHES, ids=lambda bench: f"{bench.model}-{bench.tool}")
-def test_it_does_what_every_arm_does_and_says_what_every_arm_says(tmp_path: Path, bench: Bench) -> None:
+def test_it_does_what_every_arm_does_and_says_what_every_arm_says(tmp_path: Path, bench: ArmCase) -> None:
     async def story() -> dict[str, str]:
         async with opened(bench, tmp_path) as arm:
             return await driven_through(arm, bench)

@@ -32,7 +32,7 @@ class Wall:
 
 
 @dataclass
-class Bench:
+class WallRig:
     """An arm that follows its set point perfectly, `delay` periods later, against a wall."""
 
     generator: MotionGenerator

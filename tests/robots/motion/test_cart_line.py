@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from robots.motion import plan_line
 from robots.motion.cart_line import spline_trajectory
 from robots.motion.min_jerk import min_jerk
 from robots.motion.slerp import slerp
+from robots.motion.tool_path import KNOT_M, KNOT_RAD, KNOT_S
 from robots.port import Array, JointTrajectory
 from tests.robots.panda_arm import home, panda_kinematics, panda_model, played
 
@@ -74,6 +76,26 @@ def test_a_line_starts_and_ends_exactly_at_rest() -> None:
     assert not way.velocity_rad_s[[0, -1]].any()
     assert end.distance_m(shifted(home(), move, np.zeros(3))) < 1e-6
     assert way.duration_s == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("move", "turn", "duration_s"),
+    [
+        ((0.001, 0.0, 0.0), (0.0, 0.0, 0.0), 6.0),
+        ((0.0, 0.2, 0.0), (0.0, 0.0, 0.0), 2.0),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.8), 2.0),
+    ],
+)
+def test_the_joints_are_solved_often_enough_in_time_in_space_and_in_angle(
+    move: tuple[float, ...], turn: tuple[float, ...], duration_s: float
+) -> None:
+    """A slow, a long and a turning line: between two solutions the spline has little to guess."""
+    way = plan(np.array(move), np.array(turn), duration_s=duration_s)
+    poses = [panda_kinematics().tool_pose(joints) for joints in way.position_rad]
+    pairs = list(pairwise(poses))
+    assert way.dt_s <= KNOT_S * (1 + 1e-9)
+    assert max(one.distance_m(other) for one, other in pairs) <= KNOT_M * 1.001
+    assert max(one.angle_rad(other) for one, other in pairs) <= KNOT_RAD * 1.001
 
 
 def test_a_line_that_is_too_fast_names_joint_time_and_limit_and_the_time_it_asks_for_suffices() -> None:

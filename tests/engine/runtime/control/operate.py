@@ -17,7 +17,7 @@ from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from engine.state import State
 from tests.engine.fake_states import CATALOGUE
-from tests.engine.run_document import HEAD, Told
+from tests.engine.run_document import HEAD, ObservedRun
 from tests.engine.runtime.control.turntable import TurnTable
 
 Act = Callable[[Run], object]
@@ -42,15 +42,15 @@ def operate(
     inputs: Mapping[str, object] | None = None,
     prepare: Callable[[SkillBus], object] = lambda bus: None,
     states: Mapping[str, type[State]] | None = None,
-) -> Told:
-    """Run a document; at each time in seconds do what `acts` says with the run."""
+) -> ObservedRun:
+    """Run a document; at each time in seconds do what `acts` says with the run; raises what that raises."""
     body = dedent(text)
     plan = new_plan(
         parse_behavior(body if "flexcell" in body else HEAD + body, file="test.yaml"),
         {**CATALOGUE, "test.TurnTable": TurnTable, **(states or {})},
     )
 
-    async def main() -> Told:
+    async def main() -> ObservedRun:
         bus = SkillBus(new_clock())
         events: list[Event] = []
         async with bus:
@@ -60,9 +60,15 @@ def operate(
             run.watch(events.append)
             loop = asyncio.get_running_loop()
             under_way: list[asyncio.Task[object]] = []
+            failures: list[Exception] = []
 
             def do(act: Act) -> None:
-                made = act(run)
+                try:
+                    made = act(run)
+                except Exception as error:
+                    # A timer's callback that raises is only logged: the test must fail by it.
+                    failures.append(error)
+                    return
                 if isinstance(made, Coroutine):
                     under_way.append(loop.create_task(cast("Coroutine[object, object, object]", made)))
 
@@ -72,6 +78,8 @@ def operate(
                 timer.cancel()
             for task in under_way:
                 await task
-        return Told(result, tuple(events))
+            if failures:
+                raise failures[0]
+        return ObservedRun(result, tuple(events))
 
     return run_virtual(main())

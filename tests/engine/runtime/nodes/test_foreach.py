@@ -11,7 +11,7 @@ from engine.event import NodeEntered, TransitionTaken, UserdataAppended, Userdat
 from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.nodes.foreach import MAX_COLLECTED
-from tests.engine.run_document import Told, plan_of, run_document
+from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 COLLECT = """
 userdata: {said: [before]}
@@ -35,7 +35,7 @@ def collecting(rounds: str) -> str:
     return COLLECT.replace("ROUNDS", rounds).replace("index: number", "index: number\n          as: item")
 
 
-def lists(text: str, told: Told) -> list[object]:
+def lists(text: str, told: ObservedRun) -> list[object]:
     """What the result, the history and the book of a run say that was collected."""
     history = RunStateReducer(plan_of(text), run="r").read(told.events)
     book = UserdataHistory(lambda: plan_of(text))

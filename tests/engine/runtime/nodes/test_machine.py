@@ -331,7 +331,7 @@ def test_timeout_and_stop_together_never_cut_a_clean_up(timeout_s: float, stop_s
 
 def test_a_stray_cancellation_is_an_error_and_no_stop() -> None:
     """Nobody asked the state to stop: the run says so, and on_error can handle it."""
-    told = run_document(ONE.format(state="test.Stray", more="", outcome="done"))
+    told = run_document(ONE.format(state="test.SelfCancelling", more="", outcome="done"))
     assert told.result.status == "errored"
     assert told.result.cause is not None
     assert "without a stop request" in told.result.cause.message

@@ -12,7 +12,7 @@ CALLS: list[str] = []
 """What was called, as `name method`; a test that uses it clears it."""
 
 
-class Told(Behaviour):
+class Scripted(Behaviour):
     """Be RUNNING for so many ticks, then end so; tell every call, and raise in one of them if told to."""
 
     def __init__(self, name: str, ticks: int = 1_000_000, status: Status = Status.SUCCESS, raises: str = "") -> None:
@@ -81,7 +81,7 @@ class Pair(Sequence):
     """A composite that brings its own children."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(name, True, [Told("first", ticks=0), Told("second", ticks=1)])
+        super().__init__(name, True, [Scripted("first", ticks=0), Scripted("second", ticks=1)])
 
 
 class Lost(Behaviour):

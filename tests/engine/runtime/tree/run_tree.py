@@ -19,7 +19,7 @@ HEAD = "flexcell: 1\nname: test\noutcomes: [success, failure]\nsuccess: [success
 
 
 @dataclass(frozen=True)
-class Told:
+class ObservedRun:
     """A run's result and its events."""
 
     result: RunResult
@@ -72,7 +72,7 @@ def tree_plan(tree: str, *, head: str = "") -> Plan:
     return new_plan(parse_behavior(text, file="test.yaml"), CATALOGUE)
 
 
-def run_tree(tree: str, *, head: str = "", stop_at_s: float | None = None, instant_limit: int = 10_000) -> Told:
+def run_tree(tree: str, *, head: str = "", stop_at_s: float | None = None, instant_limit: int = 10_000) -> ObservedRun:
     """Run a tree to its end in virtual time."""
     return run_plan(
         tree_plan(tree, head=head), stop_at_s=() if stop_at_s is None else (stop_at_s,), instant_limit=instant_limit
@@ -85,7 +85,7 @@ def run_plan(
     stop_at_s: Iterable[float] = (),
     instant_limit: int = 10_000,
     counts: Mapping[str, int] | None = None,
-) -> Told:
+) -> ObservedRun:
     """Run a plan to its end in virtual time; `counts` are activations that scripted leaves have behind them."""
     COUNTS.clear()
     COUNTS.update(counts or {})
@@ -98,4 +98,4 @@ def run_plan(
             asyncio.get_running_loop().call_later(at_s, run.stop, "test")
         return await run.execute()
 
-    return Told(run_virtual(main()), tuple(events))
+    return ObservedRun(run_virtual(main()), tuple(events))

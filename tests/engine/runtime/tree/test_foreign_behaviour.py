@@ -29,7 +29,7 @@ def _calls() -> Iterator[None]:
 
 
 def _told(name: str, **arguments: object) -> str:
-    return json.dumps({"behaviour": f"{HERE}:Told", "name": name, "with": arguments})
+    return json.dumps({"behaviour": f"{HERE}:Scripted", "name": name, "with": arguments})
 
 
 def test_py_trees_own_behaviours_are_leaves() -> None:
@@ -82,7 +82,7 @@ def test_what_it_raises_is_an_error_that_names_it_and_leaves_nobody_running(meth
     """)
     assert told.result.status == "errored"
     assert told.why[:2] == [
-        f"{method} of root/parallel/bad (Told) raised ZeroDivisionError: in {method}", f"in {method}",
+        f"{method} of root/parallel/bad (Scripted) raised ZeroDivisionError: in {method}", f"in {method}",
     ]  # fmt: skip
     terminated = [call for call in CALLS if "terminate " in call]
     assert len(terminated) == len(set(terminated))
@@ -101,7 +101,7 @@ def test_what_it_raises_is_an_error_that_names_it_and_leaves_nobody_running(meth
 def test_a_constructor_that_raises_is_an_error_that_names_it() -> None:
     """Nothing was begun then."""
     told = run_tree(f"sequence: [{{state: test.Check}}, {_told('bad', raises='constructor')}]")
-    assert told.why[0] == "constructor of root/sequence/bad (Told) raised ZeroDivisionError: in constructor"
+    assert told.why[0] == "constructor of root/sequence/bad (Scripted) raised ZeroDivisionError: in constructor"
     assert told.story == []
 
 
@@ -111,7 +111,7 @@ def test_a_shutdown_that_raises_is_told_and_changes_nothing() -> None:
     assert told.result.outcome == "success"
     (line,) = told.story
     assert line.startswith("0 !root clean-up failed: ")
-    assert "test.yaml:7:3: shutdown of root/a (Told) raised ZeroDivisionError" in line
+    assert "test.yaml:7:3: shutdown of root/a (Scripted) raised ZeroDivisionError" in line
 
 
 def test_a_retry_takes_its_exceptions_too() -> None:

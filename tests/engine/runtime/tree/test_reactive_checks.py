@@ -23,7 +23,7 @@ from engine.skill import Service
 from engine.state import Context, Outcome, State
 from states.flow.decide import Decide
 from states.flow.wait import Wait
-from tests.engine.runtime.tree.run_tree import HEAD, Told
+from tests.engine.runtime.tree.run_tree import HEAD, ObservedRun
 from tests.engine.runtime.tree.scripted_states import CATALOGUE, COUNTS
 
 HELD_UNTIL_S = 1.05
@@ -97,7 +97,7 @@ def _told(
     do: Callable[[Run, SkillBus], None] = lambda run, bus: None,
     polling_limit: int = 20_000,
     checkpoint: Checkpoint | None = None,
-) -> Told:
+) -> ObservedRun:
     COUNTS.clear()
     events: list[Event] = []
 
@@ -115,10 +115,10 @@ def _told(
             do(run, bus)
             return await run.execute()
 
-    return Told(run_virtual(main()), tuple(events))
+    return ObservedRun(run_virtual(main()), tuple(events))
 
 
-def _left(told: Told, name: str) -> list[tuple[float, bool]]:
+def _left(told: ObservedRun, name: str) -> list[tuple[float, bool]]:
     return [(e.time_s, e.preempted) for e in told.events if isinstance(e, NodeExited) and e.path.endswith(f"/{name}")]
 
 

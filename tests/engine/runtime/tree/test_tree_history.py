@@ -20,7 +20,7 @@ from engine.runtime.record.tree_event import TreeEvent, tree_event_of
 from engine.runtime.tree import Tree, TreeRunner
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome
-from tests.engine.runtime.tree.run_tree import Told, run_plan, tree_plan
+from tests.engine.runtime.tree.run_tree import ObservedRun, run_plan, tree_plan
 from tests.engine.runtime.tree.scripted_states import REMAINING
 from tests.engine.runtime.tree.skipping import Guarded, guarded_trees
 from tests.engine.runtime.tree.specimen import Specimen, conditional_trees, trees
@@ -43,7 +43,9 @@ class _GoingOn(Tree):
         return await runner.run()
 
 
-def _cut(plan: Plan, told: Told, at_s: float, branches: Mapping[str, Mapping[str, object]] | None = None) -> Told:
+def _cut(
+    plan: Plan, told: ObservedRun, at_s: float, branches: Mapping[str, Mapping[str, object]] | None = None
+) -> ObservedRun:
     """Run what is left of a run that was cut between two instants."""
     before = [event for event in told.events if event.time_s <= at_s]
     marks = [mark._replace(at_s=mark.at_s - at_s) for event in before if (mark := tree_event_of(event)) is not None]
@@ -114,7 +116,7 @@ def test_a_tree_goes_on_as_if_it_had_not_been_cut(specimen: Specimen, data: st.D
 
 def _goes_on(
     tree: str, at_s: float, head: str = "", branches: Mapping[str, Mapping[str, object]] | None = None
-) -> Told:
+) -> ObservedRun:
     """Cut a tree and compare what comes after with the whole; return the rest."""
     plan = tree_plan(tree, head=head)
     whole = run_plan(plan, stop_at_s=(END_S,), instant_limit=100)
@@ -174,7 +176,7 @@ def test_an_end_that_no_tick_had_read_is_read_first() -> None:
     plan = tree_plan("sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]")
     told = run_plan(plan)
     seq = next(event.seq for event in told.events if isinstance(event, NodeExited) and event.path.endswith("/a"))
-    cut = Told(told.result, tuple(event for event in told.events if event.seq <= seq))
+    cut = ObservedRun(told.result, tuple(event for event in told.events if event.seq <= seq))
     rest = _cut(plan, cut, 1.0)
     assert (rest.story, rest.result.outcome) == (["0 +sequence/b", "0 -sequence/b yes"], "success")
 

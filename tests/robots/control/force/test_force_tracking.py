@@ -14,7 +14,7 @@ from robots.control.motion_executor import MotionExecutor
 from robots.port import Admittance, Array, ForceRecord, ForceTask, JointTrajectory, Tolerance
 from tests.robots.control.limit_watch import STEP_S, LimitWatch, limits
 from tests.robots.control.plane_arm import plane_state
-from tests.robots.control.spring_wall import Bench, Wall
+from tests.robots.control.spring_wall import Wall, WallRig
 from tests.robots.panda_arm import home, panda_kinematics
 from tests.tiers import nightly
 
@@ -75,13 +75,13 @@ def wavy(x_m: float) -> float:
     return WALL_M + 0.01 * math.sin(12.0 * (x_m - LEFT_M))
 
 
-def error(bench: Bench, start: int, end: int) -> Array:
+def error(bench: WallRig, start: int, end: int) -> Array:
     return -np.array(bench.forces[start:end]) - FORCE_N
 
 
 @pytest.mark.parametrize("stiffness_n_m", [1000.0, 5000.0, 20000.0])
 def test_along_a_straight_wall_the_force_is_steady_within_a_tenth_of_a_newton(stiffness_n_m: float) -> None:
-    bench = Bench(tracking(task()), Wall(stiffness_n_m, straight))
+    bench = WallRig(tracking(task()), Wall(stiffness_n_m, straight))
     bench.run()
     settled = 2600 if stiffness_n_m < 5000.0 else 800
     assert np.abs(error(bench, settled, 4000)).max() < 0.1
@@ -94,7 +94,7 @@ def test_along_a_straight_wall_the_force_is_steady_within_a_tenth_of_a_newton(st
 def test_default_gains_are_stable_on_soft_and_stiff_surfaces_for_an_arm_that_lags(
     stiffness_n_m: float, delay: int
 ) -> None:
-    bench = Bench(tracking(task()), Wall(stiffness_n_m, wavy), delay=delay)
+    bench = WallRig(tracking(task()), Wall(stiffness_n_m, wavy), delay=delay)
     bench.run()
     # What remains is the slope of the surface against the damping of the admittance, no oscillation.
     steepest_m_s = 0.3 * 1.875 / 4.0 * 0.12
@@ -107,7 +107,7 @@ def test_each_pass_with_the_offsets_of_the_one_before_presses_better() -> None:
     rms: list[float] = []
     for _ in range(3):
         generator = tracking(task(offset=offset))
-        bench = Bench(generator, Wall(5000.0, wavy), delay=5, noise_n=0.15)
+        bench = WallRig(generator, Wall(5000.0, wavy), delay=5, noise_n=0.15)
         bench.run()
         rms.append(float(np.sqrt(np.mean(error(bench, 500, 4000) ** 2))))
         offset = learned(ForceRecord.from_bytes(generator.data()), samples=401)
@@ -126,7 +126,7 @@ def learned(record: ForceRecord, *, samples: int) -> Array:
 
 def test_the_record_tells_share_offset_and_wrench_in_the_task_frame() -> None:
     generator = tracking(task())
-    bench = Bench(generator, Wall(5000.0, straight))
+    bench = WallRig(generator, Wall(5000.0, straight))
     bench.run()
     record = ForceRecord.from_bytes(generator.data())
     assert len(record.shares()) in (400, 401)
@@ -145,7 +145,7 @@ def test_a_turned_task_frame_presses_along_its_own_axis() -> None:
     generator = tracking(
         ForceTask(trajectory=turned.trajectory, offset=turned.offset, wrench=wrench, task_xyzw=(half, 0.0, 0.0, half))
     )
-    bench = Bench(generator, Wall(5000.0, straight))
+    bench = WallRig(generator, Wall(5000.0, straight))
     bench.run()
     assert np.abs(error(bench, 800, 4000)).max() < 0.1
     assert ForceRecord.from_bytes(generator.data()).offsets()[-1, 2] == pytest.approx(-0.002, abs=2e-5)
@@ -155,7 +155,7 @@ def test_the_first_learned_offset_is_faded_in_without_a_jump() -> None:
     offset = np.zeros((401, 6))
     offset[:, 1] = 0.002
     generator = tracking(task(offset=offset))
-    bench = Bench(generator, Wall(5000.0, straight))
+    bench = WallRig(generator, Wall(5000.0, straight))
     watch = LimitWatch(limits(), generator, jerk=False)
     for _ in range(1000):
         bench.step()
@@ -166,7 +166,7 @@ def test_the_first_learned_offset_is_faded_in_without_a_jump() -> None:
 
 def test_held_it_keeps_pressing_as_it_is_and_does_not_go_after_a_wall_that_leaves() -> None:
     surface = [WALL_M]
-    bench = Bench(tracking(task()), Wall(5000.0, lambda x: surface[0]))
+    bench = WallRig(tracking(task()), Wall(5000.0, lambda x: surface[0]))
     for _ in range(2000):
         bench.step()
     for _ in range(400):
@@ -188,7 +188,7 @@ def test_held_it_keeps_pressing_as_it_is_and_does_not_go_after_a_wall_that_leave
 
 def test_held_it_gives_way_to_a_wall_that_comes_nearer() -> None:
     surface = [WALL_M]
-    bench = Bench(tracking(task()), Wall(5000.0, lambda x: surface[0]))
+    bench = WallRig(tracking(task()), Wall(5000.0, lambda x: surface[0]))
     for _ in range(1500):
         bench.step()
     for step in range(1500):
@@ -201,7 +201,7 @@ def test_held_it_gives_way_to_a_wall_that_comes_nearer() -> None:
 @pytest.mark.parametrize("surface_m", [WALL_M, WALL_M + 1.0])
 def test_cancelled_it_is_at_rest_within_a_third_of_a_second_in_contact_and_without(surface_m: float) -> None:
     generator = tracking(task())
-    bench = Bench(generator, Wall(5000.0, lambda x: surface_m))
+    bench = WallRig(generator, Wall(5000.0, lambda x: surface_m))
     watch = LimitWatch(limits(), generator, jerk=False)
     for _ in range(1300):
         bench.step()
@@ -217,7 +217,7 @@ def test_cancelled_it_is_at_rest_within_a_third_of_a_second_in_contact_and_witho
 
 def test_at_the_end_it_stands_on_the_offset_path_and_still_presses() -> None:
     generator = tracking(task())
-    bench = Bench(generator, Wall(5000.0, straight))
+    bench = WallRig(generator, Wall(5000.0, straight))
     bench.run()
     assert generator.progress == 1.0
     assert np.allclose(bench.tips[-1][:2], [RIGHT_M, WALL_M + FORCE_N / 5000.0], atol=2e-5)
@@ -225,7 +225,7 @@ def test_at_the_end_it_stands_on_the_offset_path_and_still_presses() -> None:
 
 
 def test_without_a_wall_the_offset_ends_at_its_reach() -> None:
-    bench = Bench(
+    bench = WallRig(
         tracking(task(admittance=Admittance(active=PRESS_Y.active, reach_m=0.02))), Wall(5000.0, lambda x: 9.0)
     )
     bench.run()
@@ -234,7 +234,7 @@ def test_without_a_wall_the_offset_ends_at_its_reach() -> None:
 
 
 def test_phase_stopping_takes_longer_where_the_force_is_wrong_and_presses_better() -> None:
-    plain, slow = (Bench(tracking(task(slow_per_n=value)), Wall(5000.0, wavy)) for value in (0.0, 1.0))
+    plain, slow = (WallRig(tracking(task(slow_per_n=value)), Wall(5000.0, wavy)) for value in (0.0, 1.0))
     plain.run()
     slow.run()
     assert len(slow.forces) > 1.2 * len(plain.forces)
@@ -242,7 +242,7 @@ def test_phase_stopping_takes_longer_where_the_force_is_wrong_and_presses_better
 
 
 def test_a_speed_override_slows_the_path_and_not_the_force() -> None:
-    bench = Bench(tracking(task(duration_s=2.0)), Wall(5000.0, straight))
+    bench = WallRig(tracking(task(duration_s=2.0)), Wall(5000.0, straight))
     bench.run(pace=0.25)
     assert 7900 < len(bench.forces) < 8100
     assert np.abs(error(bench, 800, 7900)).max() < 0.1
@@ -259,7 +259,7 @@ def pulled() -> ForceTracking:
 
 def test_a_joint_at_its_limit_ends_it_with_its_name() -> None:
     generator = pulled()
-    bench = Bench(generator, Wall(5000.0, lambda x: 9.0))
+    bench = WallRig(generator, Wall(5000.0, lambda x: 9.0))
     watch = LimitWatch(limits(), generator, jerk=False)
     while not (generator.failure and generator.stopped):
         bench.step(pace=0.0 if generator.failure else 1.0)

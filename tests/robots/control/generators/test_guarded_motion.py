@@ -10,7 +10,7 @@ from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.port import Array, ContactCondition, JointTrajectory
 from tests.robots.control.limit_watch import STEP_S
 from tests.robots.control.plane_arm import plane_state
-from tests.robots.control.spring_wall import Bench, Wall
+from tests.robots.control.spring_wall import Wall, WallRig
 
 START, END = np.array([0.2, 0.9]), np.array([0.5, 1.1])
 
@@ -43,7 +43,7 @@ def test_at_a_wall_it_stops_within_a_third_of_the_force_beyond_the_threshold(
     direction: tuple[float, float, float],
 ) -> None:
     guarded = new_guarded(ContactCondition(force_n=10.0, direction=direction), duration_s=10.0)
-    bench = Bench(guarded, Wall(5000.0, lambda x: 0.65))
+    bench = WallRig(guarded, Wall(5000.0, lambda x: 0.65))
     bench.run()
     assert guarded.contact
     assert guarded.goal is None
