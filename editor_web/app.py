@@ -21,7 +21,6 @@ from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
 
 from editor_web.cell_view import CellView
-from editor_web.contracts.backend import Backend
 from editor_web.http_bodies.common_bodies import ErrorBody, QuestionBody, ResumeQuestionsBody
 from editor_web.live.hub import LiveHub
 from editor_web.past import OpenRunCache
@@ -55,6 +54,7 @@ from editor_web.teaching.jogging import Jogger
 from editor_web.transport.capacity import MAX_CONNECTIONS
 from engine.editing.target_checks import TargetChecks
 from engine.errors import ControlError, FlexcellError
+from engine.project.session import Session
 from engine.runtime.history.resume import ResumeDecisionRequired
 from engine.stop import StopEndpoint
 
@@ -69,7 +69,7 @@ _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
 
 
 def new_app(
-    backend: Backend,
+    backend: Session,
     *,
     access: AccessTokens,
     hosts: frozenset[str],

@@ -13,7 +13,6 @@ import uvicorn
 
 from editor_web.app import STATIC, new_app
 from editor_web.cell_view import CellView
-from editor_web.contracts.backend import Backend
 from editor_web.security.authentication import OPERATOR, Role, load_access_tokens
 from editor_web.security.login_sessions import LoginSessions
 from editor_web.transport.acceptor import Acceptor
@@ -22,6 +21,7 @@ from editor_web.transport.log_throttle import throttle_library_logs
 from editor_web.transport.timed_connection import PageWebSocket, PendingConnections, TimedConnection
 from engine.errors import FlexcellError
 from engine.host.loopback import bound_socket, host_in_url
+from engine.project.session import Session
 from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3
@@ -84,7 +84,7 @@ class _Server(uvicorn.Server):
 
 @asynccontextmanager
 async def dashboard(
-    backend: Backend,
+    backend: Session,
     *,
     token_file: Path,
     host: str = "127.0.0.1",
@@ -174,7 +174,7 @@ async def dashboard(
 
 
 async def serve(
-    backend: Backend,
+    backend: Session,
     *,
     token_file: Path,
     host: str = "127.0.0.1",

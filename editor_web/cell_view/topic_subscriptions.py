@@ -10,7 +10,6 @@ from typing import Protocol
 
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import LayerGroup
-from editor_web.contracts.backend import Unsubscribe
 from engine.bus.json_bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription, SceneDescription
@@ -45,7 +44,7 @@ class TopicSource(Protocol):
         """Return the recordings of a run, oldest first; `run_id` may be the path of a recording."""
         ...
 
-    def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Unsubscribe:
+    def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Callable[[], None]:
         """Call `callback` with the latest message of a topic at once, then with every new one."""
         ...
 
@@ -65,7 +64,7 @@ class TopicSubscriptions:
         self._topics = topics
         self._newest = newest
         self._shown = shown
-        self._followed: dict[str, Unsubscribe] = {}
+        self._followed: dict[str, Callable[[], None]] = {}
         self._asked = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 

@@ -1,6 +1,6 @@
 """JSON request and response bodies of `/api/v1`.
 
-Responses are read from the backend's structs by attribute; `contracts.backend` documents the fields.
+Responses are read from the engine's structs by attribute.
 """
 
 from __future__ import annotations

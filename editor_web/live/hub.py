@@ -13,7 +13,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from editor_web.contracts.backend import Backend, RunSummaryLike, Unsubscribe
 from editor_web.live.control_state import ControlLive, control_live, waiting_reason
 from editor_web.live.document_watch import DocumentWatch
 from editor_web.live.event_log import LogLine
@@ -22,6 +21,8 @@ from editor_web.live.robot_status import RobotStatusCache
 from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive, RunStateChange
 from engine.errors import FlexcellError
 from engine.event import Event
+from engine.project.session import Session
+from engine.project.session_run import RunView
 
 KEPT_RUNS = 50
 
@@ -147,14 +148,14 @@ class LiveHub:
         wall_s: A monotonic clock, seconds.
     """
 
-    def __init__(self, backend: Backend, *, wall_s: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, backend: Session, *, wall_s: Callable[[], float] = time.monotonic) -> None:
         self.backend = backend
         self.epoch = secrets.token_hex(8)
         self._wall_s = wall_s
         self._runs: dict[str, LiveRun] = {}
         self._seen_at_s: dict[str, float] = {}
         self._clients: set[LiveClient] = set()
-        self._unsubscribe: Unsubscribe | None = None
+        self._unsubscribe: Callable[[], None] | None = None
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
         self.documents = DocumentWatch(
             backend.documents, changed=self._on_documents, wanted=lambda: bool(self._clients)
@@ -258,7 +259,7 @@ def _ticking(live: LiveRun | None) -> bool:
     return live is not None and live.real_time and not live.ended
 
 
-def _run_line(run: RunSummaryLike) -> RunOverview:
+def _run_line(run: RunView) -> RunOverview:
     return RunOverview(
         id=run.id,
         behavior=run.behavior,

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import msgspec
 
-from editor_web.contracts.backend import Backend, Unsubscribe
+from engine.project.session import Session
 from engine.skills.arm_control import ArmStatus, SpeedOverride
 from engine.skills.planning import PathPreview
 
@@ -54,12 +54,12 @@ class RobotStatusCache:
     """
 
     def __init__(
-        self, backend: Backend, *, changed: Callable[[str], None], unix_s: Callable[[], float] = time.time
+        self, backend: Session, *, changed: Callable[[str], None], unix_s: Callable[[], float] = time.time
     ) -> None:
         self._backend = backend
         self._changed = changed
         self._unix_s = unix_s
-        self._unsubscribe: list[Unsubscribe] = []
+        self._unsubscribe: list[Callable[[], None]] = []
         self.lines: dict[str, RobotLive] = {}
 
     async def open(self) -> None:

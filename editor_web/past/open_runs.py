@@ -8,7 +8,6 @@ from collections import OrderedDict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from editor_web.contracts.backend import Backend
 from editor_web.past.failure import RunFailure, failure_of
 from editor_web.past.state_history import PastRunState
 from editor_web.past.timeline import RunHistory, Timeline
@@ -16,6 +15,7 @@ from editor_web.past.userdata_values import PastUserdata, UserdataCheckpoints
 from engine.archive import Archive, ArchivedRun
 from engine.errors import FlexcellError
 from engine.event import Event
+from engine.project.session import Session
 from engine.runtime.history.userdata_history import UserdataHistory
 
 MAX_OPEN_RUNS = 6
@@ -78,7 +78,7 @@ class OpenRunCache:
         backend: The engine.
     """
 
-    def __init__(self, backend: Backend) -> None:
+    def __init__(self, backend: Session) -> None:
         self._backend = backend
         self._opened: OrderedDict[str, OpenRun] = OrderedDict()
         self._lock = threading.Lock()

@@ -10,12 +10,12 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from editor_web.cell_view import CellView
-from editor_web.contracts.backend import Backend
 from editor_web.live.hub import LiveHub
 from editor_web.security.authentication import AccessTokens, AttemptLimiter
 from editor_web.security.login_sessions import LoginSessions
 from engine.editing import DocumentRepository
 from engine.editing.target_checks import TargetChecks
+from engine.project.session import Session
 from engine.stop import StopEndpoint
 
 
@@ -23,7 +23,7 @@ from engine.stop import StopEndpoint
 class Services:
     """The services of one server; `cell_view` and `view_port` are None if the 3D view is disabled."""
 
-    backend: Backend
+    backend: Session
     hub: LiveHub
     access: AccessTokens
     sessions: LoginSessions

@@ -10,13 +10,14 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 
 from editor_web.cell_view import CellView
-from editor_web.contracts.run_operations import OperatorAttachment, RunOperations
 from editor_web.live.hub import LiveClient
 from editor_web.live.live_frames import PROTOCOL_VERSION, Hello, OperateRun, Ping, Request, ShowLayers, WatchRun
 from editor_web.routes.services import role_of, services_of
 from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, disconnect_page, read_message, send_message
 from engine.errors import FlexcellError
+from engine.project.session import Session
+from engine.project.session_operators import RunOperator
 
 router = APIRouter()
 PERIOD_S = 0.05
@@ -51,10 +52,10 @@ async def live(socket: WebSocket) -> None:
 class _Operator:
     """The run that the page of one connection operates."""
 
-    def __init__(self, operation: RunOperations, *, allowed: bool) -> None:
-        self._operation = operation
+    def __init__(self, session: Session, *, allowed: bool) -> None:
+        self._session = session
         self._allowed = allowed
-        self._attached: OperatorAttachment | None = None
+        self._attached: RunOperator | None = None
 
     def operate(self, run_id: str) -> None:
         """Detach from the previous run; operate this run if it is active."""
@@ -64,7 +65,7 @@ class _Operator:
         if not run_id or not self._allowed:
             return
         try:
-            self._attached = self._operation.operate(run_id)
+            self._attached = self._session.operate(run_id)
         except FlexcellError as error:
             # The run may have ended; its events and control state tell the page whether it operates the run.
             _log.info("a page cannot operate a run: %s", error)

@@ -11,7 +11,6 @@ import msgspec
 from fastapi import APIRouter, Query, Request, Response, WebSocket
 
 from editor_web.cell_view import CellView
-from editor_web.contracts.backend import Backend, Unsubscribe
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, run_while_connected
 from editor_web.routes.responses import json_response
 from editor_web.routes.services import ServicesOf, role_of, services_of
@@ -41,6 +40,7 @@ from editor_web.teaching.teaching_messages import (
 )
 from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
+from engine.project.session import Session
 from engine.skills.planning import PathPreview
 from engine.skills.teaching import TeachStatus
 
@@ -122,7 +122,7 @@ class _Page:
     """One page with its jogged arm, pressed buttons and previews."""
 
     def __init__(
-        self, backend: Backend, view: CellView | None, joggers: dict[str, Jogger], *, name: str, may_operate: bool
+        self, backend: Session, view: CellView | None, joggers: dict[str, Jogger], *, name: str, may_operate: bool
     ) -> None:
         self._backend = backend
         self._name = name
@@ -132,7 +132,7 @@ class _Page:
         self._board = ArmStatusReader(backend)
         self._jogger = Jogger(backend.bus, taken=joggers, tell=self._waiting.append)
         self._buttons = PressedButtons(backend.bus, tell=self._waiting.append)
-        self._unsubscribe: list[Unsubscribe] = []
+        self._unsubscribe: list[Callable[[], None]] = []
         self._hand: TeachStatus | None = None
         self._is_hand_news = True
         self._are_entries_news = False

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 
-from editor_web.contracts.backend import Backend
 from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
+from engine.project.session import Session
 from engine.skills.arm_control import ArmStatus
 
 _TOOLS = (GripperState, HandState, MagnetState)
@@ -18,7 +18,7 @@ _DIGITS = 6
 class ArmStatusReader:
     """Reads the status of the arms of one cell for one page."""
 
-    def __init__(self, backend: Backend) -> None:
+    def __init__(self, backend: Session) -> None:
         self._backend = backend
         self._tools: dict[str, str] = {}
         self._sent: dict[str, ArmLive] = {}

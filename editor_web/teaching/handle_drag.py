@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from editor_web.cell_view import CellView, DragHandle, HandlePull
 from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
-from editor_web.contracts.backend import Backend
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.teaching_messages import JogStatus, PushToolBody, RefusedFrame, StartJog
 from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription
 from engine.messages.pose_algebra import rotation_vector_between
+from engine.project.session import Session
 
 PERIOD_S = 0.05
 SILENCE_S = 0.2
@@ -69,7 +69,7 @@ class HandleDrag:
         tell: Receives the messages to the page.
     """
 
-    def __init__(self, backend: Backend, view: CellView, page: str, *, joggers: dict[str, Jogger], tell: Tell) -> None:
+    def __init__(self, backend: Session, view: CellView, page: str, *, joggers: dict[str, Jogger], tell: Tell) -> None:
         self._backend = backend
         self._view = view
         self._page = page

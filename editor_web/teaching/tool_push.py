@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from editor_web.contracts.backend import Backend
 from editor_web.teaching.teaching_messages import PushToolBody
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, SceneDescription
+from engine.project.session import Session
 from engine.skills.arm_control import ArmStatus
 
 MOST_N = 60.0
 
 
-async def push(backend: Backend, request: PushToolBody) -> str:
+async def push(backend: Session, request: PushToolBody) -> str:
     """Push the last link of an arm in hand guiding, and return its name.
 
     Raises:
@@ -31,7 +31,7 @@ async def push(backend: Backend, request: PushToolBody) -> str:
     return body
 
 
-def _last_link(backend: Backend, arm: str) -> str:
+def _last_link(backend: Session, arm: str) -> str:
     """Return the last moving link of the arm that is drawn, without fingers and pads."""
     scene, poses = backend.latest("cell/scene"), backend.latest("cell/frames")
     if not isinstance(scene, SceneDescription) or not isinstance(poses, FramePoses):

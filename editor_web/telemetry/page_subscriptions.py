@@ -11,7 +11,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from editor_web.contracts.backend import Backend
 from editor_web.telemetry.bus_metrics import BusMetrics
 from editor_web.telemetry.data_frames import (
     MAX_CURVES,
@@ -29,6 +28,7 @@ from editor_web.telemetry.goal_progress import progress_by_node
 from editor_web.telemetry.plot_signals import Path, number_at, path_of
 from editor_web.telemetry.truncate import truncate_value
 from engine.errors import FlexcellError
+from engine.project.session import Session
 from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
 
 SAMPLE_S = 0.05
@@ -50,7 +50,7 @@ class PageSubscriptions:
         unix_s: The server's clock.
     """
 
-    def __init__(self, backend: Backend, *, unix_s: Callable[[], float] = time.time) -> None:
+    def __init__(self, backend: Session, *, unix_s: Callable[[], float] = time.time) -> None:
         self._backend = backend
         self._desk = backend.desk
         self._unix_s = unix_s

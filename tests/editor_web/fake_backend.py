@@ -6,11 +6,11 @@ import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from editor_web.contracts.run_operations import InterruptedRun, OperatorAttachment
+from msgspec.structs import replace
+
 from engine.archive import Archive
 from engine.bus import SkillBus
 from engine.bus.action import GoalEnd
@@ -18,6 +18,7 @@ from engine.bus.bus import BusEntry
 from engine.bus.json_bus import JsonBus
 from engine.cell.cell_connection import CellConnection
 from engine.clock import LoopClock
+from engine.document.faults import Faults
 from engine.editing import DocumentRepository
 from engine.errors import BusError, ControlError, FlexcellError
 from engine.event import (
@@ -32,13 +33,19 @@ from engine.event import (
     StopRequested,
     TransitionTaken,
 )
+from engine.journal import RunRecord
+from engine.library.behavior_graph import GraphNode
+from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
 from engine.project.run_factory import RunPosition
+from engine.project.session import Session
+from engine.project.session_operators import RunOperator
+from engine.project.session_run import RunView
 from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.run_options import RunOptions
-from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER, Behavior, Node, Run
+from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER
 from tests.editor_web.fake_scene import frames_at, new_scene
 
 
@@ -68,17 +75,19 @@ class TopicBus:
         raise BusError("no such service", where=address)
 
 
-class FakeBackend:
-    """Implements `editor_web.contracts.backend.Backend`; leaves take `step_s`, `single_pick` fails at its grasp."""
+class FakeBackend(Session):
+    """A session without an engine; leaves take `step_s`, `single_pick` fails at its grasp.
+
+    Nothing of the base class is constructed; what a page asks for is overridden here.
+    """
 
     def __init__(
         self,
         *,
         step_s: float = 0.2,
-        behaviors: tuple[Behavior, ...] = (BROKEN, SINGLE, TRANSFER),
+        behaviors: tuple[BehaviorView, ...] = (BROKEN, SINGLE, TRANSFER),
         documents: DocumentRepository | None = None,
     ) -> None:
-        self.cell_name = "dual_panda"
         self.lost_reason = ""
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or DocumentRepository(Path("no-project"), {})
@@ -87,17 +96,21 @@ class FakeBackend:
         self._ended = asyncio.Event()
         self.recorded: dict[str, tuple[Path, ...]] = {}
         self._behaviors = {b.id: b for b in behaviors}
-        self._runs: dict[str, Run] = {}
+        self._played: dict[str, RunView] = {}
         self._events: dict[str, list[Event]] = {}
         self._began_s: dict[str, float] = {}
         self._visits: dict[tuple[str, str], int] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
-        self._callbacks: list[Callable[[str, Event], None]] = []
+        self._watchers: list[Callable[[str, Event], None]] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
         self.known_bus: JsonBus = TopicBus(self._topics)
         self.known_desk: BusInspector | None = None
         self._topic_callbacks: dict[str, list[Callable[[object], None]]] = {}
         self.listeners_changed = asyncio.Event()
+
+    @property
+    def cell_name(self) -> str:
+        return "dual_panda"
 
     @property
     def bus(self) -> JsonBus:
@@ -109,21 +122,21 @@ class FakeBackend:
             self.known_desk = BusInspector(SkillBus(LoopClock()))
         return self.known_desk
 
-    def behaviors(self) -> tuple[Behavior, ...]:
+    def behaviors(self) -> tuple[BehaviorView, ...]:
         return tuple(sorted(self._behaviors.values(), key=lambda b: b.id))
 
-    def behavior(self, behavior_id: str) -> Behavior:
+    def behavior(self, behavior_id: str) -> BehaviorView:
         if behavior_id not in self._behaviors:
             raise FlexcellError(f"no behavior {behavior_id!r}")
         return self._behaviors[behavior_id]
 
-    def runs(self) -> tuple[Run, ...]:
-        return tuple(reversed(self._runs.values()))
+    def runs(self) -> tuple[RunView, ...]:
+        return tuple(reversed(self._played.values()))
 
-    def run(self, run_id: str) -> Run:
-        if run_id not in self._runs:
+    def run(self, run_id: str) -> RunView:
+        if run_id not in self._played:
             raise FlexcellError(f"no run {run_id!r}")
-        return self._runs[run_id]
+        return self._played[run_id]
 
     async def start(
         self,
@@ -135,6 +148,7 @@ class FakeBackend:
         supervision: RunOptions | None = None,
         breakpoints: bool = False,
         begin: RunPosition | None = None,
+        faults: Faults | None = None,
     ) -> str:
         behavior = self.behavior(behavior_id)
         if behavior.graph is None:
@@ -142,8 +156,8 @@ class FakeBackend:
         if any(not task.done() for task in self._tasks.values()):
             raise FlexcellError("the cell is busy with another run", hint="stop it first")
         self._check(behavior, parameters)
-        run_id = f"run-{len(self._runs) + 1:03d}"
-        self._runs[run_id] = Run(id=run_id, behavior=behavior_id, status="running", started_at_s=time.time())
+        run_id = f"run-{len(self._played) + 1:03d}"
+        self._played[run_id] = _begun(run_id, behavior_id)
         self._events[run_id] = []
         self._began_s[run_id] = time.monotonic()
         self._tasks[run_id] = asyncio.create_task(self._play(run_id, behavior, dict(parameters), seed), name=run_id)
@@ -153,13 +167,13 @@ class FakeBackend:
         run = self.run(run_id)
         if run.status != "running":
             return
-        self._runs[run_id] = replace(run, status="stopping")
+        self._played[run_id] = replace(run, status="stopping")
         self._emit(run_id, StopRequested, reason=reason)
         self._tasks[run_id].cancel()
 
     def subscribe(self, callback: Callable[[str, Event], None]) -> Callable[[], None]:
-        self._callbacks.append(callback)
-        return lambda: self._callbacks.remove(callback)
+        self._watchers.append(callback)
+        return lambda: self._watchers.remove(callback)
 
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
         self.run(run_id)
@@ -185,7 +199,7 @@ class FakeBackend:
     def control(self, run_id: str) -> Control:
         raise ControlError("this fake has no control", where=run_id)
 
-    def operate(self, run_id: str) -> OperatorAttachment:
+    def operate(self, run_id: str) -> RunOperator:
         raise ControlError("this fake has no control", where=run_id)
 
     async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
@@ -203,7 +217,7 @@ class FakeBackend:
         self.kept_breakpoints[behavior_id] = tuple(breakpoints)
 
     async def stop_all(self, *, reason: str) -> None:
-        for run_id in self._runs:
+        for run_id in self._played:
             await self.stop(run_id, reason=reason)
 
     @property
@@ -215,7 +229,7 @@ class FakeBackend:
             raise ControlError("a run is under way", hint="stop it first, then connect the cell")
         self.lost_reason = ""
 
-    def interrupted(self) -> tuple[InterruptedRun, ...]:
+    def interrupted(self) -> tuple[RunRecord, ...]:
         return ()
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
@@ -242,18 +256,18 @@ class FakeBackend:
 
     def emit(self, run_id: str, kind: type[Event], /, **fields: object) -> None:
         """Append one event to a run from outside."""
-        self._runs.setdefault(run_id, Run(id=run_id, behavior=TRANSFER.id, status="running", started_at_s=time.time()))
+        self._played.setdefault(run_id, _begun(run_id, TRANSFER.id))
         self._events.setdefault(run_id, [])
         self._began_s.setdefault(run_id, time.monotonic())
         self._emit(run_id, kind, **fields)
 
     def file(self, run_id: str, outcome: str) -> None:
         """Take a run that was emitted from outside as finished."""
-        self._runs[run_id] = replace(self._runs[run_id], status="finished", outcome=outcome, success=True)
+        self._played[run_id] = replace(self._played[run_id], status="finished", outcome=outcome, success=True)
 
     def subscribers(self) -> tuple[Callable[[str, Event], None], ...]:
         """Who is told of events."""
-        return tuple(self._callbacks)
+        return tuple(self._watchers)
 
     async def close(self) -> None:
         """Stop what still runs."""
@@ -262,7 +276,7 @@ class FakeBackend:
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
 
     @staticmethod
-    def _check(behavior: Behavior, parameters: Mapping[str, object]) -> None:
+    def _check(behavior: BehaviorView, parameters: Mapping[str, object]) -> None:
         for parameter in behavior.parameters:
             value = parameters.get(parameter.name)
             if parameter.required and value in (None, ""):
@@ -277,10 +291,10 @@ class FakeBackend:
         events = self._events[run_id]
         event = kind(seq=len(events) + 1, time_s=time.monotonic() - self._began_s[run_id], **fields)
         events.append(event)
-        for callback in list(self._callbacks):
+        for callback in list(self._watchers):
             callback(run_id, event)
 
-    async def _play(self, run_id: str, behavior: Behavior, parameters: dict[str, object], seed: int) -> None:
+    async def _play(self, run_id: str, behavior: BehaviorView, parameters: dict[str, object], seed: int) -> None:
         assert behavior.graph is not None
         self._emit(
             run_id,
@@ -300,8 +314,8 @@ class FakeBackend:
         finally:
             motion.cancel()
         cause = NOTHING_HELD if outcome == "failed" else None
-        run = self._runs[run_id]
-        self._runs[run_id] = replace(
+        run = self._played[run_id]
+        self._played[run_id] = replace(
             run,
             status=status,
             outcome=outcome,
@@ -311,7 +325,7 @@ class FakeBackend:
         )
         self._emit(run_id, RunEnded, status=status, outcome=outcome, cause=cause)
 
-    async def _node(self, run_id: str, node: Node) -> str:
+    async def _node(self, run_id: str, node: GraphNode) -> str:
         visit = self._visits[run_id, node.path] = self._visits.get((run_id, node.path), 0) + 1
         self._emit(run_id, NodeEntered, path=node.path, visit=visit, kind=node.kind, inputs={})
         try:
@@ -330,7 +344,7 @@ class FakeBackend:
         self._emit(run_id, NodeExited, path=node.path, visit=visit, outcome=outcome, cause=cause)
         return outcome
 
-    async def _machine(self, run_id: str, node: Node) -> str:
+    async def _machine(self, run_id: str, node: GraphNode) -> str:
         children = {child.name: child for child in node.children}
         name = node.initial or node.children[0].name
         while name in children:
@@ -340,7 +354,7 @@ class FakeBackend:
             name = arrow.target
         return name
 
-    async def _leaf(self, run_id: str, node: Node) -> str:
+    async def _leaf(self, run_id: str, node: GraphNode) -> str:
         side = "right" if "right" in node.path else "left"
         goal = f"{run_id}:{node.path}"
         self._emit(
@@ -366,3 +380,16 @@ class FakeBackend:
         while True:
             self.publish("cell/frames", frames_at(time.monotonic() - began_s))
             await asyncio.sleep(1 / 30)
+
+
+def _begun(run_id: str, behavior_id: str) -> RunView:
+    return RunView(
+        id=run_id,
+        behavior=behavior_id,
+        status="running",
+        outcome=None,
+        success=False,
+        cause="",
+        started_at_s=time.time(),
+        duration_s=0.0,
+    )

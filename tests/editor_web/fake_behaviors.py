@@ -2,119 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-
 from engine.event import Cause
-from engine.runtime.control import ControlView
+from engine.library.behavior_graph import GraphNode, GraphTransition
+from engine.library.behavior_library import BehaviorView, FindingView, ParameterView
+
+SUCCESS = ("finished",)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    severity: str
-    code: str
-    message: str
-    path: str = ""
-    line: int = 1
-    column: int = 1
-    hint: str = ""
+def parameter(name: str, schema: dict[str, object], *, required: bool = False) -> ParameterView:
+    """Make a parameter."""
+    return ParameterView(name=name, schema=schema, required=required)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
-    name: str
-    schema: Mapping[str, object]
-    required: bool = False
+def node(
+    path: str,
+    kind: str,
+    *outcomes: str,
+    title: str = "",
+    children: tuple[GraphNode, ...] = (),
+    transitions: tuple[GraphTransition, ...] = (),
+    initial: str | None = None,
+    conditions: tuple[str, ...] = (),
+) -> GraphNode:
+    """Make a node."""
+    return GraphNode(
+        path=path,
+        name=path.rsplit("/", 1)[-1],
+        kind=kind,
+        title=title,
+        description="",
+        outcomes=outcomes,
+        children=children,
+        transitions=transitions,
+        initial=initial,
+        conditions=conditions,
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Transition:
-    source: str
-    outcome: str
-    target: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Node:
-    path: str
-    name: str
-    kind: str
-    title: str = ""
-    outcomes: tuple[str, ...] = ()
-    children: tuple[Node, ...] = ()
-    transitions: tuple[Transition, ...] = ()
-    initial: str | None = None
-    conditions: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Behavior:
-    id: str
-    name: str
-    description: str = ""
-    errors: int = 0
-    warnings: int = 0
-    parameters: tuple[Parameter, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    graph: Node | None = None
-    view: Mapping[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
-    success: tuple[str, ...] = ("finished",)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Run:
-    id: str
-    behavior: str
-    status: str
-    started_at_s: float
-    outcome: str | None = None
-    success: bool = False
-    cause: str = ""
-    duration_s: float = 0.0
-    control: ControlView | None = None
-
-
-def state(path: str, title: str, *outcomes: str) -> Node:
+def state(path: str, title: str, *outcomes: str) -> GraphNode:
     """Make a leaf."""
-    return Node(path=path, name=path.rsplit("/", 1)[-1], kind="state", title=title, outcomes=outcomes)
+    return node(path, "state", *outcomes, title=title)
 
 
-def machine(path: str, children: tuple[Node, ...], arrows: str, *outcomes: str) -> Node:
+def machine(path: str, children: tuple[GraphNode, ...], arrows: str, *outcomes: str) -> GraphNode:
     """Make a machine; arrows as `a.done>b b.done>finished`."""
     transitions = tuple(
-        Transition(source=source, outcome=outcome, target=target)
+        GraphTransition(source=source, outcome=outcome, target=target)
         for source, outcome, target in (
             (*arrow.split(">")[0].split("."), arrow.split(">")[1]) for arrow in arrows.split()
         )
     )
-    return Node(
-        path=path,
-        name=path.rsplit("/", 1)[-1],
-        kind="machine",
-        outcomes=outcomes,
-        children=children,
-        transitions=transitions,
-        initial=children[0].name,
-    )
+    initial = children[0].name
+    return node(path, "machine", *outcomes, children=children, transitions=transitions, initial=initial)
 
 
-def both(path: str, left: Node, right: Node, outcome: str) -> Node:
+def both(path: str, left: GraphNode, right: GraphNode, outcome: str) -> GraphNode:
     """Make a concurrency container of two children that must both end with `outcome`."""
-    return Node(
-        path=path,
-        name=path.rsplit("/", 1)[-1],
-        kind="concurrency",
-        outcomes=("finished", "failed"),
-        children=(left, right),
-        conditions=(
-            f"finished: left={outcome} and right={outcome}",
-            "failed: left=failed",
-            "failed: right=failed",
-        ),
-    )
+    conditions = (f"finished: left={outcome} and right={outcome}", "failed: left=failed", "failed: right=failed")
+    return node(path, "concurrency", "finished", "failed", children=(left, right), conditions=conditions)
 
 
-def _pick(path: str) -> Node:
+def _pick(path: str) -> GraphNode:
     return machine(
         path,
         (
@@ -129,7 +77,7 @@ def _pick(path: str) -> Node:
     )
 
 
-def _move_both(path: str) -> Node:
+def _move_both(path: str) -> GraphNode:
     return both(
         path,
         state(f"{path}/left", "motion.MoveJoints", "reached", "failed"),
@@ -138,7 +86,7 @@ def _move_both(path: str) -> Node:
     )
 
 
-def _transfer_graph() -> Node:
+def _transfer_graph() -> GraphNode:
     steps = (
         _move_both("root/approach"),
         both("root/pick", _pick("root/pick/left"), _pick("root/pick/right"), "picked"),
@@ -159,14 +107,15 @@ def _transfer_graph() -> Node:
     return machine("root", steps, arrows, "finished", "failed")
 
 
-TRANSFER = Behavior(
+TRANSFER = BehaviorView(
     id="behaviors/reconcycle/two_arm_transfer.yaml",
     name="two_arm_transfer",
+    success=SUCCESS,
     description="Both arms pick a part each and place it on the other's tray.",
     parameters=(
-        Parameter(
-            name="speed",
-            schema={
+        parameter(
+            "speed",
+            {
                 "type": "number",
                 "title": "Speed",
                 "description": "Share of the joint speed limits",
@@ -175,9 +124,9 @@ TRANSFER = Behavior(
                 "maximum": 1.0,
             },
         ),
-        Parameter(
-            name="lift_m",
-            schema={
+        parameter(
+            "lift_m",
+            {
                 "type": "number",
                 "title": "Lift",
                 "unit": "m",
@@ -187,9 +136,9 @@ TRANSFER = Behavior(
                 "maximum": 0.3,
             },
         ),
-        Parameter(
-            name="cycles",
-            schema={
+        parameter(
+            "cycles",
+            {
                 "type": "integer",
                 "title": "Cycles",
                 "description": "How often the parts are swapped",
@@ -197,18 +146,18 @@ TRANSFER = Behavior(
                 "minimum": 1,
             },
         ),
-        Parameter(
-            name="order",
-            schema={
+        parameter(
+            "order",
+            {
                 "enum": ["together", "left first", "right first"],
                 "title": "Order",
                 "description": "Which arm moves first",
                 "default": "together",
             },
         ),
-        Parameter(
-            name="verify",
-            schema={
+        parameter(
+            "verify",
+            {
                 "type": "boolean",
                 "title": "Verify the grasp",
                 "description": "Check width and contact before lifting",
@@ -218,25 +167,26 @@ TRANSFER = Behavior(
     ),
     graph=_transfer_graph(),
 )
-SINGLE = Behavior(
+SINGLE = BehaviorView(
     id="behaviors/reconcycle/single_pick.yaml",
     name="single_pick",
+    success=SUCCESS,
     description="The left arm picks one part, and reports when nothing was between its fingers.",
-    warnings=1,
     findings=(
-        Finding(
+        FindingView(
             severity="warning",
             code="unused-parameter",
             message="parameter 'force_n' is declared and never used",
+            path="",
             line=6,
             column=3,
             hint="use it in an expression as ${force_n}, or remove it",
         ),
     ),
     parameters=(
-        Parameter(
-            name="part",
-            schema={"type": "string", "title": "Part", "description": "Name of the stored entry", "minLength": 1},
+        parameter(
+            "part",
+            {"type": "string", "title": "Part", "description": "Name of the stored entry", "minLength": 1},
             required=True,
         ),
     ),
@@ -253,12 +203,13 @@ SINGLE = Behavior(
         "failed",
     ),
 )
-BROKEN = Behavior(
+BROKEN = BehaviorView(
     id="behaviors/drafts/palletise.yaml",
     name="palletise",
-    errors=1,
+    description="",
+    success=SUCCESS,
     findings=(
-        Finding(
+        FindingView(
             severity="error",
             code="unknown-state",
             message="no state is named 'motion.MoveJoint'",
