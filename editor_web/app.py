@@ -15,13 +15,16 @@ from typing import Any
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.openapi.utils import get_openapi
-from fastapi.responses import JSONResponse
+from fastapi.responses import Response
+from msgspec.structs import asdict
 from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
 
 from editor_web.cell_view import CellView
-from editor_web.http_bodies.common_bodies import ErrorBody, QuestionBody, ResumeQuestionsBody
+from editor_web.http_bodies.common_bodies import ErrorBody, ResumeQuestionsBody
+from editor_web.http_bodies.document_bodies import ConflictBody
+from editor_web.http_bodies.json_schemas import BodyTypes, component_schemas
 from editor_web.live.hub import LiveHub
 from editor_web.past import OpenRunCache
 from editor_web.routes import (
@@ -41,6 +44,7 @@ from editor_web.routes import cell_stop as halt
 from editor_web.routes import past_runs as past
 from editor_web.routes import references as relations
 from editor_web.routes.services import Services
+from editor_web.routes.wire_router import MalformedBody, WireRouter, json_response
 from editor_web.security.authentication import AccessTokens, AttemptLimiter
 from editor_web.security.login_sessions import LoginSessions
 from editor_web.security.middleware import SecurityMiddleware
@@ -52,6 +56,7 @@ from editor_web.sockets import live_stream as live
 from editor_web.sockets import teaching_stream as teaching
 from editor_web.teaching.jogging import Jogger
 from editor_web.transport.capacity import MAX_CONNECTIONS
+from engine.editing import DocumentConflict, NoSuchDocument
 from engine.editing.target_checks import TargetChecks
 from engine.errors import ControlError, FlexcellError
 from engine.project.session import Session
@@ -65,6 +70,31 @@ _ERROR = {"content": {"application/json": {"schema": {"$ref": f"#/components/sch
 # model would be built for each status of each route.
 _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
     (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
+)
+
+# `relations` before `documents`, whose ids match any address.
+_ROUTERS = (
+    session.router,
+    breakpoints.router,
+    behaviors.router,
+    relations.router,
+    documents.router,
+    catalogue.router,
+    runs.router,
+    past.router,
+    control.router,
+    halt.router,
+    connection.router,
+    bus.router,
+    data.router,
+    live.router,
+    cell.router,
+    cell_past.router,
+    cell_grip.router,
+    teaching.router,
+    demonstration.router,
+    page.router,
+    control.interrupted_router,
 )
 
 
@@ -141,6 +171,7 @@ def api() -> FastAPI:
     )
     app.openapi = openapi
     app.add_exception_handler(FlexcellError, _refused)
+    app.add_exception_handler(MalformedBody, _malformed_body)
     app.add_exception_handler(RequestValidationError, _malformed)
     app.add_exception_handler(HTTPException, _http_error)
     return app
@@ -149,38 +180,21 @@ def api() -> FastAPI:
 @cache
 def openapi() -> dict[str, Any]:
     """Return the OpenAPI description of the HTTP interface; read-only. The first call builds all routes."""
-    return get_openapi(title=_TITLE, version=_version(), routes=_routes())
+    described = get_openapi(title=_TITLE, version=_version(), routes=_routes())
+    return {**described, "components": {"schemas": component_schemas(body_types())}}
+
+
+def body_types() -> BodyTypes:
+    """Return the types of the bodies of all routes."""
+    return sum((each.bodies for each in _ROUTERS if isinstance(each, WireRouter)), BodyTypes())
 
 
 @cache
 def _routes() -> list[BaseRoute]:
     """Return all routes; they are built on first use, once per process."""
     router = APIRouter(responses=_REFUSALS)
-    # `relations` before `documents`, whose ids match any address.
-    for module in (
-        session,
-        breakpoints,
-        behaviors,
-        relations,
-        documents,
-        catalogue,
-        runs,
-        past,
-        control,
-        halt,
-        connection,
-        bus,
-        data,
-        live,
-        cell,
-        cell_past,
-        cell_grip,
-        teaching,
-        demonstration,
-        page,
-    ):
-        router.include_router(module.router)
-    router.include_router(control.interrupted_router)
+    for each in _ROUTERS:
+        router.include_router(each)
     return router.routes
 
 
@@ -215,35 +229,52 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
             await asyncio.to_thread(view.close)
 
 
-def _answer(status: int, message: str, *, where: str = "", hint: str = "") -> JSONResponse:
-    return JSONResponse(ErrorBody(message=message, where=where, hint=hint).model_dump(), status_code=status)
-
-
-async def _refused(request: Request, error: Exception) -> JSONResponse:
+async def _refused(request: Request, error: Exception) -> Response:
     del request
     if not isinstance(error, FlexcellError):
         raise error
-    where = "" if error.where is None else str(error.where)
-    # The request is valid, but the run does not allow the command now.
-    status = 409 if isinstance(error, ControlError) else 422
-    hint = error.hint or ""
-    if isinstance(error, ResumeDecisionRequired):
-        questions = tuple(QuestionBody(path=each.path, outcomes=each.outcomes) for each in error.questions)
-        body = ResumeQuestionsBody(message=error.message, where=where, hint=hint, questions=questions)
-        return JSONResponse(body.model_dump(), status_code=status)
-    return _answer(status, error.message, where=where, hint=hint)
+    told = ErrorBody(
+        message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
+    )
+    match error:
+        case NoSuchDocument():
+            return json_response(told, 404)
+        case DocumentConflict():
+            return json_response(_conflict(told, error), 409)
+        case ResumeDecisionRequired():
+            return json_response(ResumeQuestionsBody(**asdict(told), questions=tuple(error.questions)), 409)
+        case ControlError():
+            # The request is valid, but the run does not allow the command now.
+            return json_response(told, 409)
+        case _:
+            return json_response(told, 422)
 
 
-async def _malformed(request: Request, error: Exception) -> JSONResponse:
+def _conflict(told: ErrorBody, error: DocumentConflict) -> ConflictBody:
+    theirs = error.theirs
+    return ConflictBody(
+        **asdict(told), theirs=theirs.text, theirs_hash=theirs.hash, merged=error.merged, conflicts=error.conflicts
+    )
+
+
+async def _malformed_body(request: Request, error: Exception) -> Response:
+    del request
+    if not isinstance(error, MalformedBody):
+        raise error
+    return json_response(ErrorBody(message=error.message, where=error.where, hint=""), 422)
+
+
+async def _malformed(request: Request, error: Exception) -> Response:
     del request
     if not isinstance(error, RequestValidationError):
         raise error
     first = error.errors()[0]
-    return _answer(422, str(first["msg"]), where=".".join(str(part) for part in first["loc"][1:]))
+    where = ".".join(str(part) for part in first["loc"][1:])
+    return json_response(ErrorBody(message=str(first["msg"]), where=where, hint=""), 422)
 
 
-async def _http_error(request: Request, error: Exception) -> JSONResponse:
+async def _http_error(request: Request, error: Exception) -> Response:
     del request
     if not isinstance(error, HTTPException):
         raise error
-    return _answer(error.status_code, str(error.detail))
+    return json_response(ErrorBody(message=str(error.detail), where="", hint=""), error.status_code)

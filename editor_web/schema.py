@@ -8,35 +8,62 @@ Both files are committed; a test compares them with the output of this module.
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, cast, get_args
-
-import msgspec
+from typing import Any, get_args
 
 from editor_web import app
-from editor_web.live.live_frames import (
-    DocumentsChanged,
-    Hello,
-    LiveDelta,
-    LiveSnapshot,
-    OperateRun,
-    Ping,
-    Pong,
-    ShowLayers,
-    WatchRun,
-)
-from editor_web.past import PastRunState, RunFailure, Timeline
-from editor_web.teaching.teaching_messages import SCHEMAS as TEACHING
-from engine.document.parameter_spec import any_value
+from editor_web.cell_view.past_view import PastViewState
+from editor_web.http_bodies.json_schemas import BodyTypes, Schema, component_schemas
+from editor_web.live import live_frames
+from editor_web.sockets.cell_past_view import PastViewRequest
+from editor_web.teaching import handle_drag, teaching_messages
+from editor_web.telemetry.bus_bodies import GoalStreamLine
+from editor_web.telemetry.data_frames import DataFrame, DataSubscription
 from engine.editing import AnyEdit
+from engine.skills.entries import EntryHistory, EntryRecord
+from engine.skills.teaching import Capture, SaveCapture, TeachStatus
+from engine.skills.trigger_document import TriggerDocument
+from engine.stop.relay_messages import StopStatus
 
 HERE = Path(__file__).parent
 OPENAPI = HERE / "openapi.json"
 TYPES = HERE / "frontend" / "src" / "api" / "types.ts"
-Schema = dict[str, Any]
+# What crosses in websockets and streams, and so stands in no route; and the skills that the page calls by name.
+_STREAMED = BodyTypes(
+    sent=[
+        live_frames.Frame,
+        DataFrame,
+        GoalStreamLine,
+        teaching_messages.ToPage,
+        handle_drag.HandleStatus,
+        PastViewState,
+        StopStatus,
+        *(Capture, EntryHistory, EntryRecord, TeachStatus, TriggerDocument),
+    ],
+    taken=[
+        live_frames.Request,
+        DataSubscription,
+        teaching_messages.FromPage,
+        handle_drag.ShowHandle,
+        handle_drag.DragKeepAlive,
+        PastViewRequest,
+        AnyEdit,
+        SaveCapture,
+    ],
+)
+_UNIONS = {
+    "DataFrame": DataFrame,
+    "Edit": AnyEdit,
+    "Frame": live_frames.Frame,
+    "GoalStreamLine": GoalStreamLine,
+    "TeachingFrame": teaching_messages.ToPage,
+    "TeachingMessage": teaching_messages.FromPage,
+}
 _SIMPLE = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
-# Schemas of the framework, or for the command line only.
-_SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody", "BusMessageBody"}
+# The parameters of a generic class, as msgspec appends them to its name.
+_PARAMETERS = re.compile(r"_.*_$")
 
 
 def openapi() -> str:
@@ -48,98 +75,53 @@ def openapi() -> str:
 
 def typescript() -> str:
     """Return the TypeScript types of all HTTP bodies and websocket frames."""
-    schemas = {**_http_schemas(), **_live_schemas(), **_edit_schemas()}
+    schemas = component_schemas(app.body_types() + _STREAMED)
     parts = ["// Made by `python -m editor_web.schema`; edit the Python models instead.\n"]
     parts.append("import type { Dict } from '../document/dict'\n")
-    parts += [_interface(name, schemas[name]) for name in sorted(schemas)]
-    parts.append("export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping\n")
-    parts.append(f"export type Edit = {' | '.join(_EDITS)}\n")
+    parts += [_declaration(name, schemas[name]) for name in sorted(schemas)]
+    parts += [f"export type {name} = {_names(union)}\n" for name, union in _UNIONS.items()]
     return "\n".join(parts)
 
 
-def _http_schemas() -> dict[str, Schema]:
-    schemas = cast("dict[str, Schema]", app.openapi()["components"]["schemas"])
-    return {name: schema for name, schema in schemas.items() if name not in _SERVER_ONLY}
+def _names(union: Any) -> str:
+    return " | ".join(each.__name__ for each in get_args(union))
 
 
-def _live_schemas() -> dict[str, Schema]:
-    _, components = msgspec.json.schema_components(
-        [
-            Hello,
-            LiveSnapshot,
-            LiveDelta,
-            DocumentsChanged,
-            Ping,
-            Pong,
-            WatchRun,
-            OperateRun,
-            ShowLayers,
-            Timeline,
-            PastRunState,
-            RunFailure,
-            *TEACHING,
-        ],
-        ref_template="#/components/schemas/{name}",
-    )
-    return dict(components)
+def _declaration(name: str, schema: Schema) -> str:
+    return "\n".join([*_comment(schema), *_body(_PARAMETERS.sub("", name), schema), ""])
 
 
-def _edit_schemas() -> dict[str, Schema]:
-    _, components = msgspec.json.schema_components(
-        [AnyEdit], schema_hook=any_value, ref_template="#/components/schemas/{name}"
-    )
-    return dict(components)
-
-
-def _interface(name: str, schema: Schema) -> str:
-    required = set(schema.get("required", []))
-    lines: list[str] = []
+def _comment(schema: Schema) -> Iterator[str]:
     if "description" in schema:
         text = " ".join(str(schema["description"]).split())
-        lines.append(f"/** {text} */")
-    lines.append(f"export interface {name} {{")
+        yield f"/** {text} */"
+
+
+def _body(name: str, schema: Schema) -> Iterator[str]:
+    if "properties" not in schema and schema.get("type") != "object":
+        yield f"export type {name} = {_type(schema)}"
+        return
+    required = set(schema.get("required", []))
+    yield f"export interface {name} {{"
     for key, value in schema.get("properties", {}).items():
-        # The server always sends complete bodies; the page may omit defaults.
-        optional = "?" if key not in required and name in _SENT else ""
-        lines.append(f"  readonly {key}{optional}: {_type(value)}")
-    lines.append("}\n")
-    return "\n".join(lines)
-
-
-_EDITS = tuple(str(each.__name__) for each in get_args(AnyEdit))
-_SENT = {
-    *_EDITS,
-    "Edge",
-    "DemonstrationBody",
-    "NewDocumentBody",
-    "BreakpointBody",
-    "RunPositionBody",
-    "OperateRun",
-    "ResumeBody",
-    "StartBody",
-    "StepBody",
-    "StopBody",
-    "DemonstrationStepBody",
-    "SupervisionBody",
-    "WatchRun",
-}
+        yield f"  readonly {key}{'' if key in required else '?'}: {_type(value)}"
+    yield "}"
 
 
 def _type(schema: Schema) -> str:
     if "$ref" in schema:
-        return str(schema["$ref"]).rsplit("/", 1)[-1]
+        return _PARAMETERS.sub("", str(schema["$ref"]).rsplit("/", 1)[-1])
     if "enum" in schema:
         return " | ".join(json.dumps(value) for value in schema["enum"])
     if "const" in schema:
         return json.dumps(schema["const"])
     if "anyOf" in schema:
-        return " | ".join(_type(part) for part in schema["anyOf"])
+        parts = [_type(part) for part in schema["anyOf"]]
+        return "unknown" if "unknown" in parts else " | ".join(parts)
     if schema.get("type") == "array":
         return _array(schema)
     if schema.get("type") == "object":
-        given = schema.get("additionalProperties")
-        inner = cast("Schema", given) if isinstance(given, dict) else {}
-        return f"Dict<{_type(inner)}>"
+        return f"Dict<{_type(schema.get('additionalProperties', {}))}>"
     return _SIMPLE.get(str(schema.get("type")), "unknown")
 
 

@@ -1,65 +1,28 @@
-"""JSON request and response bodies of `/api/v1`.
-
-Responses are read from the engine's structs by attribute.
-"""
+"""Bodies of `/api/v1` that the engine has no struct for: sessions, runs to start and stop, errors."""
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
 
 from editor_web.security.authentication import OPERATOR, Role
+from engine.cell.cell_connection import CellConnection
+from engine.event import AnyEvent
+from engine.library.behavior_library import BehaviorView
+from engine.runtime.history.resume import ResumeQuestion
+from engine.stop import StopEndpoint
+
+Name = Annotated[str, Meta(max_length=200)]
 
 
-class HttpBody(BaseModel):
-    """Base of the HTTP bodies: frozen, read from attributes, unknown keys rejected."""
-
-    model_config = ConfigDict(frozen=True, from_attributes=True, extra="forbid", populate_by_name=True)
+class RequestBody(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Base of the bodies of requests: unknown keys are rejected."""
 
 
-class FindingBody(HttpBody):
-    """One problem of a document."""
-
-    severity: str
-    code: str
-    message: str
-    path: str
-    line: int
-    column: int
-    hint: str
-
-
-class ParameterBody(HttpBody):
-    """One parameter of a run, with the JSON Schema of its value."""
-
-    name: str
-    json_schema: dict[str, object] = Field(validation_alias="schema", serialization_alias="schema")
-    required: bool
-
-
-class TransitionBody(HttpBody):
-    """A transition inside a machine."""
-
-    source: str
-    outcome: str
-    target: str
-
-
-class GraphNodeBody(HttpBody):
-    """One node of the behavior with everything inside it."""
-
-    path: str
-    name: str
-    kind: str
-    title: str
-    outcomes: tuple[str, ...]
-    children: tuple[GraphNodeBody, ...]
-    transitions: tuple[TransitionBody, ...]
-    initial: str | None
-    conditions: tuple[str, ...]
-
-
-class BehaviorSummaryBody(HttpBody):
-    """One line of the list of behaviors."""
+class BehaviorSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """One line of the list of behaviors: how many findings prevent a run, and how many do not."""
 
     id: str
     name: str
@@ -68,81 +31,44 @@ class BehaviorSummaryBody(HttpBody):
     warnings: int
 
 
-class BehaviorBody(BehaviorSummaryBody):
-    """One behavior with its form, findings and graph."""
-
-    parameters: tuple[ParameterBody, ...]
-    findings: tuple[FindingBody, ...]
-    graph: GraphNodeBody | None
-    view: dict[str, tuple[float, float]]
-    success: tuple[str, ...]
-
-
-class RunBody(HttpBody):
-    """One run, active or ended."""
-
-    id: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-
-
-class StartResultBody(HttpBody):
+class StartResultBody(msgspec.Struct, frozen=True, kw_only=True):
     """The run that was started."""
 
     run: str
 
 
-class StopBody(HttpBody):
+class StopBody(RequestBody, frozen=True, kw_only=True):
     """A request to stop a run; `reason` goes into its event log."""
 
-    reason: str = Field(default="stopped in the dashboard", max_length=200)
+    reason: Name = "stopped in the dashboard"
 
 
-class EventsBody(HttpBody):
+class EventsBody(msgspec.Struct, frozen=True, kw_only=True):
     """A page of a run's events from the journal; `after=last` requests the next page."""
 
-    events: tuple[dict[str, object], ...]
+    events: tuple[AnyEvent, ...]
     last: int
 
 
-class BusRequestBody(HttpBody):
+class BusRequestBody(RequestBody, frozen=True, kw_only=True):
     """A request to a service or action on the bus; `address` is `<namespace>/<skill_name>`."""
 
-    address: str = Field(max_length=200)
+    address: Name
     request: dict[str, object] = {}
 
 
-class BusMessageBody(HttpBody):
+class BusMessageBody(RequestBody, frozen=True, kw_only=True):
     """A message to publish on a topic that takes commands."""
 
-    topic: str = Field(max_length=200)
+    topic: Name
     message: dict[str, object]
 
 
-class StopEndpointBody(HttpBody):
-    """The STOP endpoint, independent of this server: POST `{"token": …, "reason": …}` as plain text to `url`."""
-
-    url: str
-    token: str
-
-
-class ConnectionBody(HttpBody):
-    """Whether every device of the cell is connected; `reason` names the lost device and why."""
-
-    connected: bool
-    reason: str
-
-
-class ConnectBody(HttpBody):
+class ConnectBody(RequestBody, frozen=True, kw_only=True):
     """A request to reconnect the lost devices of the cell."""
 
 
-class SessionBody(HttpBody):
+class SessionBody(msgspec.Struct, frozen=True, kw_only=True):
     """The role of the session and the features of this server; `stop` is for operators.
 
     The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, a separate origin; null without a 3D view.
@@ -152,31 +78,24 @@ class SessionBody(HttpBody):
     cell_name: str
     cell_view_port: int | None
     epoch: str
-    cell: ConnectionBody
-    stop: StopEndpointBody | None = None
+    cell: CellConnection
+    stop: StopEndpoint | None = None
 
 
-class LoginLinkRequest(HttpBody):
+class LoginLinkRequest(RequestBody, frozen=True, kw_only=True):
     """The role of the requested login link."""
 
     role: Role = OPERATOR
 
 
-class LoginLinkBody(HttpBody):
+class LoginLinkBody(msgspec.Struct, frozen=True, kw_only=True):
     """A single-use login token, for `/login?t=<token>`."""
 
     token: str
     expires_in_s: float
 
 
-class QuestionBody(HttpBody):
-    """A state that was active when the engine crashed: a person must tell how it ended."""
-
-    path: str
-    outcomes: tuple[str, ...]
-
-
-class ErrorBody(HttpBody):
+class ErrorBody(msgspec.Struct, frozen=True, kw_only=True):
     """Why a request failed: message, location (a parameter's name, a file, a node path) and hint."""
 
     message: str
@@ -184,7 +103,14 @@ class ErrorBody(HttpBody):
     hint: str
 
 
-class ResumeQuestionsBody(ErrorBody):
+class ResumeQuestionsBody(ErrorBody, frozen=True, kw_only=True):
     """An interrupted run resumes only after these questions are answered."""
 
-    questions: tuple[QuestionBody, ...]
+    questions: tuple[ResumeQuestion, ...]
+
+
+def summary_of(view: BehaviorView) -> BehaviorSummary:
+    """Return the line of a behavior in the list."""
+    return BehaviorSummary(
+        id=view.id, name=view.name, description=view.description, errors=view.errors, warnings=view.warnings
+    )

@@ -1,59 +1,26 @@
-"""JSON bodies for a behavior proposed from taught entries."""
+"""Bodies for a behavior proposed from taught entries."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from msgspec import Meta
 
-from editor_web.http_bodies.common_bodies import FindingBody, HttpBody
-from engine.skills.proposing import Role, StepKind, ToolName
-
-EntryName = Annotated[str, Field(min_length=1, max_length=128)]
-ShortText = Annotated[str, Field(max_length=128)]
+from engine.library.behavior_library import FindingView
+from engine.skills.proposing import Proposal, ProposeBehavior
 
 
-class DemonstrationStepBody(HttpBody):
-    """An entry, or an action `open` or `close` of the tool, in order; without a role, the role is inferred."""
+class DemonstrationBody(ProposeBehavior, frozen=True, kw_only=True):
+    """The request for a proposal; with `id` the behavior is also written as a new document.
 
-    kind: StepKind
-    name: EntryName
-    role: Role | None = None
-    part: ShortText | None = None
+    The server fills in `name` and `cell` of the options.
+    """
 
-
-class ProposedStepBody(HttpBody):
-    """A step with its role, and the part of a grasp; an empty name is an unnamed part."""
-
-    kind: StepKind
-    name: str
-    role: Role
-    part: str | None
+    id: Annotated[str, Meta(max_length=300, pattern=r"^$|\.ya?ml$")] = ""
 
 
-class DemonstrationBody(HttpBody):
-    """The input of a proposal; with `id` the behavior is also written as a new document."""
+class ProposalBody(Proposal, frozen=True, kw_only=True):
+    """A proposal with the findings of its behavior; `id` is the document it was written to, empty for none."""
 
-    steps: Annotated[tuple[DemonstrationStepBody, ...], Field(min_length=1, max_length=200)]
-    arm: Annotated[str, Field(max_length=64)] = ""
-    tool: ToolName | None = None
-    speed: Annotated[float, Field(gt=0, le=1)] = 0.3
-    line_speed_m_s: Annotated[float, Field(gt=0, le=1)] = 0.1
-    approach_m: Annotated[float, Field(gt=0, le=0.5)] = 0.1
-    width_m: Annotated[float, Field(ge=0, le=1)] | None = None
-    id: Annotated[str, Field(max_length=300, pattern=r"^$|\.ya?ml$")] = ""
-
-
-class ProposalBody(HttpBody):
-    """The behavior as YAML, its description as text, and the choices made; `id` is the document it was written to."""
-
-    text: str
-    steps: tuple[ProposedStepBody, ...]
-    words: tuple[str, ...]
-    remarks: tuple[str, ...]
-    arm: str
-    tool: str
-    arms: tuple[str, ...]
-    parts: tuple[str, ...]
-    findings: tuple[FindingBody, ...]
+    findings: tuple[FindingView, ...]
     id: str

@@ -1,31 +1,26 @@
-"""JSON bodies of past runs and recordings."""
+"""Bodies of past runs and recordings."""
 
 from __future__ import annotations
 
-from editor_web.http_bodies.common_bodies import BehaviorBody, HttpBody
+import msgspec
+from msgspec.structs import asdict
+
+from engine.archive import PastRun
+from engine.library.behavior_library import BehaviorView
 
 
-class PastRunBody(HttpBody):
+class PastRunBody(PastRun, frozen=True, kw_only=True):
     """One run of the journal. `running` means that it has no end: it is active, or its engine died.
 
     `recording` is the path of its recording, empty if there is none; `here` is true for a run of this server.
     """
 
-    id: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    failed: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-    events: int
-    recording: str = ""
-    here: bool = False
+    is_failure: bool = msgspec.field(name="failed")
+    recording: str
+    here: bool
 
 
-class PastRunsBody(HttpBody):
+class PastRunsBody(msgspec.Struct, frozen=True, kw_only=True):
     """A page of past runs, newest first, and the number of runs of each kind that match the other filters."""
 
     runs: tuple[PastRunBody, ...]
@@ -33,20 +28,13 @@ class PastRunsBody(HttpBody):
     counts: dict[str, int]
 
 
-class RecordingBody(HttpBody):
-    """One recording of the project; `problem` tells why it cannot be opened, empty if it can."""
-
-    path: str
-    run: str
-    behavior: str
-    started_at_s: float
-    size_bytes: int
-    changed_at_s: float
-    problem: str
-
-
-class OpenRunBody(HttpBody):
+class OpenRunBody(msgspec.Struct, frozen=True, kw_only=True):
     """An open past run or recording, with the behavior as of the start of the run."""
 
     run: PastRunBody
-    behavior: BehaviorBody
+    behavior: BehaviorView
+
+
+def past_run_body(run: PastRun, *, recording: str, here: bool = False) -> PastRunBody:
+    """Return a run with what the server knows of it."""
+    return PastRunBody(**asdict(run), is_failure=run.failed, recording=recording, here=here)

@@ -1,55 +1,39 @@
-"""JSON bodies for fixes of findings, references to a document, and moving or restoring it."""
+"""Bodies for fixes of findings, and for moving, restoring and comparing documents."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+import msgspec
+from msgspec import Meta
 
-from editor_web.http_bodies.common_bodies import HttpBody
+from editor_web.http_bodies.common_bodies import RequestBody
 from editor_web.http_bodies.document_bodies import DocumentBody, Id, Text
+from engine.editing.fixes import Fix
+from engine.library.behavior_library import FindingView
 
 
-class FixBody(HttpBody):
-    """A fix of a finding: the edits to send, and a title that describes them."""
+class FixesBody(FindingView, frozen=True, kw_only=True):
+    """A finding of a text with its fixes."""
 
-    title: str
-    edits: tuple[dict[str, object], ...]
-
-
-class FixesBody(HttpBody):
-    """The fixes of one finding of a text; `code`, `path`, `line` and `message` identify the finding."""
-
-    code: str
-    path: str
-    line: int
-    message: str
-    fixes: tuple[FixBody, ...]
+    fixes: tuple[Fix, ...]
 
 
-class ReferrerBody(HttpBody):
-    """A behavior that refers to another one, and its referring nodes."""
-
-    id: str
-    name: str
-    paths: tuple[str, ...]
-
-
-class DeletedDocumentBody(HttpBody):
+class DeletedDocumentBody(msgspec.Struct, frozen=True, kw_only=True):
     """A deleted document that can be restored; `saved_at` is when its last text was first seen."""
 
     id: str
     saved_at: float
 
 
-class MoveBody(HttpBody):
+class MoveBody(RequestBody, frozen=True, kw_only=True):
     """The new id of a document; with `follow`, references to it are updated."""
 
     id: Id
     follow: bool
 
 
-class MoveResultBody(HttpBody):
+class MoveResultBody(msgspec.Struct, frozen=True, kw_only=True):
     """A moved document: the ids whose references were updated, and those whose references were not."""
 
     document: DocumentBody
@@ -57,8 +41,8 @@ class MoveResultBody(HttpBody):
     left: tuple[str, ...]
 
 
-class CompareBody(HttpBody):
+class CompareBody(RequestBody, frozen=True, kw_only=True):
     """Two texts of a document to compare."""
 
-    before: Annotated[Text, Field(description="The older text")]
-    after: Annotated[Text, Field(description="The newer text")]
+    before: Annotated[Text, Meta(description="The older text")]
+    after: Annotated[Text, Meta(description="The newer text")]

@@ -1,40 +1,40 @@
-"""JSON bodies for starting runs over HTTP."""
+"""Bodies for starting runs."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated
 
-from pydantic import Field
+from msgspec import Meta
 
-from editor_web.http_bodies.common_bodies import HttpBody
-from editor_web.http_bodies.control_bodies import AutonomyLevel
+from editor_web.http_bodies.common_bodies import RequestBody
+from engine.runtime.control import AutonomyLevel, LossPolicy
 
 
-class RunPositionBody(HttpBody):
+class RunPositionBody(RequestBody, frozen=True, kw_only=True):
     """The event of a journaled run to begin at, at the last entered state unless `path` is given."""
 
     run: str
-    seq: int = Field(ge=1)
+    seq: Annotated[int, Meta(ge=1)]
     path: str | None = None
 
 
-class SupervisionBody(HttpBody):
+class SupervisionBody(RequestBody, frozen=True, kw_only=True):
     """Supervision options of a run; `flexcell run --help` explains the same options."""
 
     autonomy: AutonomyLevel = "full"
     demand_operator: bool = False
     breakpoints: bool = False
     start_paused: bool = False
-    loss_policy: Literal["hold", "continue", "stop"] = "hold"
-    loss_timeout_s: float = Field(default=5.0, ge=0)
+    loss_policy: LossPolicy = "hold"
+    loss_timeout_s: Annotated[float, Meta(ge=0)] = 5.0
 
 
-class StartBody(HttpBody):
+class StartBody(RequestBody, frozen=True, kw_only=True):
     """A request to start a run; without a seed the server chooses one."""
 
     behavior: str
     parameters: dict[str, object] = {}
     inputs: dict[str, object] = {}
-    seed: int | None = Field(default=None, ge=0, lt=2**31)
+    seed: Annotated[int, Meta(ge=0, lt=2**31)] | None = None
     supervision: SupervisionBody = SupervisionBody()
     begin: RunPositionBody | None = None

@@ -13,16 +13,15 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from editor_web.live.control_state import ControlLive, control_live, waiting_reason
 from editor_web.live.document_watch import DocumentWatch
 from editor_web.live.event_log import LogLine
-from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot, RunOverview
+from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot
 from editor_web.live.robot_status import RobotStatusCache
 from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive, RunStateChange
-from engine.errors import FlexcellError
+from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.project.session import Session
-from engine.project.session_run import RunView
+from engine.runtime.control import ControlView
 
 KEPT_RUNS = 50
 
@@ -116,10 +115,11 @@ class LiveClient:
             seq=live.seq if live else 0,
             now_s=self._hub.now_s(live),
             ticking=_ticking(live),
-            runs=tuple(map(_run_line, self._hub.backend.runs())),
+            runs=self._hub.backend.runs(),
             nodes=dict(live.nodes) if live else {},
             log=tuple(live.log) if live else (),
             control=self._hub.control_of(live),
+            lock_reasons=dict(live.lock_reasons) if live else {},
             robots=dict(self._hub.robots.lines),
         )
 
@@ -131,11 +131,12 @@ class LiveClient:
             seq=live.seq if live else 0,
             now_s=self._hub.now_s(live),
             ticking=_ticking(live),
-            runs=tuple(_run_line(self._hub.backend.run(run_id)) for run_id in self._runs),
+            runs=tuple(self._hub.backend.run(run_id) for run_id in self._runs),
             nodes=self._nodes,
             log=tuple(self._log),
             dropped=self._dropped,
             control=self._hub.control_of(live),
+            lock_reasons=dict(live.lock_reasons) if live else {},
             robots={name: self._hub.robots.lines[name] for name in self._robots},
         )
 
@@ -205,12 +206,15 @@ class LiveHub:
             return live.time_s
         return live.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
 
-    def control_of(self, live: LiveRun | None) -> ControlLive | None:
+    def control_of(self, live: LiveRun | None) -> ControlView | None:
         """Return the current control state of a run; None if it has ended or is unknown."""
         if live is None or live.ended or live.seq == 0:
             return None
-        view = self.backend.run(live.run_id).control
-        return None if view is None else control_live(view, lock_reasons=live.lock_reasons)
+        try:
+            return self.backend.control(live.run_id).view()
+        except ControlError:
+            # It ends just now: its last event has not come yet.
+            return None
 
     def is_settled(self, run_id: str) -> bool:
         """Tell whether the backend's status of a run agrees with the run's events."""
@@ -257,17 +261,3 @@ class LiveHub:
 
 def _ticking(live: LiveRun | None) -> bool:
     return live is not None and live.real_time and not live.ended
-
-
-def _run_line(run: RunView) -> RunOverview:
-    return RunOverview(
-        id=run.id,
-        behavior=run.behavior,
-        status=run.status,
-        outcome=run.outcome,
-        success=run.success,
-        cause=run.cause,
-        started_at_s=run.started_at_s,
-        duration_s=run.duration_s,
-        waits=waiting_reason(run.control),
-    )

@@ -5,26 +5,13 @@ from __future__ import annotations
 import msgspec
 
 from editor_web.cell_view import LayerGroup
-from editor_web.live.control_state import ControlLive
 from editor_web.live.event_log import LogLine
 from editor_web.live.robot_status import RobotLive
 from editor_web.live.run_state import NodeLive
+from engine.project.session_run import RunView
+from engine.runtime.control import ControlView
 
 PROTOCOL_VERSION = 2
-
-
-class RunOverview(msgspec.Struct, frozen=True, kw_only=True):
-    """One run in the list of runs; `waits` is asks, paused or locked while it waits for a person."""
-
-    id: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-    waits: str
 
 
 class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k"):
@@ -40,17 +27,18 @@ class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", ta
     """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
     `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run
-    is active.
+    is active; `lock_reasons` are what the operator said, by the path of the locked node.
     """
 
     run: str
     seq: int
     now_s: float
     ticking: bool
-    runs: tuple[RunOverview, ...]
+    runs: tuple[RunView, ...]
     nodes: dict[str, NodeLive]
     log: tuple[LogLine, ...]
-    control: ControlLive | None
+    control: ControlView | None
+    lock_reasons: dict[str, str]
     robots: dict[str, RobotLive]
 
 
@@ -65,11 +53,12 @@ class LiveDelta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_fiel
     seq: int
     now_s: float
     ticking: bool
-    runs: tuple[RunOverview, ...]
+    runs: tuple[RunView, ...]
     nodes: dict[str, NodeLive]
     log: tuple[LogLine, ...]
     dropped: int
-    control: ControlLive | None
+    control: ControlView | None
+    lock_reasons: dict[str, str]
     robots: dict[str, RobotLive]
 
 

@@ -7,9 +7,8 @@ from bisect import bisect_right
 import msgspec
 
 from editor_web.past.state_history import RunStateHistory
-from editor_web.telemetry.data_frames import UserdataScope
 from editor_web.telemetry.page_subscriptions import userdata_scope
-from engine.runtime.history.userdata_history import UserdataHistory
+from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
 
 _EVERY = 1024
 """Events between two checkpoints."""
@@ -19,7 +18,7 @@ class PastUserdata(msgspec.Struct, frozen=True, kw_only=True):
     """The scopes of a run after event `seq`, by container path; `problem` tells why there are none."""
 
     seq: int
-    scopes: dict[str, UserdataScope]
+    scopes: dict[str, ScopeView]
     problem: str = ""
 
 

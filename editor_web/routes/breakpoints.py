@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.control_bodies import BreakpointBody, BreakpointsBody
+from editor_web.http_bodies.control_bodies import BreakpointsBody
 from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter
 from engine.errors import ExpressionError
 from engine.runtime.control import Breakpoint
 
-router = APIRouter(prefix="/api/v1/breakpoints", tags=["control"], responses={422: {"model": ErrorBody}})
+router = WireRouter(prefix="/api/v1/breakpoints", tags=["control"], responses={422: {"model": ErrorBody}})
 
 
 MAX_BREAKPOINTS = 200
@@ -21,17 +21,15 @@ def to_breakpoints(body: BreakpointsBody) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of a request; raises ExpressionError if a condition does not compile."""
     if len(body.breakpoints) > MAX_BREAKPOINTS:
         raise ExpressionError(f"more than {MAX_BREAKPOINTS} breakpoints", hint="use wildcards in `path`")
-    breakpoints = tuple(Breakpoint(**each.model_dump()) for each in body.breakpoints)
-    for each in breakpoints:
+    for each in body.breakpoints:
         _ = each.template  # compiled now, so that an invalid expression is rejected before anything changes
-    return breakpoints
+    return body.breakpoints
 
 
 @router.get("/{behavior_id:path}")
 def get_breakpoints(behavior_id: str, services: ServicesOf) -> BreakpointsBody:
     """Return the breakpoints stored with the behavior."""
-    kept = services.backend.breakpoints(behavior_id)
-    return BreakpointsBody(breakpoints=tuple(BreakpointBody.model_validate(each) for each in kept))
+    return BreakpointsBody(breakpoints=services.backend.breakpoints(behavior_id))
 
 
 @router.put("/{behavior_id:path}")

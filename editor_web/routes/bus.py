@@ -8,27 +8,29 @@ from contextlib import aclosing
 from typing import Any, TypeVar
 
 import msgspec
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from fastapi.responses import StreamingResponse
 
 from editor_web.http_bodies.common_bodies import BusMessageBody, BusRequestBody, ErrorBody
-from editor_web.routes.responses import json_response
 from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter
 from editor_web.telemetry.bus_bodies import BusFields, BusForm, BusListing, BusParameterBody, TopicFields
 from editor_web.telemetry.bus_metrics import bus_fingerprint
 from editor_web.telemetry.goal_stream import GoalStream, wait_for_disconnect
 from editor_web.telemetry.plot_signals import signal_fields
 from editor_web.telemetry.truncate import truncate_value
+from engine.bus.action import GoalEnd
+from engine.bus.bus import BusEntry
 
-router = APIRouter(prefix="/api/v1/bus", tags=["bus"], responses={422: {"model": ErrorBody}})
+router = WireRouter(prefix="/api/v1/bus", tags=["bus"], responses={422: {"model": ErrorBody}})
 CLIENT_CLOSED_REQUEST = 499
 R = TypeVar("R")
 
 
 @router.get("")
-async def list_bus(services: ServicesOf) -> Response:
+async def list_bus(services: ServicesOf) -> tuple[BusEntry, ...]:
     """List topics, services, actions, parameters and leases."""
-    return json_response(await services.backend.bus.listing())
+    return await services.backend.bus.listing()
 
 
 @router.get("/echo")
@@ -61,53 +63,47 @@ async def call_service(body: BusRequestBody, services: ServicesOf) -> Response:
 
 
 @router.post("/goal")
-async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Request) -> Response:
+async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Request) -> GoalEnd[object] | Response:
     """Send a goal and return its end; it is cancelled if the client disconnects. This moves the robot."""
     work = services.backend.bus.perform(body.address, body.request)
     end = await run_while_connected(work, request, name=f"goal {body.address}")
     if end is None:
         return Response(status_code=CLIENT_CLOSED_REQUEST)
-    return json_response({"status": end.status.value, "result": end.result, "cause": end.cause})
+    return end
 
 
 @router.get("/board")
-async def get_board(services: ServicesOf) -> Response:
+async def get_board(services: ServicesOf) -> BusListing:
     """Return topics, services, actions and parameters with descriptions; `shape` changes when this list does."""
     desk = services.backend.desk
     parameters = (msgspec.structs.replace(each, value=truncate_value(each.value)) for each in desk.parameters())
-    return json_response(
-        BusListing(
-            shape=bus_fingerprint(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters)
-        )
+    return BusListing(
+        shape=bus_fingerprint(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters)
     )
 
 
 @router.get("/form")
-async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> Response:
+async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> BusForm:
     """Return the JSON Schema of the request of an address, or of the messages of a topic."""
     desk = services.backend.desk
     schema = desk.message_schema(topic) if topic else desk.request_schema(address)
-    return json_response(BusForm(name=topic or address, schema=schema))
+    return BusForm(name=topic or address, schema=schema)
 
 
 @router.get("/fields")
-async def get_fields(services: ServicesOf) -> Response:
+async def get_fields(services: ServicesOf) -> BusFields:
     """Return the numeric fields of the latest message of every topic, for plots."""
     desk = services.backend.desk
     topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
-    return json_response(
-        BusFields(
-            topics=tuple(
-                TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields
-            )
-        )
+    return BusFields(
+        topics=tuple(TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields)
     )
 
 
 @router.put("/parameter")
-async def set_parameter(body: BusParameterBody, services: ServicesOf) -> Response:
+async def set_parameter(body: BusParameterBody, services: ServicesOf) -> object:
     """Set a parameter and return its new value. This may change the behavior of a robot."""
-    return json_response(truncate_value(services.backend.desk.set_parameter(body.name, body.value)))
+    return truncate_value(services.backend.desk.set_parameter(body.name, body.value))
 
 
 @router.post("/goals")

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import json
-from typing import Any, cast
-
-from fastapi import APIRouter
+import msgspec
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.http_bodies.document_bodies import (
-    CatalogueBody,
-    ContainerBody,
-    EntryBody,
-    ReferableBehaviorBody,
-    StateBody,
-)
+from editor_web.http_bodies.document_bodies import CatalogueBody, EntryName
 from editor_web.routes.services import Services, ServicesOf
+from editor_web.routes.wire_router import WireRouter
 from engine.editing.catalogue import container_views, state_views
 from engine.errors import FlexcellError
+from engine.skills.entries import EntryList
 
-router = APIRouter(prefix="/api/v1/catalogue", tags=["documents"])
+router = WireRouter(prefix="/api/v1/catalogue", tags=["documents"])
 
 
 @router.get("")
@@ -29,20 +22,20 @@ async def get_catalogue(services: ServicesOf) -> CatalogueBody:
     return await run_in_threadpool(_catalogue, services, entries)
 
 
-def _catalogue(services: Services, entries: tuple[EntryBody, ...]) -> CatalogueBody:
+def _catalogue(services: Services, entries: tuple[EntryName, ...]) -> CatalogueBody:
     return CatalogueBody(
-        states=tuple(StateBody.model_validate(each) for each in state_views(services.documents.catalogue)),
-        containers=tuple(ContainerBody.model_validate(each) for each in container_views()),
-        behaviors=tuple(ReferableBehaviorBody.model_validate(each) for each in services.documents.referable()),
+        states=state_views(services.documents.catalogue),
+        containers=container_views(),
+        behaviors=services.documents.referable(),
         entries=entries,
         names={str(kind): names for kind, names in services.documents.offered().items()},
     )
 
 
-async def _entries(services: Services) -> tuple[EntryBody, ...]:
+async def _entries(services: Services) -> tuple[EntryName, ...]:
     try:
         answer = await services.backend.bus.call("store/list_entries", {})
     except FlexcellError:
         return ()  # a cell without a store has no entries
-    listed = cast("list[list[Any]]", json.loads(answer).get("entries", []))
-    return tuple(EntryBody(kind=str(kind), name=str(name), tags=()) for kind, name, _ in listed)
+    listed = msgspec.json.decode(answer, type=EntryList).entries
+    return tuple(EntryName(kind=kind, name=name) for kind, name, _ in listed)

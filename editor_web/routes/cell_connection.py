@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
-
-from editor_web.http_bodies.common_bodies import ConnectBody, ConnectionBody, ErrorBody
+from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody
 from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter
+from engine.cell.cell_connection import CellConnection
 
-router = APIRouter(prefix="/api/v1/cell", tags=["cell"])
+router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 
 
 @router.get("/connection")
-async def get_connection(services: ServicesOf) -> ConnectionBody:
+async def get_connection(services: ServicesOf) -> CellConnection:
     """Return whether every device is connected, and which one is lost and why."""
-    return ConnectionBody.model_validate(services.backend.cell_connection)
+    return services.backend.cell_connection
 
 
 @router.post("/connect", status_code=204, responses={409: {"model": ErrorBody}, 422: {"model": ErrorBody}})

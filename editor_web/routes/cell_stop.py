@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
-
 from editor_web.http_bodies.common_bodies import ErrorBody, StopBody
 from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter
 
-router = APIRouter(prefix="/api/v1/cell", tags=["cell"])
+router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 
 
 @router.post("/stop", status_code=204, responses={422: {"model": ErrorBody}})

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import msgspec
-from fastapi import APIRouter
+from msgspec.structs import asdict, replace
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody
-from editor_web.http_bodies.demonstration_bodies import DemonstrationBody, ProposalBody, ProposedStepBody
-from editor_web.routes.document_route import DocumentRoute
+from editor_web.http_bodies.common_bodies import ErrorBody
+from editor_web.http_bodies.demonstration_bodies import DemonstrationBody, ProposalBody
 from editor_web.routes.services import Services, ServicesOf
+from editor_web.routes.wire_router import WireRouter
 from engine.editing.cell_references import cell_reference
-from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, TaughtStep
+from engine.skills.proposing import Proposal, ProposeBehavior
 
-router = APIRouter(
-    prefix="/api/v1/teach", tags=["teach"], route_class=DocumentRoute, responses={422: {"model": ErrorBody}}
-)
+router = WireRouter(prefix="/api/v1/teach", tags=["teach"], responses={422: {"model": ErrorBody}})
 UNNAMED = "behaviors/from_demonstration.yaml"
 
 
@@ -29,33 +27,13 @@ async def propose_behavior(body: DemonstrationBody, services: ServicesOf) -> Pro
 
 def _request(services: Services, body: DemonstrationBody) -> ProposeBehavior:
     file = services.documents.file_of(body.id or UNNAMED)
-    options = ProposalOptions(
-        name=file.stem[:80],
-        arm=body.arm,
-        tool=body.tool,
-        speed=body.speed,
-        line_speed_m_s=body.line_speed_m_s,
-        approach_m=body.approach_m,
-        width_m=body.width_m,
-        cell=cell_reference(services.documents.project, cell=services.backend.cell_name, document=file),
-    )
-    steps = tuple(TaughtStep(kind=one.kind, name=one.name, role=one.role, part=one.part) for one in body.steps)
-    return ProposeBehavior(steps=steps, options=options)
+    cell = cell_reference(services.documents.project, cell=services.backend.cell_name, document=file)
+    options = replace(body.options, name=file.stem[:80], cell=cell)
+    return ProposeBehavior(steps=body.steps, options=options)
 
 
 def _response(services: Services, body: DemonstrationBody, proposal: Proposal) -> ProposalBody:
     if body.id:
         services.documents.add(body.id, proposal.text)
     analysis = services.documents.examine(body.id or UNNAMED, proposal.text)
-    return ProposalBody(
-        text=proposal.text,
-        steps=tuple(ProposedStepBody.model_validate(step) for step in proposal.steps),
-        words=proposal.words,
-        remarks=proposal.remarks,
-        arm=proposal.arm,
-        tool=proposal.tool,
-        arms=proposal.arms,
-        parts=proposal.parts,
-        findings=tuple(FindingBody.model_validate(each) for each in analysis.findings),
-        id=body.id,
-    )
+    return ProposalBody(**asdict(proposal), findings=analysis.findings, id=body.id)

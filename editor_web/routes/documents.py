@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Annotated
 
-import msgspec
-from fastapi import APIRouter, HTTPException, Query, Response
+from fastapi import HTTPException, Query
+from msgspec.structs import asdict
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody
+from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.http_bodies.document_bodies import (
     ConflictBody,
     CopyBody,
     CopyResultBody,
-    DifferenceBody,
     DocumentBody,
     DraftBody,
-    DraftResultBody,
     EditResultBody,
     EditsBody,
-    KeyFlowBody,
     NewDocumentBody,
     NewIdBody,
     SaveBody,
@@ -30,16 +26,19 @@ from editor_web.http_bodies.document_bodies import (
     TextBody,
     VersionBody,
     VersionTextBody,
+    document_body,
+    fields_of,
 )
-from editor_web.routes.document_route import DocumentRoute
 from editor_web.routes.services import Services, ServicesOf
+from editor_web.routes.wire_router import WireRouter
 from engine.editing import DocumentAnalysis, StoredDocument, copy_nodes, read_edits
-from engine.editing.document_diff import compare_texts
+from engine.editing.data_flow import KeyFlow
+from engine.editing.document_diff import DocumentDiff, compare_texts
+from engine.library.behavior_library import FindingView
 
-router = APIRouter(
+router = WireRouter(
     prefix="/api/v1/documents",
     tags=["documents"],
-    route_class=DocumentRoute,
     responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}},
 )
 
@@ -51,18 +50,18 @@ def create_document(body: NewDocumentBody, services: ServicesOf) -> DocumentBody
     return _document(services, created)
 
 
-@router.post("/{document_id:path}/draft", response_model=DraftResultBody)
-def draft(document_id: str, body: DraftBody, services: ServicesOf) -> Response:
+@router.post("/{document_id:path}/draft")
+def draft(document_id: str, body: DraftBody, services: ServicesOf) -> DocumentAnalysis:
     """Draw and check a text as the document's; an unreadable text has findings and no graph."""
     documents = services.documents
     analyze = documents.examine if body.check else documents.draw
-    return _packed(analyze(document_id, body.text))
+    return analyze(document_id, body.text)
 
 
 @router.post("/{document_id:path}/findings")
-def find(document_id: str, body: TextBody, services: ServicesOf) -> list[FindingBody]:
+def find(document_id: str, body: TextBody, services: ServicesOf) -> tuple[FindingView, ...]:
     """Check a text as the document's, without drawing it."""
-    return [FindingBody.model_validate(each) for each in services.documents.findings(document_id, body.text)]
+    return services.documents.findings(document_id, body.text)
 
 
 @router.post("/{document_id:path}/targets")
@@ -76,8 +75,7 @@ async def find_targets(document_id: str, body: TargetsBody, services: ServicesOf
     checked = await services.targets.findings(f"{body.page} {document_id}", file, body.text)
     if checked is None:
         return TargetFindingsBody(dropped=True)
-    findings = tuple(map(FindingBody.model_validate, checked.findings))
-    return TargetFindingsBody(findings=findings, problem=checked.problem)
+    return TargetFindingsBody(**asdict(checked))
 
 
 @router.post("/{document_id:path}/names")
@@ -86,21 +84,21 @@ def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[s
     return {str(kind): names for kind, names in services.documents.offered_to(document_id, body.text).items()}
 
 
-@router.post("/{document_id:path}/edits", response_model=EditResultBody)
-def edit(document_id: str, body: EditsBody, services: ServicesOf) -> Response:
+@router.post("/{document_id:path}/edits")
+def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditResultBody:
     """Apply edits to a text, all or none; nothing is saved."""
     documents = services.documents
     edits, refusal = read_edits(body.edits)
     done, analysis = documents.edit(document_id, body.text, edits)
     if body.check:
         analysis = documents.examine(document_id, done.text)
-    return _packed(analysis, text=done.text, changed=done.changed, refused=refusal or done.refused)
+    return EditResultBody(**fields_of(analysis), text=done.text, changed=done.changed, refused=refusal or done.refused)
 
 
 @router.post("/{document_id:path}/data_flow")
-def get_data_flow(document_id: str, body: TextBody, services: ServicesOf) -> list[KeyFlowBody]:
+def get_data_flow(document_id: str, body: TextBody, services: ServicesOf) -> tuple[KeyFlow, ...]:
     """Return the writers and readers of each key of a text; 422 if it is not a valid behavior."""
-    return [KeyFlowBody.model_validate(each) for each in services.documents.data_flow(document_id, body.text)]
+    return services.documents.data_flow(document_id, body.text)
 
 
 @router.post("/{document_id:path}/copy")
@@ -148,20 +146,20 @@ def get_version(document_id: str, digest: str, services: ServicesOf) -> VersionT
 def get_difference(
     document_id: str, services: ServicesOf, before: Annotated[str, Query(alias="from", pattern="^[0-9a-f]{64}$")],
     after: Annotated[str, Query(alias="to", pattern="^([0-9a-f]{64})?$")] = "",
-) -> DifferenceBody:  # fmt: skip
+) -> DocumentDiff:  # fmt: skip
     """Compare two versions node by node; without `to`, compare with the document on disk."""
     documents = services.documents
     old = documents.version(document_id, before)
     new = documents.version(document_id, after) if after else documents.open(document_id).text
-    return DifferenceBody.model_validate(compare_texts(old, new, file=document_id))
+    return compare_texts(old, new, file=document_id)
 
 
-@router.get("/{document_id:path}", response_model=DocumentBody)
-def get_document(document_id: str, services: ServicesOf, check: bool = True) -> Response:
+@router.get("/{document_id:path}")
+def get_document(document_id: str, services: ServicesOf, check: bool = True) -> DocumentBody:
     """Return a document on disk, drawn and checked; without `check` the response is faster and has no findings."""
     opened = services.documents.open(document_id)
     analyze = services.documents.examine if check else services.documents.draw
-    return _packed(analyze(opened.id, opened.text), id=opened.id, text=opened.text, saved_at=opened.saved_at_s)
+    return document_body(opened, analyze(opened.id, opened.text))
 
 
 @router.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
@@ -177,12 +175,5 @@ def delete_document(document_id: str, services: ServicesOf) -> None:
     services.documents.delete(document_id)
 
 
-def _packed(analysis: DocumentAnalysis, **extra: object) -> Response:
-    """Return the JSON response directly: the fields equal those of the body model, which is slow to build per node."""
-    body = {each.name: getattr(analysis, each.name) for each in fields(analysis)} | extra
-    return Response(msgspec.json.encode(body), media_type="application/json")
-
-
 def _document(services: Services, opened: StoredDocument) -> DocumentBody:
-    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
-    return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
+    return document_body(opened, services.documents.examine(opened.id, opened.text))

@@ -7,20 +7,27 @@ import math
 from collections.abc import Callable
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query, Request, Response
+from fastapi import HTTPException, Query, Request, Response
 
-from editor_web.http_bodies.common_bodies import BehaviorBody, ErrorBody
-from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunBody, PastRunsBody, RecordingBody
+from editor_web.http_bodies.common_bodies import ErrorBody
+from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunsBody, past_run_body
 from editor_web.live.run_state import LOG_LINES
-from editor_web.past import OpenRun, OpenRunCache
+from editor_web.past import OpenRun, OpenRunCache, PastRunState, RunFailure, Timeline
 from editor_web.past.run_search import RUN_KINDS, PastRunQuery, RunKind, search_runs
-from editor_web.routes.responses import json_response
+from editor_web.past.userdata_values import PastUserdata
 from editor_web.routes.services import ServicesOf
-from engine.archive import ArchivedRun
+from editor_web.routes.wire_router import WireRouter, json_response
+from engine.archive import ArchivedRun, RecordingFile
 from engine.errors import FlexcellError, RecordingError
 
 _PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
-router = APIRouter(prefix="/api/v1", tags=["past"])
+
+
+def _found(kind: object) -> dict[int | str, dict[str, object]]:
+    return {**_PROBLEMS, 200: {"model": kind}}
+
+
+router = WireRouter(prefix="/api/v1", tags=["past"])
 _LATEST_S = 1e12
 
 FromS = Annotated[float, Query(ge=0, le=_LATEST_S, allow_inf_nan=False)]
@@ -48,10 +55,7 @@ async def list_past_runs(
     runs = await asyncio.to_thread(backend.archive.runs)
     page, total, counts = search_runs(runs, wanted, offset=offset, limit=limit)
     bodies = tuple(
-        PastRunBody.model_validate(run).model_copy(
-            update={"recording": backend.archive.recording_of(run.id), "here": run.id in here}
-        )
-        for run in page
+        past_run_body(run, recording=backend.archive.recording_of(run.id), here=run.id in here) for run in page
     )
     return PastRunsBody(runs=bodies, total=total, counts={name: counts[name] for name in RUN_KINDS})
 
@@ -64,7 +68,7 @@ async def open_past_run(run_id: str, services: ServicesOf, request: Request) -> 
     return _opened_body(opened, recording=recording)
 
 
-@router.get("/runs/{run_id}/timeline", responses=_PROBLEMS)
+@router.get("/runs/{run_id}/timeline", responses=_found(Timeline))
 async def run_timeline(
     run_id: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
 ) -> Response:
@@ -72,7 +76,7 @@ async def run_timeline(
     return await _of_run(request, run_id, _timeline(from_s, until_s, after), fresh=True)
 
 
-@router.get("/runs/{run_id}/at", responses=_PROBLEMS)
+@router.get("/runs/{run_id}/at", responses=_found(PastRunState))
 async def run_moment(
     run_id: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
 ) -> Response:
@@ -80,7 +84,7 @@ async def run_moment(
     return await _of_run(request, run_id, _moment(time_s, seq, known, lines))
 
 
-@router.get("/runs/{run_id}/failure", responses=_PROBLEMS)
+@router.get("/runs/{run_id}/failure", responses=_found(RunFailure | None))
 async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Response:
     """Return the failure of a run; null if it did not fail."""
     try:
@@ -91,20 +95,19 @@ async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Re
     return await _of_run(request, run_id, _failure(is_failed))
 
 
-@router.get("/runs/{run_id}/userdata", responses=_PROBLEMS)
+@router.get("/runs/{run_id}/userdata", responses=_found(PastUserdata))
 async def run_values(run_id: str, request: Request, seq: Seq = None) -> Response:
     """Return the userdata of a run after an event."""
     return await _of_run(request, run_id, lambda opened: opened.values(seq=seq))
 
 
 @router.get("/recordings")
-async def list_recordings(services: ServicesOf) -> list[RecordingBody]:
+async def list_recordings(services: ServicesOf) -> tuple[RecordingFile, ...]:
     """List the recordings of the project, newest first."""
-    files = await asyncio.to_thread(services.backend.archive.recordings)
-    return [RecordingBody.model_validate(file) for file in files]
+    return await asyncio.to_thread(services.backend.archive.recordings)
 
 
-@router.get("/recordings/{path:path}/timeline", responses=_PROBLEMS)
+@router.get("/recordings/{path:path}/timeline", responses=_found(Timeline))
 async def recording_timeline(
     path: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
 ) -> Response:
@@ -112,7 +115,7 @@ async def recording_timeline(
     return await asyncio.to_thread(_of_recording, _pasts(request), path, _timeline(from_s, until_s, after))
 
 
-@router.get("/recordings/{path:path}/at", responses=_PROBLEMS)
+@router.get("/recordings/{path:path}/at", responses=_found(PastRunState))
 async def recording_moment(
     path: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
 ) -> Response:
@@ -120,13 +123,13 @@ async def recording_moment(
     return await asyncio.to_thread(_of_recording, _pasts(request), path, _moment(time_s, seq, known, lines))
 
 
-@router.get("/recordings/{path:path}/failure", responses=_PROBLEMS)
+@router.get("/recordings/{path:path}/failure", responses=_found(RunFailure | None))
 async def recording_failure(path: str, request: Request) -> Response:
     """Return the failure of a recorded run; null if it did not fail."""
     return await asyncio.to_thread(_of_recording, _pasts(request), path, _failure(None))
 
 
-@router.get("/recordings/{path:path}/userdata", responses=_PROBLEMS)
+@router.get("/recordings/{path:path}/userdata", responses=_found(PastUserdata))
 async def recording_values(path: str, request: Request, seq: Seq = None) -> Response:
     """Return the userdata of a recorded run after an event."""
     return await asyncio.to_thread(_of_recording, _pasts(request), path, lambda opened: opened.values(seq=seq))
@@ -208,5 +211,4 @@ def _opened_body(opened: OpenRun, *, recording: str) -> OpenRunBody:
     archived: ArchivedRun | None = opened.archived
     if archived is None:
         raise HTTPException(404, "no such run")
-    run = PastRunBody.model_validate(archived.summary).model_copy(update={"recording": recording})
-    return OpenRunBody(run=run, behavior=BehaviorBody.model_validate(archived.behavior))
+    return OpenRunBody(run=past_run_body(archived.summary, recording=recording), behavior=archived.behavior)

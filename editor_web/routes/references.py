@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
-
-import msgspec
-from fastapi import APIRouter
+from msgspec.structs import asdict
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.document_bodies import DifferenceBody, DocumentBody, DraftResultBody, TextBody
+from editor_web.http_bodies.document_bodies import DocumentBody, TextBody, document_body
 from editor_web.http_bodies.reference_bodies import (
     CompareBody,
     DeletedDocumentBody,
-    FixBody,
     FixesBody,
     MoveBody,
     MoveResultBody,
-    ReferrerBody,
 )
-from editor_web.routes.document_route import DocumentRoute
 from editor_web.routes.services import ServicesOf
-from engine.editing.document_diff import compare_texts
-from engine.editing.fixes import Fix, fixes_of
-from engine.editing.references import move_with_references, referrers
+from editor_web.routes.wire_router import WireRouter
+from engine.editing import DocumentAnalysis
+from engine.editing.document_diff import DocumentDiff, compare_texts
+from engine.editing.fixes import fixes_of
+from engine.editing.references import ReferringBehavior, move_with_references, referrers
 
-router = APIRouter(
+router = WireRouter(
     prefix="/api/v1",
     tags=["documents"],
-    route_class=DocumentRoute,
     responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}},
 )
 
@@ -45,19 +40,16 @@ def get_fixes(document_id: str, body: TextBody, services: ServicesOf) -> list[Fi
     findings = documents.findings(document_id, body.text)
     fixes_by_finding = fixes_of(body.text, findings, file=document_id, context=documents.context(document_id))
     return [
-        FixesBody(
-            code=finding.code, path=finding.path, line=finding.line, message=finding.message,
-            fixes=tuple(map(_fix, fixes)),
-        )
+        FixesBody(**asdict(finding), fixes=fixes)
         for finding, fixes in zip(findings, fixes_by_finding, strict=True)
         if fixes
-    ]  # fmt: skip
+    ]
 
 
 @router.get("/documents/{document_id:path}/referrers")
-def list_referrers(document_id: str, services: ServicesOf) -> list[ReferrerBody]:
+def list_referrers(document_id: str, services: ServicesOf) -> tuple[ReferringBehavior, ...]:
     """List the behaviors that refer to a document."""
-    return [ReferrerBody.model_validate(each) for each in referrers(services.documents, document_id)]
+    return referrers(services.documents, document_id)
 
 
 @router.post("/documents/{document_id:path}/move")
@@ -65,8 +57,7 @@ def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> Mov
     """Give a document a new id, and update the references to it if `follow` is set."""
     moved = move_with_references(services.documents, document_id, body.id, follow=body.follow)
     opened = moved.opened
-    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
-    document = DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
+    document = document_body(opened, services.documents.examine(opened.id, opened.text))
     return MoveResultBody(document=document, followed=moved.followed, left=moved.left)
 
 
@@ -74,24 +65,18 @@ def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> Mov
 def restore_document(document_id: str, services: ServicesOf) -> DocumentBody:
     """Restore the last text of a deleted document."""
     opened = services.documents.restore(document_id)
-    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
-    return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
+    return document_body(opened, services.documents.examine(opened.id, opened.text))
 
 
 @router.get("/documents/{document_id:path}/versions/{digest}/drawn")
-def get_drawn_version(document_id: str, digest: str, services: ServicesOf) -> DraftResultBody:
+def get_drawn_version(document_id: str, digest: str, services: ServicesOf) -> DocumentAnalysis:
     """Draw a version as the document's text."""
     documents = services.documents
-    return DraftResultBody.model_validate(documents.draw(document_id, documents.version(document_id, digest)))
+    return documents.draw(document_id, documents.version(document_id, digest))
 
 
 @router.post("/documents/{document_id:path}/compare")
-def compare(document_id: str, body: CompareBody, services: ServicesOf) -> DifferenceBody:
+def compare(document_id: str, body: CompareBody, services: ServicesOf) -> DocumentDiff:
     """Compare two texts of a document node by node."""
     services.documents.file_of(document_id)
-    return DifferenceBody.model_validate(compare_texts(body.before, body.after, file=document_id))
-
-
-def _fix(fix: Fix) -> FixBody:
-    plain = cast("list[dict[str, Any]]", msgspec.to_builtins(fix.edits))
-    return FixBody(title=fix.title, edits=tuple(plain))
+    return compare_texts(body.before, body.after, file=document_id)

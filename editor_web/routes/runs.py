@@ -4,33 +4,36 @@ from __future__ import annotations
 
 import secrets
 from collections import OrderedDict
-from typing import Annotated
+from typing import Annotated, cast
 
-import msgspec
-from fastapi import APIRouter, Header, HTTPException, Query, Request, Response
+from fastapi import Header, HTTPException, Query, Request, Response
+from msgspec.structs import asdict
 
-from editor_web.http_bodies.common_bodies import ErrorBody, EventsBody, RunBody, StartResultBody, StopBody
+from editor_web.http_bodies.common_bodies import ErrorBody, EventsBody, StartResultBody, StopBody
 from editor_web.http_bodies.start_bodies import StartBody
 from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import FlexcellError
+from engine.event import AnyEvent
 from engine.project.run_factory import RunPosition
+from engine.project.session_run import RunView
 from engine.runtime.run_options import RunOptions
 
-router = APIRouter(prefix="/api/v1/runs", tags=["runs"])
+router = WireRouter(prefix="/api/v1/runs", tags=["runs"])
 KEPT_KEYS = 200
 
 
 @router.get("")
-def list_runs(services: ServicesOf) -> list[RunBody]:
+def list_runs(services: ServicesOf) -> tuple[RunView, ...]:
     """List the known runs, newest first."""
-    return [RunBody.model_validate(run) for run in services.backend.runs()]
+    return services.backend.runs()
 
 
 @router.get("/{run_id}", responses={404: {"model": ErrorBody}})
-def get_run(run_id: str, services: ServicesOf) -> RunBody:
+def get_run(run_id: str, services: ServicesOf) -> RunView:
     """Return one run."""
     try:
-        return RunBody.model_validate(services.backend.run(run_id))
+        return services.backend.run(run_id)
     except FlexcellError as error:
         raise HTTPException(404, error.message) from error
 
@@ -40,14 +43,12 @@ async def start_run(
     body: StartBody,
     services: ServicesOf,
     request: Request,
-    response: Response,
     idempotency_key: Annotated[str | None, Header(max_length=100)] = None,
-) -> StartResultBody:
+) -> StartResultBody | Response:
     """Start a run; a repeated Idempotency-Key returns the run that it started and starts nothing."""
     started: OrderedDict[str, str] = request.app.state.started
     if idempotency_key is not None and idempotency_key in started:
-        response.status_code = 200
-        return StartResultBody(run=started[idempotency_key])
+        return json_response(StartResultBody(run=started[idempotency_key]))
     seed = secrets.randbelow(2**31) if body.seed is None else body.seed
     watched = body.supervision
     run_id = await services.backend.start(
@@ -55,9 +56,9 @@ async def start_run(
         parameters=body.parameters,
         seed=seed,
         inputs=body.inputs,
-        supervision=RunOptions(**watched.model_dump(exclude={"breakpoints"})),
+        supervision=RunOptions(**{name: value for name, value in asdict(watched).items() if name != "breakpoints"}),
         breakpoints=watched.breakpoints,
-        begin=RunPosition(**body.begin.model_dump()) if body.begin is not None else None,
+        begin=RunPosition(**asdict(body.begin)) if body.begin is not None else None,
     )
     if idempotency_key is not None:
         started[idempotency_key] = run_id
@@ -84,4 +85,4 @@ def list_events(
         events = services.backend.events(run_id, after=after)[:limit]
     except FlexcellError as error:
         raise HTTPException(404, error.message) from error
-    return EventsBody(events=tuple(msgspec.to_builtins(e) for e in events), last=events[-1].seq if events else after)
+    return EventsBody(events=tuple(cast("list[AnyEvent]", events)), last=events[-1].seq if events else after)

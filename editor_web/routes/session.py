@@ -6,22 +6,21 @@ from pathlib import Path
 from typing import cast
 from urllib.parse import parse_qs
 
-from fastapi import APIRouter, HTTPException, Request, Response
+from fastapi import HTTPException, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from editor_web.http_bodies.common_bodies import (
-    ConnectionBody,
     LoginLinkBody,
     LoginLinkRequest,
     SessionBody,
-    StopEndpointBody,
 )
 from editor_web.routes.services import Services, ServicesOf, role_of
+from editor_web.routes.wire_router import WireRouter
 from editor_web.security.authentication import OPERATOR, Role
 from editor_web.security.login_sessions import ABSOLUTE_LIMIT_S, LINK_LIMIT_S, LoginSession
 from editor_web.security.middleware import LOG_OUT, cookie_name, peer_of
 
-router = APIRouter(tags=["session"])
+router = WireRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
 _SPENT = "This link has been used already or has expired: <code>flexcell login</code> prints a new one."
 
@@ -35,8 +34,8 @@ async def get_session(request: Request, services: ServicesOf) -> SessionBody:
         cell_name=services.backend.cell_name,
         cell_view_port=services.view_port,
         epoch=services.hub.epoch,
-        cell=ConnectionBody.model_validate(services.backend.cell_connection),
-        stop=StopEndpointBody.model_validate(stop) if stop is not None and role == OPERATOR else None,
+        cell=services.backend.cell_connection,
+        stop=stop if role == OPERATOR else None,
     )
 
 

@@ -8,12 +8,12 @@ from collections.abc import Callable
 from typing import Annotated, cast
 
 import msgspec
-from fastapi import APIRouter, Query, Request, Response, WebSocket
+from fastapi import Query, Request, Response, WebSocket
 
 from editor_web.cell_view import CellView
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, run_while_connected
-from editor_web.routes.responses import json_response
 from editor_web.routes.services import ServicesOf, role_of, services_of
+from editor_web.routes.wire_router import WireRouter
 from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, read_message, send_message
 from editor_web.teaching.arm_status import ArmStatusReader
@@ -25,17 +25,21 @@ from editor_web.teaching.teaching_messages import (
     ArmsLiveFrame,
     ButtonInput,
     EntriesChanged,
+    EntryPage,
     FromPage,
     HelpingHandFrame,
     JogStatus,
     JogVelocity,
+    PlaybackResult,
     PlayBody,
     PreviewTaught,
+    PrimitiveComparison,
     PushToolBody,
     RefusedFrame,
     StartJog,
     StopJog,
     TagsBody,
+    TaughtReference,
     ToPage,
 )
 from editor_web.teaching.tool_push import push
@@ -44,7 +48,7 @@ from engine.project.session import Session
 from engine.skills.planning import PathPreview
 from engine.skills.teaching import TeachStatus
 
-router = APIRouter(prefix="/api/v1/teach", tags=["teaching"])
+router = WireRouter(prefix="/api/v1/teach", tags=["teaching"])
 PERIOD_S = 0.1
 MOST_WAITING = 200
 MOST_ENTRIES = 200
@@ -58,9 +62,9 @@ async def list_entries(
     kind: Annotated[str, Query(max_length=40)] = "",
     text: Annotated[str, Query(max_length=200)] = "",
     limit: Annotated[int, Query(ge=1, le=MOST_ENTRIES)] = 100,
-) -> Response:
+) -> EntryPage:
     """List entries of the cell's store, each with its last change."""
-    return json_response(await search_entries(services.backend.bus, kind=kind, text=text, limit=limit))
+    return await search_entries(services.backend.bus, kind=kind, text=text, limit=limit)
 
 
 @router.get("/fits")
@@ -71,10 +75,10 @@ async def get_fits(
     name: Annotated[str, Query(max_length=200)] = "",
     capture: Annotated[int, Query(ge=0)] = 0,
     revision: Annotated[int, Query(ge=0)] = 0,
-) -> Response:
+) -> PrimitiveComparison:
     """Return the motion of an arm along an entry or a capture, with the recording that it was learned from."""
-    reference = PreviewTaught(arm=arm, kind=kind, name=name, capture=capture, revision=revision)
-    return json_response(await compare_primitive(services.backend.bus, arm, reference))
+    reference = TaughtReference(kind=kind, name=name, capture=capture, revision=revision)
+    return await compare_primitive(services.backend.bus, arm, reference)
 
 
 @router.post("/tags", status_code=204)
@@ -84,10 +88,10 @@ async def set_tags(body: TagsBody, services: ServicesOf) -> None:
 
 
 @router.post("/play")
-async def play_back(body: PlayBody, request: Request, services: ServicesOf) -> Response:
+async def play_back(body: PlayBody, request: Request, services: ServicesOf) -> PlaybackResult | Response:
     """Play back a taught motion, slowly; it stops if the page disconnects. This moves the robot."""
     played = await run_while_connected(play(services.backend.bus, body), request, name=f"play {body.arm}")
-    return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else json_response(played)
+    return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else played
 
 
 @router.post("/push", status_code=204)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+from msgspec.structs import asdict
+
 from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
@@ -41,13 +43,7 @@ class ArmStatusReader:
                 self._tools[name] = tool
             cards.append(
                 ArmInfo(
-                    name=name,
-                    model=description.model,
-                    joint_names=description.joint_names,
-                    lower_rad=description.lower_rad,
-                    upper_rad=description.upper_rad,
-                    velocity_rad_s=description.velocity_rad_s,
-                    tool=description.tool,
+                    **asdict(description),
                     skills=tuple(sorted(each.removeprefix(start) for each in skills if each.startswith(start))),
                 )
             )

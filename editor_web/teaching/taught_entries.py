@@ -4,43 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass
-from typing import Protocol, cast, get_args
+from typing import cast, get_args
 
 import msgspec
 
-from editor_web.teaching.teaching_messages import EntryPage, EntryRow, PrimitiveComparison, TagsBody
+from editor_web.teaching.teaching_messages import EntryPage, PrimitiveComparison, TagsBody, TaughtReference
 from engine.bus.json_bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import Message
-from engine.skills.entries import EntryHistory, EntryList, EntryRecord
+from engine.skills.entries import EntryChanged, EntryHistory, EntryList, EntryRecord
 from engine.skills.motion_trace import Trace, TraceableKind
 from engine.skills.teaching import Capture
 
 _TRACEABLE = frozenset(get_args(TraceableKind))
-
-
-class TaughtReference(Protocol):
-    """Names an entry (`kind`, `name`), or a capture by its number."""
-
-    @property
-    def kind(self) -> str:
-        """Kind of the entry."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """Name of the entry."""
-        ...
-
-    @property
-    def capture(self) -> int:
-        """Number of the capture, 0 for an entry."""
-        ...
-
-    @property
-    def revision(self) -> int:
-        """Revision of the entry, 0 for the current one."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,16 +140,7 @@ async def search_entries(bus: JsonBus, *, kind: str, text: str, limit: int) -> E
     return EntryPage(entries=tuple(rows), total=len(matching))
 
 
-async def _row(bus: JsonBus, kind: str, name: str, revision: int) -> EntryRow:
+async def _row(bus: JsonBus, kind: str, name: str, revision: int) -> EntryChanged:
     answer = await bus.call("store/read_history", {"kind": kind, "name": name})
     changes = msgspec.json.decode(answer, type=EntryHistory).changes
-    last = changes[-1] if changes else None
-    return EntryRow(
-        kind=kind,
-        name=name,
-        revision=revision,
-        tags=last.tags if last else (),
-        by=last.by if last else "",
-        reason=last.reason if last else "",
-        changed_unix_ms=last.changed_unix_ms if last else 0,
-    )
+    return changes[-1] if changes else EntryChanged(kind=kind, name=name, revision=revision, deleted=False)

@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import msgspec
-from pydantic import Field
+from msgspec import Meta
 
-from editor_web.http_bodies.common_bodies import HttpBody
+from editor_web.http_bodies.common_bodies import Name, RequestBody
+from engine.messages import RobotDescription
 from engine.skills.dmp import CartFit, JointFit
+from engine.skills.entries import EntryChanged
 from engine.skills.motion_trace import Trace
 from engine.skills.teaching import TeachStatus
 
-Word = Annotated[str, msgspec.Meta(pattern="^[a-z0-9_]{1,40}$")]
-Name = Annotated[str, msgspec.Meta(max_length=200)]
+Word = Annotated[str, Meta(pattern="^[a-z0-9_]{1,40}$")]
 Space = Literal["joints", "tool"]
 Axes = Literal["world", "base", "tool"]
 
 
-class ArmInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """Description of an arm: its joints with their limits (rad, rad/s), its tool, and the names of its skills."""
+class ArmInfo(RobotDescription, frozen=True, kw_only=True):
+    """An arm with the names of its skills."""
 
-    name: str
-    model: str
-    joint_names: tuple[str, ...]
-    lower_rad: tuple[float, ...]
-    upper_rad: tuple[float, ...]
-    velocity_rad_s: tuple[float, ...]
-    tool: str
     skills: tuple[str, ...]
 
 
@@ -100,7 +94,7 @@ class StartJog(msgspec.Struct, frozen=True, kw_only=True, tag="jog", tag_field="
 class JogVelocity(msgspec.Struct, frozen=True, kw_only=True, tag="go", tag_field="k"):
     """From the page, ten times a second or more while a key is down: move at this velocity, m/s and rad/s."""
 
-    velocity: Annotated[tuple[float, ...], msgspec.Meta(max_length=32)]
+    velocity: Annotated[tuple[float, ...], Meta(max_length=32)]
 
 
 class StopJog(msgspec.Struct, frozen=True, kw_only=True, tag="rest", tag_field="k"):
@@ -115,19 +109,23 @@ class ButtonInput(msgspec.Struct, frozen=True, kw_only=True, tag="button", tag_f
     value: bool
 
 
-class PreviewTaught(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):
-    """From the page: preview this arm along an entry (`kind`, `name`) or a capture; without an arm, clear the preview.
+class TaughtReference(msgspec.Struct, frozen=True, kw_only=True):
+    """Names an entry (`kind`, `name`), or a capture by its number; `revision` 0 is the current one of the entry."""
 
-    `revision` selects a revision of the entry, 0 the current one. `place` 0 replaces all previews; places 1 to 4 are
-    shown side by side, each in its colour.
+    kind: Name = ""
+    name: Name = ""
+    capture: Annotated[int, Meta(ge=0, le=2**53)] = 0
+    revision: Annotated[int, Meta(ge=0, le=2**53)] = 0
+
+
+class PreviewTaught(TaughtReference, frozen=True, kw_only=True, tag="look", tag_field="k"):
+    """From the page: preview this arm along an entry or a capture; without an arm, clear the preview.
+
+    `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour.
     """
 
     arm: Name = ""
-    kind: Name = ""
-    name: Name = ""
-    capture: int = 0
-    revision: int = 0
-    place: Annotated[int, msgspec.Meta(ge=0, le=4)] = 0
+    place: Annotated[int, Meta(ge=0, le=4)] = 0
 
 
 class PrimitiveComparison(msgspec.Struct, frozen=True, kw_only=True):
@@ -139,43 +137,27 @@ class PrimitiveComparison(msgspec.Struct, frozen=True, kw_only=True):
     cart_fit: CartFit | None
 
 
-class EntryRow(msgspec.Struct, frozen=True, kw_only=True):
-    """A named entry and its last change: by whom, why, and when (milliseconds since 1970)."""
-
-    kind: str
-    name: str
-    revision: int
-    tags: tuple[str, ...]
-    by: str
-    reason: str
-    changed_unix_ms: int
-
-
 class EntryPage(msgspec.Struct, frozen=True, kw_only=True):
-    """The first matching entries, and the total number."""
+    """The last changes of the first matching entries, and the total number of matching ones."""
 
-    entries: tuple[EntryRow, ...]
+    entries: tuple[EntryChanged, ...]
     total: int
 
 
-class TagsBody(HttpBody):
+class TagsBody(RequestBody, frozen=True, kw_only=True):
     """New tags of an entry; `revision` is the revision that they are based on."""
 
-    kind: str = Field(max_length=200)
-    name: str = Field(max_length=200)
-    tags: tuple[Annotated[str, Field(max_length=64)], ...] = Field(max_length=32)
-    revision: int = Field(ge=1, le=2**53)
+    kind: Name
+    name: Name
+    tags: Annotated[tuple[Annotated[str, Meta(max_length=64)], ...], Meta(max_length=32)]
+    revision: Annotated[int, Meta(ge=1, le=2**53)]
 
 
-class PlayBody(HttpBody):
-    """Play back an entry (`kind`, `name`) or a capture with an arm; `speed` is a fraction of the taught speed."""
+class PlayBody(TaughtReference, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Play back an entry or a capture with an arm; `speed` is a fraction of the taught speed."""
 
-    arm: str = Field(max_length=200)
-    speed: float = Field(gt=0.0, le=0.5)
-    kind: str = Field(default="", max_length=200)
-    name: str = Field(default="", max_length=200)
-    capture: int = Field(default=0, ge=0, le=2**53)
-    revision: int = Field(default=0, ge=0, le=2**53)
+    arm: Name
+    speed: Annotated[float, Meta(gt=0.0, le=0.5)]
 
 
 class PlaybackResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -185,15 +167,13 @@ class PlaybackResult(msgspec.Struct, frozen=True, kw_only=True):
     cause: str
 
 
-class PushToolBody(HttpBody):
+class PushToolBody(RequestBody, frozen=True, kw_only=True):
     """Push the tool of a simulated arm, along the world axes."""
 
-    arm: str = Field(max_length=200)
+    arm: Name
     force_n: tuple[float, float, float]
-    duration_s: float = Field(gt=0.0, le=2.0)
+    duration_s: Annotated[float, Meta(gt=0.0, le=2.0)]
 
 
 ToPage = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
 FromPage = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
-SCHEMAS = (*get_args(ToPage), *get_args(FromPage), PrimitiveComparison, EntryPage, PlaybackResult)
-"""Sources of the page's types, in addition to the bodies of the routes."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import msgspec
-from pydantic import Field
 
-from editor_web.http_bodies.common_bodies import HttpBody
+from editor_web.http_bodies.common_bodies import Name, RequestBody
 from editor_web.telemetry.plot_signals import SignalField
-from engine.event import Cause
+from engine.bus.action import GoalEnd
 from engine.project.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
 
 
@@ -59,16 +58,14 @@ class GoalProgressLine(msgspec.Struct, frozen=True, kw_only=True, tag="course", 
 class GoalEndLine(msgspec.Struct, frozen=True, kw_only=True, tag="end", tag_field="k"):
     """Last line: the end of the goal; the device is at rest."""
 
-    status: str
-    result: object = None
-    cause: Cause | None = None
+    end: GoalEnd[object]
 
 
 GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
 
-class BusParameterBody(HttpBody):
+class BusParameterBody(RequestBody, frozen=True, kw_only=True):
     """A new value of a parameter."""
 
-    name: str = Field(max_length=200)
+    name: Name
     value: object

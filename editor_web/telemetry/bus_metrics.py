@@ -5,7 +5,9 @@ from __future__ import annotations
 import zlib
 from collections import deque
 
-from editor_web.telemetry.data_frames import BusMetricsFrame, GoalMetrics, LeaseMetrics, TopicMetrics
+from msgspec.structs import replace
+
+from editor_web.telemetry.data_frames import BusMetricsFrame, LeaseMetrics, TopicMetrics
 from engine.bus.lease import Lease
 from engine.project.bus_inspector import BusInspector, GoalInfo, TopicStatistics
 
@@ -33,10 +35,8 @@ class BusMetrics:
                 name: _line(each, then.get(name), now_s=now_s, then_s=then_s) for name, each in sorted(traffic.items())
             },
             leases=tuple(_lease(each, goals, now_s) for each in self._desk.leases()),
-            goals=tuple(
-                GoalMetrics(id=goal.id, address=goal.address, run=goal.run, node=goal.node, status=goal.status)
-                for goal in goals
-            ),
+            # What a goal feeds back may be large, and is shown where the goal was sent.
+            goals=tuple(replace(goal, feedback=None) for goal in goals),
         )
 
 

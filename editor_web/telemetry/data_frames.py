@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+from engine.project.bus_inspector import GoalInfo
+from engine.runtime.history.userdata_history import ScopeView
+
 MAX_CURVES = 32
 
 
@@ -42,23 +45,13 @@ class LeaseMetrics(msgspec.Struct, frozen=True, kw_only=True):
     held_s: float
 
 
-class GoalMetrics(msgspec.Struct, frozen=True, kw_only=True):
-    """An active goal."""
-
-    id: str
-    address: str
-    run: str
-    node: str
-    status: str
-
-
 class BusMetricsFrame(msgspec.Struct, frozen=True, kw_only=True, tag="traffic", tag_field="k"):
     """Metrics of the bus, once a second; a changed `shape` means that the list of the bus has changed."""
 
     shape: str
     topics: dict[str, TopicMetrics]
     leases: tuple[LeaseMetrics, ...]
-    goals: tuple[GoalMetrics, ...]
+    goals: tuple[GoalInfo, ...]
 
 
 class MessageFrame(msgspec.Struct, frozen=True, kw_only=True, tag="message", tag_field="k"):
@@ -85,23 +78,6 @@ class SamplesFrame(msgspec.Struct, frozen=True, kw_only=True, tag="samples", tag
     dropped: int
 
 
-class UserdataValue(msgspec.Struct, frozen=True, kw_only=True):
-    """One userdata value: its last writer (empty: initial value), the time on the run's clock, the number of writes."""
-
-    value: object
-    by: str
-    at_s: float
-    writes: int
-
-
-class UserdataScope(msgspec.Struct, frozen=True, kw_only=True):
-    """The values of one container; `is_open` while it is active."""
-
-    is_open: bool
-    since_s: float
-    values: dict[str, UserdataValue]
-
-
 class UserdataFrame(msgspec.Struct, frozen=True, kw_only=True, tag="userdata", tag_field="k"):
     """The changed scopes, by the path of their container; null for a removed one.
 
@@ -110,7 +86,7 @@ class UserdataFrame(msgspec.Struct, frozen=True, kw_only=True, tag="userdata", t
 
     run: str
     first: bool
-    scopes: dict[str, UserdataScope | None]
+    scopes: dict[str, ScopeView | None]
     problem: str = ""
 
 

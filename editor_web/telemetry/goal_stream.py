@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -42,7 +43,7 @@ class GoalStream(StreamingResponse):
                 await asyncio.wait({ending, gone}, timeout=PERIOD_S, return_when=asyncio.FIRST_COMPLETED)
             if ending.done() and not gone.done():
                 end = ending.result()
-                last = GoalEndLine(status=end.status.value, result=truncate_value(end.result), cause=end.cause)
+                last = GoalEndLine(end=replace(end, result=truncate_value(end.result)))
                 await self._send_line(send, last)
                 await send({"type": "http.response.body", "body": b"", "more_body": False})
         finally:

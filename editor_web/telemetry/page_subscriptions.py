@@ -11,6 +11,8 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from msgspec.structs import replace
+
 from editor_web.telemetry.bus_metrics import BusMetrics
 from editor_web.telemetry.data_frames import (
     MAX_CURVES,
@@ -21,8 +23,6 @@ from editor_web.telemetry.data_frames import (
     MessageFrame,
     SamplesFrame,
     UserdataFrame,
-    UserdataScope,
-    UserdataValue,
 )
 from editor_web.telemetry.goal_progress import progress_by_node
 from editor_web.telemetry.plot_signals import Path, number_at, path_of
@@ -173,18 +173,10 @@ def _curve(field: str) -> tuple[str, Path]:
     return topic, path_of(path)
 
 
-def userdata_scope(scope: ScopeView) -> UserdataScope:
+def userdata_scope(scope: ScopeView) -> ScopeView:
     """Return the values of a container for a page, large ones truncated."""
-    return UserdataScope(
-        is_open=scope.is_open,
-        since_s=scope.since_s,
-        values={
-            key: UserdataValue(
-                value=truncate_value(entry.value, max_leaves=_VALUE_LEAVES),
-                by=entry.by,
-                at_s=entry.at_s,
-                writes=entry.writes,
-            )
-            for key, entry in scope.values.items()
-        },
-    )
+    values = {
+        key: replace(entry, value=truncate_value(entry.value, max_leaves=_VALUE_LEAVES))
+        for key, entry in scope.values.items()
+    }
+    return replace(scope, values=values)

@@ -10,14 +10,13 @@ import msgspec
 
 from engine.cause_chain import describe_cause
 from engine.event import Event
-from engine.runtime.control import ControlView
 from engine.runtime.run import Run, RunResult
 
 
 class RunView(msgspec.Struct, frozen=True, kw_only=True):
     """One run, active or ended; `status` is running, stopping, finished, stopped or errored.
 
-    `control` is the operator's view of an active run.
+    `waits` is asks, paused or locked while it waits for a person.
     """
 
     id: str
@@ -28,7 +27,7 @@ class RunView(msgspec.Struct, frozen=True, kw_only=True):
     cause: str
     started_at_s: float
     duration_s: float
-    control: ControlView | None = None
+    waits: str = ""
 
 
 class SessionRun:
@@ -69,5 +68,5 @@ class SessionRun:
             cause=describe_cause(result.cause) if result and result.cause and not result.success else "",
             started_at_s=self.started_at_s,
             duration_s=result.duration_s if result else now_s - self.started_s,
-            control=self.run.control.view() if result is None and not self.run.ended else None,
+            waits=self.run.control.view().waits if result is None and not self.run.ended else "",
         )

@@ -62,7 +62,7 @@ def test_a_proposal_says_what_it_will_do_and_is_written_only_where_an_id_is_give
     assert (answer["words"], answer["remarks"], answer["findings"]) == (WORDS, [], [])
     assert (answer["arms"], sorted(answer["parts"]), answer["tool"]) == (["arm"], ["gear", "lid"], "gripper")
     assert not (taught.project / "behaviors" / "from_demonstration.yaml").exists()
-    made = asked(taught, {"steps": STEPS, "id": MADE, "speed": 0.2})
+    made = asked(taught, {"steps": STEPS, "id": MADE, "options": {"speed": 0.2}})
     assert (made.status_code, made.json()["id"]) == (200, MADE)
     behavior = load_behavior(taught.project / MADE)
     assert (behavior.document.parameters["speed"].default, behavior.document.parameters["width_m"].default) == (
@@ -77,15 +77,15 @@ def test_a_proposal_says_what_it_will_do_and_is_written_only_where_an_id_is_give
 @pytest.mark.parametrize(
     ("body", "status", "says"),
     [
-        ({"steps": []}, 422, "at least 1 item"),
+        ({"steps": []}, 422, "of length >= 1"),
         ({"steps": [{"kind": "joints", "name": "hme"}]}, 422, "there is no joints entry called hme"),
         ({"steps": [{"kind": "action", "name": "wave"}]}, 422, "there is no action 'wave'"),
         ({"steps": [{"kind": "action", "name": "open"}]}, 422, "no step moves the arm"),
         ({"steps": [{"kind": "joints", "name": "home", "role": "follow"}]}, 422, "joints home cannot be `follow`"),
-        ({"steps": STEPS, "arm": "left"}, 422, "there is no arm left"),
+        ({"steps": STEPS, "options": {"arm": "left"}}, 422, "there is no arm left"),
         ({"steps": STEPS, "id": "../../etc/x.yaml"}, 404, "this is not the id of a document"),
-        ({"steps": STEPS, "id": "behaviors/x.json"}, 422, "pattern"),
-        ({"steps": STEPS, "speed": 2}, 422, "less than or equal to 1"),
+        ({"steps": STEPS, "id": "behaviors/x.json"}, 422, "matching regex"),
+        ({"steps": STEPS, "options": {"speed": 2}}, 422, "<= 1"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_words(

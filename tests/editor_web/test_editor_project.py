@@ -74,8 +74,8 @@ def test_a_named_entry_is_chosen_from_those_of_its_kind_and_added_from_the_libra
 ) -> None:
     """As the target of a motion."""
     entries: list[dict[str, object]] = [
-        {"kind": "pose", "name": "above_tray", "tags": []},
-        {"kind": "joints", "name": "home", "tags": []},
+        {"kind": "pose", "name": "above_tray"},
+        {"kind": "joints", "name": "home"},
     ]
 
     def with_entries(route: Route) -> None:

@@ -48,6 +48,15 @@ class ControlView(msgspec.Struct, frozen=True, kw_only=True):
     """Action taken `loss_timeout_s` after the operator is lost."""
     loss_timeout_s: float = 0.0
 
+    @property
+    def waits(self) -> str:
+        """Why the run waits for a person: `asks` for an outcome, `paused` or `locked`; empty if it does not."""
+        if any("autonomy" in each.reasons for each in self.waiting):
+            return "asks"
+        if self.paused:
+            return "paused"
+        return "locked" if any("lock" in each.reasons for each in self.waiting) else ""
+
 
 class BehaviorStructure(Protocol):
     """What `Control` needs from the behavior."""

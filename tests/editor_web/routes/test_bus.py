@@ -197,7 +197,7 @@ async def test_a_goal_of_the_page_tells_its_course_and_can_be_cancelled(serve: S
                 cancelled = await served.http.post(f"/api/v1/bus/goals/{sent['goal']}/cancel")
                 assert cancelled.status_code == 202
                 *_, line = [each async for each in lines]
-                assert (line["status"], device.rested.is_set()) == ("canceled", True)
+                assert (line["end"]["status"], device.rested.is_set()) == ("canceled", True)
             assert bus.leases.held() == ()
             gone = await served.http.post(f"/api/v1/bus/goals/{sent['goal']}/cancel")
             assert (gone.status_code, gone.json()["message"]) == (422, "no such active goal")

@@ -155,11 +155,9 @@ async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: st
         run = await there.start(supervision={"start_paused": True, "demand_operator": True, "autonomy": "low"})
         locked = await there.command(run, "lock", path="root/one", reason="the tray is being changed")
         assert locked.json()["locks"] == ["root/one"]
-        points = [{"path": "root/three", "condition": "value == 1", "when": "before"}]
+        points = [{"path": "root/three", "if": "value == 1"}]
         answered = (await there.command(run, "breakpoints", breakpoints=points)).json()["breakpoints"]
-        assert [(each["path"], each["condition"], each["hits"]) for each in answered] == [
-            ("root/three", "value == 1", 1)
-        ]
+        assert answered == points
         await there.command(run, "resume")
         await there.told(run, GateReached, 2)
         assert (await there.command(run, "unlock", path="root/one")).json()["locks"] == []
@@ -189,7 +187,7 @@ async def test_what_the_run_does_not_allow_now_is_409_and_what_is_not_there_404(
             answer = await there.command(run, command, **body)
             assert (answer.status_code, answer.json()["message"]) == (409, message)
         assert (await there.command(run, "autonomy", level="much")).status_code == 422
-        wrong = await there.command(run, "breakpoints", breakpoints=[{"path": "root", "condition": "1 +"}])
+        wrong = await there.command(run, "breakpoints", breakpoints=[{"path": "root", "if": "1 +"}])
         assert (wrong.status_code, "Syntax error" in wrong.json()["message"]) == (422, True)
         assert (await there.command("nobody", "pause")).status_code == 404
         assert (await there.served.http.get("/api/v1/runs/nobody/control")).status_code == 404
@@ -299,13 +297,13 @@ async def test_a_run_begins_at_a_moment_of_another(project: Path, loopback: str)
 async def test_breakpoints_are_kept_beside_the_file_for_later_runs(project: Path, loopback: str) -> None:
     """In the same file as those of the command line; what does not compile leaves it as it was."""
     address = f"/api/v1/breakpoints/{STEPS_ID}"
-    points = [{"path": "root/two", "when": "after", "condition": "value == 1", "hits": 2, "outcomes": ["done"]}]
+    points = [{"path": "root/two", "when": "after", "if": "value == 1", "hits": 2, "outcomes": ["done"]}]
     async with site(project, loopback) as there:
         http = there.served.http
         assert (await http.get(address)).json() == {"breakpoints": []}
         kept = (await http.put(address, json={"breakpoints": points})).json()
-        assert kept == {"breakpoints": [{**points[0], "enabled": True}]}
-        wrong = await http.put(address, json={"breakpoints": [{"path": "root", "condition": "1 +"}]})
+        assert kept == {"breakpoints": points}
+        wrong = await http.put(address, json={"breakpoints": [{"path": "root", "if": "1 +"}]})
         assert wrong.status_code == 422
         assert (await http.get(address)).json() == kept
         assert "root/two" in (project / "behaviors" / "steps.breakpoints.yaml").read_text(encoding="utf-8")
@@ -325,7 +323,8 @@ async def test_the_live_stream_carries_the_control_of_the_watched_run(project: P
         async with there.served.live(run) as page:
             frame = await page.until("snapshot", run=run)
             assert frame["control"]["paused"]
-            assert frame["control"]["locks"] == [{"path": "root/one", "reason": "look first"}]
+            assert frame["control"]["locks"] == ["root/one"]
+            assert frame["lock_reasons"] == {"root/one": "look first"}
             assert [each["waits"] for each in frame["runs"]] == ["paused"]
             await there.command(run, "unlock", path="root/one")
             await there.command(run, "resume")

@@ -1,15 +1,15 @@
 /** The breakpoints of the shown behavior: those of the run under way, and those kept beside its file. */
+import { useMemo } from 'react'
 import { create } from 'zustand'
-import { completed, matches, toggled } from '../document/breakpoints'
+import { completed, matches, toggled, type CompleteBreakpoint } from '../document/breakpoints'
 import { api } from './client'
 import { useLive } from './live'
 import { useControl } from './liveParts'
 import { showRefusal, send } from './refusal'
-import type { BreakpointLive } from './types'
 
 interface Kept {
   readonly behavior: string
-  readonly kept: readonly BreakpointLive[]
+  readonly kept: readonly CompleteBreakpoint[]
 }
 
 export const useSavedBreakpoints = create<Kept>(() => ({ behavior: '', kept: [] }))
@@ -22,10 +22,10 @@ export async function loadSavedBreakpoints(behavior: string): Promise<void> {
 }
 
 /** Those that hold now: of the run while one is under way, else those for the next one. */
-export function useBreakpoints(): readonly BreakpointLive[] {
+export function useBreakpoints(): readonly CompleteBreakpoint[] {
   const ofRun = useControl((control) => control?.breakpoints)
   const kept = useSavedBreakpoints((s) => s.kept)
-  return ofRun ?? kept
+  return useMemo(() => ofRun?.map(completed) ?? kept, [ofRun, kept])
 }
 
 /** Those that stop at this node, wildcards included. */
@@ -35,7 +35,7 @@ export function useBreakpointsAt(path: string): string {
   return here.map((each) => each.when).sort().join(' ')
 }
 
-type Edit = (list: readonly BreakpointLive[]) => readonly BreakpointLive[]
+type Edit = (list: readonly CompleteBreakpoint[]) => readonly CompleteBreakpoint[]
 
 /** Edit the breakpoints of the run and those beside the file alike; false when the server refused. */
 export async function editBreakpoints(edit: Edit): Promise<boolean> {
@@ -48,7 +48,7 @@ export async function editBreakpoints(edit: Edit): Promise<boolean> {
   const done = await send('Breakpoint', async () => {
     const [answer] = await Promise.all([
       api.keepBreakpoints(behavior, { breakpoints: edit(kept) }),
-      control && api.breakpoints(run, { breakpoints: edit(control.breakpoints) }),
+      control && api.breakpoints(run, { breakpoints: edit(control.breakpoints.map(completed)) }),
     ])
     return answer
   })
@@ -57,9 +57,9 @@ export async function editBreakpoints(edit: Edit): Promise<boolean> {
 }
 
 /** Set or take away the plain breakpoint of a node. */
-export function toggleBreakpoint(path: string, when: BreakpointLive['when'] = 'before'): Promise<boolean> {
+export function toggleBreakpoint(path: string, when: CompleteBreakpoint['when'] = 'before'): Promise<boolean> {
   const { control } = useLive.getState()
-  const shown = control?.breakpoints ?? useSavedBreakpoints.getState().kept
+  const shown = control?.breakpoints.map(completed) ?? useSavedBreakpoints.getState().kept
   const isSet = shown.some((each) => each.path === path && each.when === when)
   return editBreakpoints((list) => toggled(list, { path, when }, !isSet))
 }

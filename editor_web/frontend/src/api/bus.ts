@@ -1,62 +1,11 @@
 /** The skill bus over HTTP: what there is, forms, calls, publishing, parameters, and goals with their course. */
 import type { Dict } from '../document/dict'
 import { call, post, request as ask, sent, ServerError } from './client'
-import type { ErrorBody } from './types'
-
-export interface TopicFacts {
-  readonly name: string
-  readonly type: string
-  readonly doc: string
-  readonly takes_commands: boolean
-}
-
-export interface SkillFacts {
-  readonly kind: 'service' | 'action'
-  readonly name: string
-  readonly type: string
-  readonly doc: string
-  readonly answer: string
-}
-
-export interface ParameterFacts {
-  readonly name: string
-  readonly doc: string
-  readonly value: unknown
-  readonly schema: Dict<unknown>
-}
-
-export interface BusListing {
-  readonly shape: string
-  readonly topics: readonly TopicFacts[]
-  readonly skills: readonly SkillFacts[]
-  readonly parameters: readonly ParameterFacts[]
-}
-
-export interface BusForm {
-  readonly name: string
-  readonly schema: Dict<unknown>
-}
-
-export interface SignalField {
-  readonly path: string
-  readonly label: string
-  readonly unit: string
-}
-
-export interface TopicFields {
-  readonly topic: string
-  readonly type: string
-  readonly fields: readonly SignalField[]
-}
-
-export type GoalStreamLine =
-  | { readonly k: 'sent'; readonly goal: string }
-  | { readonly k: 'course'; readonly status: string; readonly feedback: unknown }
-  | { readonly k: 'end'; readonly status: string; readonly result: unknown; readonly cause: { readonly message: string } | null }
+import type { BusFields, BusForm, BusListing, ErrorBody, GoalStreamLine } from './types'
 
 export const bus = {
   board: () => call<BusListing>('/bus/board'),
-  fields: () => call<{ readonly topics: readonly TopicFields[] }>('/bus/fields'),
+  fields: () => call<BusFields>('/bus/fields'),
   requestForm: (address: string) => call<BusForm>(`/bus/form?address=${encodeURIComponent(address)}`),
   messageForm: (topic: string) => call<BusForm>(`/bus/form?topic=${encodeURIComponent(topic)}`),
   call: (address: string, request: Dict<unknown>) => post<unknown>('/bus/call', { address, request }),

@@ -1,12 +1,7 @@
 /** Whether the world and the devices of the cell are there, and connecting them again. */
 import { create } from 'zustand'
 import { call, post, ServerError } from './client'
-
-interface CellConnection {
-  readonly connected: boolean
-  /** What was lost and why, in the server's words. */
-  readonly reason: string
-}
+import type { CellConnection } from './types'
 
 const CONNECTED: CellConnection = { connected: true, reason: '' }
 

@@ -1,15 +1,16 @@
 /** The HTTP interface: typed calls, and errors that carry the server's words. */
-import { keepSession, loseSession, type Session } from './session'
+import { keepSession, loseSession } from './session'
 import type {
-  BehaviorBody,
-  BehaviorSummaryBody,
+  BehaviorView,
+  BehaviorSummary,
   BreakpointsBody,
   HotChangeResultBody,
-  ControlBody,
+  ControlView,
   ErrorBody,
-  InterruptedRunBody,
-  QuestionBody,
+  RunRecord,
+  ResumeQuestion,
   ResumeBody,
+  SessionBody,
   StartBody,
   StartResultBody,
   StepBody,
@@ -22,7 +23,7 @@ export class ServerError extends Error {
     readonly status: number,
     readonly body: ErrorBody,
     /** What an interrupted run asks before it goes on. */
-    readonly questions: readonly QuestionBody[] = [],
+    readonly questions: readonly ResumeQuestion[] = [],
     /** The whole answer, for refusals that say more. */
     readonly answer: unknown = undefined,
   ) {
@@ -60,9 +61,9 @@ function errorOf(body: unknown, otherwise: string): ErrorBody {
   return { message: given.message ?? otherwise, where: given.where ?? '', hint: given.hint ?? '' }
 }
 
-function questionsOf(body: unknown): readonly QuestionBody[] {
+function questionsOf(body: unknown): readonly ResumeQuestion[] {
   const given = typeof body === 'object' && body !== null ? (body as { questions?: unknown }).questions : undefined
-  return Array.isArray(given) ? (given as QuestionBody[]) : []
+  return Array.isArray(given) ? (given as ResumeQuestion[]) : []
 }
 
 /** What the server said, in one line with its advice. */
@@ -83,13 +84,13 @@ export function post<T>(path: string, body: unknown, headers: Record<string, str
   return sent<T>('POST', path, body, headers)
 }
 
-function command(run: string, name: string, body: unknown = {}): Promise<ControlBody> {
-  return post<ControlBody>(`/runs/${encodeURIComponent(run)}/control/${name}`, body)
+function command(run: string, name: string, body: unknown = {}): Promise<ControlView> {
+  return post<ControlView>(`/runs/${encodeURIComponent(run)}/control/${name}`, body)
 }
 
 /** Ask who this page is, and keep the answer for all of it. */
-async function session(): Promise<Session> {
-  const told = await call<Session>('/session')
+async function session(): Promise<SessionBody> {
+  const told = await call<SessionBody>('/session')
   keepSession(told)
   return told
 }
@@ -101,8 +102,8 @@ export function idPath(id: string): string {
 
 export const api = {
   session,
-  behaviors: () => call<readonly BehaviorSummaryBody[]>('/behaviors'),
-  behavior: (id: string) => call<BehaviorBody>(`/behaviors/${idPath(id)}`),
+  behaviors: () => call<readonly BehaviorSummary[]>('/behaviors'),
+  behavior: (id: string) => call<BehaviorView>(`/behaviors/${idPath(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartResultBody>('/runs', body, { 'idempotency-key': key }),
   resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
@@ -121,7 +122,7 @@ export const api = {
   keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
   keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
     sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
-  interrupted: () => call<readonly InterruptedRunBody[]>('/interrupted'),
+  interrupted: () => call<readonly RunRecord[]>('/interrupted'),
   resumeInterrupted: (run: string, body: ResumeBody) =>
     post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
   stopCell: (reason: string) => post<void>('/cell/stop', { reason }),

@@ -1,109 +1,15 @@
 /** The data stream: traffic, messages, samples, userdata and goals, each only while somebody looks at it. */
-import type { Dict } from '../document/dict'
 import { useEffect, useRef } from 'react'
 import { openSocket } from './socket'
+import type { DataFrame, DataSubscription } from './types'
 
-export interface DataSubscription {
-  /** Comes back with the samples of these `fields`. */
-  readonly number?: number
-  readonly traffic?: boolean
-  readonly topic?: string
-  /** Each `topic:path`. */
-  readonly fields?: readonly string[]
-  /** The run whose userdata is looked at. */
-  readonly run?: string
-  /** The run whose goals are looked at. */
-  readonly goals?: string
-}
-
-export interface TopicMetrics {
-  readonly rate_hz: number
-  readonly age_s: number | null
-  readonly on_demand: boolean
-  readonly subscribers: number
-}
-
-export interface LeaseMetrics {
-  readonly resource: string
-  readonly run: string
-  readonly node: string
-  readonly goal: string
-  readonly held_s: number
-}
-
-export interface GoalMetrics {
-  readonly id: string
-  readonly address: string
-  readonly run: string
-  readonly node: string
-  readonly status: string
-}
-
-export interface BusMetricsFrame {
-  readonly k: 'traffic'
-  readonly shape: string
-  readonly topics: Dict<TopicMetrics>
-  readonly leases: readonly LeaseMetrics[]
-  readonly goals: readonly GoalMetrics[]
-}
-
-export interface MessageFrame {
-  readonly k: 'message'
-  readonly topic: string
-  readonly at_s: number
-  readonly value: unknown
-  readonly problem: string
-}
-
-export interface SamplesFrame {
-  readonly k: 'samples'
-  readonly number: number
-  readonly times_s: readonly number[]
-  readonly rows: readonly (readonly (number | null)[])[]
-  readonly dropped: number
-}
-
-export interface UserdataValue {
-  readonly value: unknown
-  /** Path of the node that wrote it last; empty for what it began with. */
-  readonly by: string
-  readonly at_s: number
-  readonly writes: number
-}
-
-export interface UserdataScope {
-  readonly is_open: boolean
-  readonly since_s: number
-  readonly values: Dict<UserdataValue>
-}
-
-export interface UserdataFrame {
-  readonly k: 'userdata'
-  readonly run: string
-  readonly first: boolean
-  readonly scopes: Dict<UserdataScope | null>
-  readonly problem: string
-}
-
-export interface GoalProgress {
-  readonly address: string
-  readonly status: string
-  readonly share: number | null
-  readonly words: string
-}
-
-export interface GoalsFrame {
-  readonly k: 'goals'
-  readonly run: string
-  readonly goals: Dict<GoalProgress>
-}
-
-export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | { readonly k: 'ping' }
+/** What is looked at. */
+export type Look = Omit<DataSubscription, 'k'>
 
 const RETRY_MS = 1500
 
 /** Look at something for as long as it is given; nothing is sent while it is undefined. `look` is compared by what it says. */
-export function useData(look: DataSubscription | undefined, onFrame: (frame: DataFrame) => void): void {
+export function useData(look: Look | undefined, onFrame: (frame: DataFrame) => void): void {
   const told = useRef(onFrame)
   useEffect(() => {
     told.current = onFrame

@@ -2,7 +2,8 @@
 import type { Dict } from '../document/dict'
 import { useEffect, useSyncExternalStore } from 'react'
 import { create } from 'zustand'
-import { useData, type GoalProgress } from './data'
+import { useData } from './data'
+import type { GoalProgress } from './types'
 
 export const useGoals = create<{ readonly goals: Dict<GoalProgress> }>(() => ({ goals: {} }))
 

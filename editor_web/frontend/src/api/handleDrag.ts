@@ -6,22 +6,10 @@
 import { create } from 'zustand'
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
+import type { HandleStatus, RefusedFrame } from './types'
 
 /** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
-export type HandleMode = 'move' | 'push'
-
-interface Gripped {
-  readonly k: 'gripped'
-  readonly arm: string
-  readonly way: HandleMode
-  readonly pulled: boolean
-}
-
-interface Refused {
-  readonly k: 'refused'
-  readonly message: string
-  readonly hint: string
-}
+export type HandleMode = HandleStatus['way']
 
 interface GripStore {
   /** The arm that has a handle; empty for none. */
@@ -61,7 +49,7 @@ function open(then: () => void): void {
   socket = opened
   opened.onopen = then
   opened.onmessage = (message: MessageEvent<string>) => {
-    const news = JSON.parse(message.data) as Gripped | Refused
+    const news = JSON.parse(message.data) as HandleStatus | RefusedFrame
     if (news.k === 'refused') {
       useHandleDrag.setState({ refused: news.hint ? `${news.message}: ${news.hint}` : news.message })
       return

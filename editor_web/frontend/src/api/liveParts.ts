@@ -3,7 +3,7 @@ import { lookup } from '../document/dict'
 import { useCallback, useSyncExternalStore } from 'react'
 import type { StoreApi } from 'zustand'
 import { useLiveStore, type LiveStore } from './liveStore'
-import type { ControlLive, NodeLive } from './types'
+import type { ControlView, NodeLive } from './types'
 
 type Listener = () => void
 
@@ -61,14 +61,14 @@ export function useNodeLive(path: string): NodeLive | undefined {
 }
 
 /** What `select` takes from what can be done with the run; it must give the same value while nothing changes. */
-export function useControl<T>(select: (control: ControlLive | null) => T): T {
+export function useControl<T>(select: (control: ControlView | null) => T): T {
   const store = useLiveStore()
   const subscribe = useCallback((listener: Listener) => listenersOf(store).hearOfHolds(listener), [store])
   return useSyncExternalStore(subscribe, () => select(store.getState().control))
 }
 
 /** The same of what holds the run now: nothing does while a moment of the past is shown. */
-export function useHolds<T>(select: (control: ControlLive | null) => T): T {
+export function useHolds<T>(select: (control: ControlView | null) => T): T {
   const store = useLiveStore()
   const subscribe = useCallback((listener: Listener) => listenersOf(store).hearOfHolds(listener), [store])
   return useSyncExternalStore(subscribe, () => {

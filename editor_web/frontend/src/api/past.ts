@@ -2,19 +2,11 @@
 import { create } from 'zustand'
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
-
-/** What the 3D view shows: a run at a time of it, recorded from and until; or `problem`, and so the present. */
-export interface PastViewState {
-  readonly run: string
-  readonly time_s: number
-  readonly from_s: number
-  readonly until_s: number
-  readonly problem: string
-}
+import type { PastViewRequest, PastViewState } from './types'
 
 interface PastStore {
   /** What was asked for; null for the present. */
-  readonly wanted: { readonly run: string; readonly time_s: number } | null
+  readonly wanted: PastViewRequest | null
   /** What the server has drawn last of it. */
   readonly shown: PastViewState | null
 }

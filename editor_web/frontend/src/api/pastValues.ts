@@ -2,7 +2,8 @@
 import { useEffect, useState } from 'react'
 import { wordsOf } from './client'
 import { useLive } from './live'
-import { pastApi, runSubject, useTimeline, type PastUserdata } from './timeline'
+import { pastApi, runSubject, useTimeline } from './timeline'
+import type { PastUserdata } from './types'
 
 /** Undefined while the present is shown; kept up with the cursor, one request at a time. */
 export function usePastValues(run: string | undefined, isShown: boolean): PastUserdata | undefined {

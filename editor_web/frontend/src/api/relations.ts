@@ -2,13 +2,13 @@
 import { call, idPath, post } from './client'
 import type {
   DeletedDocumentBody,
-  DifferenceBody,
+  DocumentDiff,
   DocumentBody,
-  DraftResultBody,
+  DocumentAnalysis,
   FixesBody,
-  KeyFlowBody,
+  KeyFlow,
   MoveResultBody,
-  ReferrerBody,
+  ReferringBehavior,
   VersionBody,
   VersionTextBody,
 } from './types'
@@ -18,14 +18,14 @@ function at(id: string, rest = ''): string {
 }
 
 export const relations = {
-  dataFlow: (id: string, text: string) => post<readonly KeyFlowBody[]>(at(id, '/data_flow'), { text }),
+  dataFlow: (id: string, text: string) => post<readonly KeyFlow[]>(at(id, '/data_flow'), { text }),
   fixes: (id: string, text: string) => post<readonly FixesBody[]>(at(id, '/fixes'), { text }),
   versions: (id: string) => call<readonly VersionBody[]>(at(id, '/versions')),
   version: (id: string, hash: string) => call<VersionTextBody>(at(id, `/versions/${hash}`)),
-  drawn: (id: string, hash: string) => call<DraftResultBody>(at(id, `/versions/${hash}/drawn`)),
-  difference: (id: string, from: string, to: string) => call<DifferenceBody>(at(id, `/diff?from=${from}&to=${to}`)),
-  compare: (id: string, before: string, after: string) => post<DifferenceBody>(at(id, '/compare'), { before, after }),
-  referrers: (id: string) => call<readonly ReferrerBody[]>(at(id, '/referrers')),
+  drawn: (id: string, hash: string) => call<DocumentAnalysis>(at(id, `/versions/${hash}/drawn`)),
+  difference: (id: string, from: string, to: string) => call<DocumentDiff>(at(id, `/diff?from=${from}&to=${to}`)),
+  compare: (id: string, before: string, after: string) => post<DocumentDiff>(at(id, '/compare'), { before, after }),
+  referrers: (id: string) => call<readonly ReferringBehavior[]>(at(id, '/referrers')),
   move: (id: string, to: string, follow: boolean) => post<MoveResultBody>(at(id, '/move'), { id: to, follow }),
   duplicate: (id: string, to: string) => post<DocumentBody>(at(id, '/duplicate'), { id: to }),
   remove: (id: string) => call<void>(at(id), { method: 'DELETE' }),

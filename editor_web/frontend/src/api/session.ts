@@ -2,18 +2,9 @@
 import { create } from 'zustand'
 import type { SessionBody } from './types'
 
-/** Where STOP goes without the engine, and the token that it takes there. */
-export interface StopChannel {
-  readonly url: string
-  readonly token: string
-}
-
-/** A server without a stop process does not name one. */
-export type Session = SessionBody & { readonly stop?: StopChannel | null }
-
 interface SessionStore {
   /** What the server has said last. */
-  readonly session: Session | undefined
+  readonly session: SessionBody | undefined
   /** The server has refused the session of this page since then. */
   readonly isLoggedOut: boolean
 }
@@ -26,7 +17,7 @@ export function hasCellView(session: SessionBody | undefined): boolean {
 }
 
 /** The server knows this page. */
-export function keepSession(session: Session): void {
+export function keepSession(session: SessionBody): void {
   const before = useSession.getState().session
   const isSame = JSON.stringify(before) === JSON.stringify(session)
   useSession.setState({ session: isSame ? before : session, isLoggedOut: false })

@@ -1,9 +1,10 @@
 /** STOP of the cell: by the stop process, which needs no engine, and by the engine, both at the same time. */
-import { isAcknowledged, isAtRest, newStop, type StopAnswer, type StopPath, type StopProgress } from '../document/stopReport'
+import { isAcknowledged, isAtRest, newStop, type StopPath, type StopProgress } from '../document/stopReport'
 import { api, wordsOf } from './client'
 import { lastHeard } from './live'
-import { useSession, type StopChannel } from './session'
+import { useSession } from './session'
 import { useStop } from './stopStore'
+import type { StopEndpoint, StopStatus } from './types'
 
 const REASON = 'the cell was stopped in the dashboard'
 const POLL_MS = 100
@@ -31,7 +32,7 @@ export function forgetStop(): void {
   useStop.setState({ stop: undefined })
 }
 
-async function throughProcess(number: number, channel: StopChannel): Promise<void> {
+async function throughProcess(number: number, channel: StopEndpoint): Promise<void> {
   const endMs = performance.now() + REST_MS
   const isShown = () => useStop.getState().stop?.number === number
   try {
@@ -61,7 +62,7 @@ async function throughEngine(number: number): Promise<void> {
  * Give STOP; a page that is closed before the answer gives it once more, by what outlives pages. As the first request
  * that takes up to 0.5 s on a busy machine: browsers lead it through one more process.
  */
-async function askedBeforeClosing(channel: StopChannel): Promise<StopAnswer> {
+async function askedBeforeClosing(channel: StopEndpoint): Promise<StopStatus> {
   const giveAgain = () => navigator.sendBeacon(channel.url, bodyWith(channel.token))
   window.addEventListener('pagehide', giveAgain)
   try {
@@ -76,7 +77,7 @@ function bodyWith(token: string): string {
 }
 
 /** A request that browsers send to another port without asking there first. */
-async function asked(url: string, token: string): Promise<StopAnswer> {
+async function asked(url: string, token: string): Promise<StopStatus> {
   const response = await fetch(url, {
     method: 'POST',
     mode: 'cors',
@@ -86,7 +87,7 @@ async function asked(url: string, token: string): Promise<StopAnswer> {
     signal: AbortSignal.timeout(REST_MS),
   })
   if (!response.ok) throw new Error(`${response.status} ${response.statusText}`)
-  return (await response.json()) as StopAnswer
+  return (await response.json()) as StopStatus
 }
 
 const ANSWERED: StopPath = { status: 'answered', problem: '' }

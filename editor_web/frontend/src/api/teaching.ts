@@ -5,32 +5,28 @@ import { call, post } from './client'
 import { useLive } from './live'
 import type {
   ArmInfo,
-  ArmInfoFrame,
   ArmLive,
-  ArmsLiveFrame,
-  ButtonInput,
-  EntriesChanged,
+  Capture,
+  EntryHistory,
   EntryPage,
+  EntryRecord,
+  GoalEnd,
   PrimitiveComparison,
-  JogVelocity,
-  HelpingHandFrame,
-  StartJog,
-  JogStatus,
   PreviewTaught,
   PlayBody,
   PlaybackResult,
   PushToolBody,
   RefusedFrame,
-  StopJog,
+  SaveCapture,
   TagsBody,
+  TeachingFrame,
+  TeachingMessage,
   TeachStatus,
   Trigger,
+  TriggerDocument,
 } from './types'
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
-
-type FromServer = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
-type ToServer = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
 
 export interface TeachStore {
   readonly isOpen: boolean
@@ -72,7 +68,7 @@ const RETRY_MS = 1000
 let socket: WebSocket | undefined
 
 /** Say something to the server; nothing while it is not connected. */
-export function tellServer(message: ToServer): void {
+export function tellServer(message: TeachingMessage): void {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message))
 }
 
@@ -91,7 +87,7 @@ export function connectTeach(): () => void {
     const opened = openSocket(`/teach/live?page=${PAGE}`)
     socket = opened
     opened.onopen = () => useTeach.setState({ isOpen: true })
-    opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as FromServer)
+    opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as TeachingFrame)
     opened.onclose = () => {
       if (socket !== opened) return
       useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isLooking: false })
@@ -109,7 +105,7 @@ export function connectTeach(): () => void {
   }
 }
 
-function take(message: FromServer): void {
+function take(message: TeachingFrame): void {
   const before = useTeach.getState()
   switch (message.k) {
     case 'arms':
@@ -140,14 +136,8 @@ export function useDisabledReason(): string | undefined {
   return role === 'operator' ? undefined : 'you may look only; log in with the operator token'
 }
 
-/** Names an entry, or a capture by its number. */
-export interface TaughtReference {
-  readonly kind: string
-  readonly name: string
-  readonly capture: number
-  /** What the entry was after that change; not given for what it is now. */
-  readonly revision?: number
-}
+/** Names an entry, or a capture by its number; without `revision`, what the entry is now. */
+export type TaughtReference = Pick<PreviewTaught, 'revision'> & Required<Pick<PreviewTaught, 'kind' | 'name' | 'capture'>>
 
 /** Show in the cell where an arm is along something; beside what is shown there already, where the place is not 0. */
 export function previewTaught(arm: string, what: TaughtReference, place = 0): void {
@@ -159,37 +149,6 @@ export function previewTaught(arm: string, what: TaughtReference, place = 0): vo
 /** Show nothing any more. */
 export function endPreview(): void {
   previewTaught('', { kind: '', name: '', capture: 0 })
-}
-
-/** One change of an entry. */
-export interface EntryChange {
-  readonly revision: number
-  readonly deleted: boolean
-  readonly tags: readonly string[]
-  readonly by: string
-  readonly reason: string
-  readonly changed_unix_ms: number
-}
-
-/** What an entry was, or is. */
-export interface EntryValue {
-  readonly value: Dict<unknown>
-  readonly tags: readonly string[] | null
-}
-
-/** What a capture of a place says by itself, whichever arm gets there. */
-export interface CapturedPlace {
-  readonly pose?: { readonly xyz: readonly number[]; readonly xyzw?: readonly number[]; readonly frame?: string } | null
-}
-
-export interface TriggerDocument {
-  readonly file: string
-  readonly text: string
-}
-
-interface GoalEnd {
-  readonly status: string
-  readonly cause: unknown
 }
 
 function ask<T>(address: string, request: unknown): Promise<T> {
@@ -205,16 +164,6 @@ function aborted<T>(path: string, body: unknown, signal: AbortSignal): Promise<T
   return call<T>(path, { method: 'POST', headers, body: JSON.stringify(body), signal })
 }
 
-export interface SaveRequest {
-  readonly id: number
-  readonly name: string
-  readonly form: string
-  readonly tags: readonly string[]
-  readonly replace: boolean
-  readonly by: string
-  readonly reason: string
-}
-
 export const teach = {
   entries: (kind: string, text: string) => call<EntryPage>(`/teach/entries?${query({ kind, text })}`),
   fits: (arm: string, what: TaughtReference) => call<PrimitiveComparison>(`/teach/fits?${query({ arm, ...what })}`),
@@ -222,14 +171,14 @@ export const teach = {
     ask<TeachStatus>('teach/teach_now', { robot, callback, pressed }),
   frame: (robot: string, source_frame: string, target_frame: string) =>
     ask<TeachStatus>('teach/teach_now', { robot, callback: 'tf_save', pressed: true, source_frame, target_frame }),
-  capture: (id: number) => ask<CapturedPlace>('teach/read_capture', { id }),
-  save: (body: SaveRequest) => ask<unknown>('teach/save_capture', body),
+  capture: (id: number) => ask<Capture>('teach/read_capture', { id }),
+  save: (body: SaveCapture) => ask<unknown>('teach/save_capture', body),
   discard: (id: number) => ask<TeachStatus>('teach/discard_capture', { id }),
   setTriggers: (triggers: readonly Trigger[]) => ask<TeachStatus>('teach/set_triggers', { triggers }),
   document: () => ask<TriggerDocument>('teach/read_trigger_document', {}),
   writeDocument: (text: string) => ask<TeachStatus>('teach/write_trigger_document', { text }),
-  history: (kind: string, name: string) => ask<{ readonly changes: readonly EntryChange[] }>('store/read_history', { kind, name }),
-  revision: (kind: string, name: string, revision: number) => ask<EntryValue>('store/read_revision', { kind, name, revision }),
+  history: (kind: string, name: string) => ask<EntryHistory>('store/read_history', { kind, name }),
+  revision: (kind: string, name: string, revision: number) => ask<EntryRecord>('store/read_revision', { kind, name, revision }),
   tag: (body: TagsBody) => post<void>('/teach/tags', body),
   undo: (kind: string, name: string) => ask<unknown>('store/undo_entry', { kind, name, by: 'the dashboard', reason: 'undone' }),
   remove: (kind: string, name: string) => ask<unknown>('store/delete_entry', { kind, name, by: 'the dashboard', reason: 'deleted' }),

@@ -4,10 +4,9 @@ import { create } from 'zustand'
 import { nextMoment } from '../document/timelineMoment'
 import { withTimeline, type LoadedTimeline } from '../document/timeline'
 import { call, idPath, wordsOf } from './client'
-import type { UserdataScope } from './data'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
-import type { RunFailure, PastRunState, OpenRunBody, PastRunsBody, RecordingBody, Timeline } from './types'
+import type { OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
 export interface Subject {
@@ -28,13 +27,6 @@ export function recordingSubject(path: string, run: string): Subject {
   return { address: `/recordings/${idPath(path)}`, run, recorded: path, isPast: true }
 }
 
-/** The userdata of a moment. */
-export interface PastUserdata {
-  readonly seq: number
-  readonly scopes: Dict<UserdataScope>
-  readonly problem: string
-}
-
 export interface PastQuery {
   readonly text: string
   readonly kind: string
@@ -47,7 +39,7 @@ export interface PastQuery {
 export const pastApi = {
   runs: ({ text, kind, sinceS, untilS, limit }: PastQuery) =>
     call<PastRunsBody>(`/past-runs?${query({ text, kind, since_s: sinceS, until_s: untilS, limit })}`),
-  recordings: () => call<readonly RecordingBody[]>('/recordings'),
+  recordings: () => call<readonly RecordingFile[]>('/recordings'),
   openRun: (run: string) => call<OpenRunBody>(`/runs/${encodeURIComponent(run)}/past`),
   openRecording: (path: string) => call<OpenRunBody>(`/recordings/${idPath(path)}`),
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>

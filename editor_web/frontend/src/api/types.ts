@@ -29,15 +29,25 @@ export interface AddNode {
   readonly on_edge?: TransitionRef | null
 }
 
-/** Description of an arm: its joints with their limits (rad, rad/s), its tool, and the names of its skills. */
+/** An arm with the names of its skills. */
 export interface ArmInfo {
   readonly name: string
   readonly model: string
+  readonly urdf: string
   readonly joint_names: readonly string[]
   readonly lower_rad: readonly number[]
   readonly upper_rad: readonly number[]
   readonly velocity_rad_s: readonly number[]
+  readonly acceleration_rad_s2: readonly number[]
+  readonly base: Pose
+  readonly tool_frame: string
+  readonly licence: string
+  readonly effort_nm: readonly number[]
+  readonly jerk_rad_s3: readonly number[]
   readonly tool: string
+  readonly tool_kind: string
+  readonly tool_licence: string
+  readonly calibration: string
   readonly skills: readonly string[]
 }
 
@@ -73,55 +83,120 @@ export interface AutoConnect {
 
 /** The autonomy level; outcomes that require less than `level` pass without an answer. */
 export interface AutonomyBody {
-  readonly level: "off" | "low" | "high" | "full"
+  readonly level: "full" | "high" | "low" | "off"
 }
 
-/** One behavior with its form, findings and graph. */
-export interface BehaviorBody {
+/** A new version of the document replaced the running one; `report` has a line for each change. `restarted` are the active nodes that are preempted and entered again, `removed` the removed branches of active concurrency containers; `preempt` is true when the operator allowed that. `replaced` are the nodes of the old version whose class or kind has changed. `documents` are the texts of the new version, when they can be stored, and `behavior` names the behavior among them. */
+export interface BehaviorChanged {
+  readonly event: "behavior_changed"
+  readonly seq: number
+  readonly time_s: number
+  readonly document: string
+  readonly report: readonly string[]
+  readonly preempt?: boolean
+  readonly restarted?: readonly string[]
+  readonly removed?: readonly string[]
+  readonly replaced?: readonly string[]
+  readonly behavior?: string
+  readonly documents?: Dict<string>
+}
+
+/** A behavior that another behavior may reference by its file. */
+export interface BehaviorReferenceView {
+  readonly id: string
+  readonly name: string
+  readonly description: string
+  readonly outcomes: readonly string[]
+  readonly success: readonly string[]
+  readonly parameters: readonly KeyView[]
+}
+
+/** One line of the list of behaviors: how many findings prevent a run, and how many do not. */
+export interface BehaviorSummary {
   readonly id: string
   readonly name: string
   readonly description: string
   readonly errors: number
   readonly warnings: number
-  readonly parameters: readonly ParameterBody[]
-  readonly findings: readonly FindingBody[]
-  readonly graph: GraphNodeBody | null
+}
+
+/** A behavior for the dashboard's list and graph; `graph` is None when the behavior cannot be read. */
+export interface BehaviorView {
+  readonly id: string
+  readonly name: string
+  readonly description: string
+  readonly parameters: readonly ParameterView[]
+  readonly findings: readonly FindingView[]
+  readonly graph: GraphNode | null
   readonly view: Dict<readonly [number, number]>
   readonly success: readonly string[]
 }
 
-/** One line of the list of behaviors. */
-export interface BehaviorSummaryBody {
-  readonly id: string
-  readonly name: string
-  readonly description: string
-  readonly errors: number
-  readonly warnings: number
+/** A condition of concurrency container `path` preempts some branches while the others continue. `branches` are the preempted branches that had not ended; each has ended, without an outcome, after its clean-up. */
+export interface BranchesPreempted {
+  readonly event: "branches_preempted"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly condition: string
+  readonly branches: readonly string[]
 }
 
-/** A breakpoint; `path` may contain `*` and `?`, `condition` is an expression over userdata. */
-export interface BreakpointBody {
+/** Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches. `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to these outcomes. */
+export interface Breakpoint {
   readonly path: string
-  readonly when?: "before" | "after"
-  readonly condition?: string | null
+  readonly when?: "after" | "before"
+  readonly if?: string | null
   readonly hits?: number
   readonly outcomes?: readonly string[]
   readonly enabled?: boolean
 }
 
-/** A breakpoint of the run, as it is sent to `control/breakpoints`. */
-export interface BreakpointLive {
-  readonly path: string
-  readonly when: "after" | "before"
-  readonly condition: string | null
-  readonly hits: number
-  readonly outcomes: readonly string[]
-  readonly enabled: boolean
-}
-
 /** All breakpoints of a run or a behavior; they replace the previous ones. */
 export interface BreakpointsBody {
-  readonly breakpoints: readonly BreakpointBody[]
+  readonly breakpoints: readonly Breakpoint[]
+}
+
+/** One line of the bus listing. */
+export interface BusEntry {
+  readonly kind: string
+  readonly name: string
+  readonly type: string
+  readonly detail: string
+}
+
+/** The numeric fields of all topics. */
+export interface BusFields {
+  readonly topics: readonly TopicFields[]
+}
+
+/** The JSON Schema of a request or message. */
+export interface BusForm {
+  readonly name: string
+  readonly schema: Dict<unknown>
+}
+
+/** All topics, skills and parameters of the bus, without metrics. */
+export interface BusListing {
+  readonly shape: string
+  readonly topics: readonly TopicInfo[]
+  readonly skills: readonly SkillInfo[]
+  readonly parameters: readonly ParameterInfo[]
+}
+
+/** A message to publish on a topic that takes commands. */
+export interface BusMessageBody {
+  readonly topic: string
+  readonly message: Dict<unknown>
+}
+
+/** Metrics of the bus, once a second; a changed `shape` means that the list of the bus has changed. */
+export interface BusMetricsFrame {
+  readonly k: "traffic"
+  readonly shape: string
+  readonly topics: Dict<TopicMetrics>
+  readonly leases: readonly LeaseMetrics[]
+  readonly goals: readonly GoalInfo[]
 }
 
 /** A new value of a parameter. */
@@ -130,12 +205,32 @@ export interface BusParameterBody {
   readonly value: unknown
 }
 
+/** A request to a service or action on the bus; `address` is `<namespace>/<skill_name>`. */
+export interface BusRequestBody {
+  readonly address: string
+  readonly request?: Dict<unknown>
+}
+
 /** From the page: a button of a keyboard or gamepad, to publish on `buttons/<source>/<button>`. */
 export interface ButtonInput {
   readonly k: "button"
   readonly source: string
   readonly button: string
   readonly value: boolean
+}
+
+/** A capture with all its data; missing data is None or empty. */
+export interface Capture {
+  readonly summary: CaptureSummary
+  readonly names: readonly string[]
+  readonly joints: readonly number[]
+  readonly pose: Pose | null
+  readonly trajectory: Trajectory | null
+  readonly joint_dmp: JointDmp | null
+  readonly joint_fit: JointFit | null
+  readonly cart_dmp: CartDmp | null
+  readonly cart_fit: CartFit | null
+  readonly gripper: GripperSetting | null
 }
 
 /** One capture in the buffer: its time, trigger, robot and kind. `form` is the default kind of entry to save it as. `samples` and `duration_s` are 0 for a single configuration; `length_rad` is the path length of all joints together, `peak_rad_s` the greatest speed of a joint. `saved_as` names the entries saved from it. */
@@ -153,6 +248,28 @@ export interface CaptureSummary {
   readonly remark: string
 }
 
+/** A dynamic movement primitive of the tool centre point (RCL table 7), with a quaternion DMP for its orientation. `goal` and `y0` are x y z in metres and a unit quaternion x y z w, `dy0` the velocity (m/s) and the angular velocity (rad/s) at the start. `w1` to `w3` are the weights of the motion along x, y and z, `w4` to `w6` those of the rotation about x, y and z; the other fields are as in `JointDmp`. All values are along the axes of `frame`: `world`, or a frame of the arm. `tasktrans` is a rigid transform of the whole motion in that frame, 4 x 4 row by row; empty for none. The signs of the quaternions matter: the rotation takes the direction in which the quaternion reaches `goal` without a change of sign. */
+export interface CartDmp {
+  readonly N: number
+  readonly a_z: number
+  readonly a_x: number
+  readonly tau: number
+  readonly id: number
+  readonly goal: readonly number[]
+  readonly y0: readonly number[]
+  readonly dy0: readonly number[]
+  readonly c: readonly number[]
+  readonly sigma: readonly number[]
+  readonly w1: readonly number[]
+  readonly w2: readonly number[]
+  readonly w3: readonly number[]
+  readonly w4: readonly number[]
+  readonly w5: readonly number[]
+  readonly w6: readonly number[]
+  readonly tasktrans: readonly number[]
+  readonly frame: string
+}
+
 /** The error of a learned Cartesian DMP against its recording: RMS, maximum, and at the goal. */
 export interface CartFit {
   readonly kernels: number
@@ -167,11 +284,20 @@ export interface CartFit {
 
 /** Everything that a behavior can use. `names` are the names in the open cell by kind, the `cell_name` in the JSON Schema of a parameter: robots, parts, cameras, frames. A tool, link, output or label has the prefix of its owner: `left/panda_hand`. */
 export interface CatalogueBody {
-  readonly states: readonly StateBody[]
-  readonly containers: readonly ContainerBody[]
-  readonly behaviors: readonly ReferableBehaviorBody[]
-  readonly entries: readonly EntryBody[]
+  readonly states: readonly StateView[]
+  readonly containers: readonly ContainerView[]
+  readonly behaviors: readonly BehaviorReferenceView[]
+  readonly entries: readonly EntryName[]
   readonly names: Dict<readonly string[]>
+}
+
+/** One link of the cause chain of a failure; `because` is the next link towards the root cause. `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first. */
+export interface Cause {
+  readonly message: string
+  readonly where?: string
+  readonly kind?: string
+  readonly because?: Cause | null
+  readonly nodes?: readonly string[]
 }
 
 /** One link of a cause chain; the first link is the root cause. */
@@ -179,6 +305,12 @@ export interface CauseLine {
   readonly message: string
   readonly where: string
   readonly kind: string
+}
+
+/** Whether every device of the cell is connected; the latest value of `cell/connection`. `reason` names the lost devices with the causes; for a reconnected cell, the differences from before. */
+export interface CellConnection {
+  readonly connected: boolean
+  readonly reason: string
 }
 
 /** Remove the value of a parameter; its default applies. */
@@ -201,6 +333,14 @@ export interface CompareBody {
   readonly after: string
 }
 
+/** Holds when the children in `when` have ended with the outcome named for each: all, or any `at_least` of them. It decides the `outcome` of the container, or has an empty `outcome` and preempts the children in `preempt`. */
+export interface ConcurrencyCondition {
+  readonly outcome: string
+  readonly when: Dict<string>
+  readonly at_least: number | null
+  readonly preempt: readonly string[]
+}
+
 /** The document has changed on disk; `merged` has both changes, null if they conflict. */
 export interface ConflictBody {
   readonly message: string
@@ -209,57 +349,35 @@ export interface ConflictBody {
   readonly theirs: string
   readonly theirs_hash: string
   readonly merged: string | null
-  readonly conflicts: readonly MergeConflictBody[]
+  readonly conflicts: readonly MergeConflict[]
 }
 
 /** A request to reconnect the lost devices of the cell. */
 export interface ConnectBody {
 }
 
-/** Whether every device of the cell is connected; `reason` names the lost device and why. */
-export interface ConnectionBody {
-  readonly connected: boolean
-  readonly reason: string
-}
-
-/** A kind of container node; `only_in_tree` restricts it to behavior trees. */
-export interface ContainerBody {
+/** A kind of node that holds others. */
+export interface ContainerView {
   readonly kind: string
   readonly title: string
   readonly doc: string
   readonly only_in_tree: boolean
 }
 
-/** The operator's view of a run; `confirmed` is true when everything that a pause holds is at rest. */
-export interface ControlBody {
+/** State of a run as shown to an operator. */
+export interface ControlView {
   readonly paused: boolean
   readonly confirmed: boolean
   readonly cannot: readonly string[]
-  readonly waiting: readonly WaitingNodeBody[]
+  readonly waiting: readonly GateWait[]
   readonly locks: readonly string[]
-  readonly breakpoints: readonly BreakpointBody[]
-  readonly autonomy: "off" | "low" | "high" | "full"
+  readonly breakpoints: readonly Breakpoint[]
+  readonly autonomy: "full" | "high" | "low" | "off"
   readonly operator: string
   readonly active: readonly string[]
   readonly stepping: boolean
   readonly demanded: boolean
-  readonly loss_policy: "hold" | "continue" | "stop"
-  readonly loss_timeout_s: number
-}
-
-/** The control state of an active run. `confirmed` is true when everything that a pause holds is at rest; `operator` is none, attached, detached or lost; `loss_policy` applies `loss_timeout_s` after the loss of the operator. */
-export interface ControlLive {
-  readonly paused: boolean
-  readonly confirmed: boolean
-  readonly stepping: boolean
-  readonly cannot: readonly string[]
-  readonly waiting: readonly WaitingNodeLive[]
-  readonly locks: readonly LockLive[]
-  readonly breakpoints: readonly BreakpointLive[]
-  readonly autonomy: "full" | "high" | "low" | "off"
-  readonly operator: string
-  readonly demanded: boolean
-  readonly loss_policy: string
+  readonly loss_policy: "continue" | "hold" | "stop"
   readonly loss_timeout_s: number
 }
 
@@ -274,52 +392,67 @@ export interface CopyResultBody {
   readonly yaml: string
 }
 
+/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run. */
+export interface DataSubscription {
+  readonly k: "look"
+  readonly number?: number
+  readonly traffic?: boolean
+  readonly topic?: string
+  readonly fields?: readonly string[]
+  readonly run?: string
+  readonly goals?: string
+}
+
 /** A deleted document that can be restored; `saved_at` is when its last text was first seen. */
 export interface DeletedDocumentBody {
   readonly id: string
   readonly saved_at: number
 }
 
-/** The input of a proposal; with `id` the behavior is also written as a new document. */
+/** The request for a proposal; with `id` the behavior is also written as a new document. The server fills in `name` and `cell` of the options. */
 export interface DemonstrationBody {
-  readonly steps: readonly DemonstrationStepBody[]
-  readonly arm?: string
-  readonly tool?: "gripper" | "hand" | "magnet" | null
-  readonly speed?: number
-  readonly line_speed_m_s?: number
-  readonly approach_m?: number
-  readonly width_m?: number | null
+  readonly steps: readonly TaughtStep[]
+  readonly options?: ProposalOptions
   readonly id?: string
 }
 
-/** An entry, or an action `open` or `close` of the tool, in order; without a role, the role is inferred. */
-export interface DemonstrationStepBody {
-  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
+/** The status of a stop at one device; `connected` is false once its process has ended. */
+export interface DeviceStop {
   readonly name: string
-  readonly role?: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close" | null
-  readonly part?: string | null
+  readonly connected: boolean
+  readonly acknowledged: boolean
+  readonly at_rest: boolean
 }
 
-/** The differences of two versions; `layout_only` is true if only canvas positions differ. */
-export interface DifferenceBody {
-  readonly changes: readonly NodeChangeBody[]
-  readonly layout_only: boolean
+/** Graph and findings of a text; `graph` and `document` are None if it cannot be read. `with_findings` is False if the graph was built but the check has not run yet. */
+export interface DocumentAnalysis {
+  readonly hash: string
+  readonly graph: DocumentNode | null
+  readonly document: DocumentInfo | null
+  readonly findings: readonly FindingView[]
+  readonly checked: boolean
 }
 
 /** A document on disk; `saved_at` is the time of its last change, seconds since 1970. */
 export interface DocumentBody {
   readonly hash: string
-  readonly graph: DocumentNodeBody | null
-  readonly document: DocumentInfoBody | null
-  readonly findings: readonly FindingBody[]
+  readonly graph: DocumentNode | null
+  readonly document: DocumentInfo | null
+  readonly findings: readonly FindingView[]
   readonly checked: boolean
   readonly id: string
   readonly text: string
   readonly saved_at: number
 }
 
+/** All changes, those of the document first; `layout_only` when only positions on the canvas differ. */
+export interface DocumentDiff {
+  readonly changes: readonly NodeChange[]
+  readonly layout_only: boolean
+}
+
 /** The declarations of the document itself, as written. */
-export interface DocumentInfoBody {
+export interface DocumentInfo {
   readonly name: string
   readonly description: string
   readonly cell: string | null
@@ -329,20 +462,20 @@ export interface DocumentInfoBody {
   readonly success: readonly string[]
 }
 
-/** One node as written: the fields of a run's graph and all raw fields of the form; lines and columns count from 1. `targets` are its own transitions, outcome to target; `exits` are the outcomes without a transition. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to. `role` is its key in the parent node, such as `then`. */
-export interface DocumentNodeBody {
+/** One node as written: values raw, `${…}` not evaluated; lines and columns count from 1. `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior that it references. `exits` are the outcomes that its container does not lead anywhere yet. `role` is its key in the surrounding tree node, such as `then`. */
+export interface DocumentNode {
   readonly path: string
   readonly name: string
   readonly kind: string
   readonly title: string
+  readonly description: string
   readonly outcomes: readonly string[]
-  readonly children: readonly DocumentNodeBody[]
-  readonly transitions: readonly TransitionBody[]
+  readonly children: readonly DocumentNode[]
+  readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
   readonly label: string
   readonly role: string
-  readonly description: string
   readonly line: number
   readonly column: number
   readonly end_line: number
@@ -365,7 +498,7 @@ export interface DocumentNodeBody {
   readonly every: unknown
   readonly notes: string
   readonly position: readonly [number, number] | null
-  readonly rules: readonly RuleBody[]
+  readonly rules: readonly ConcurrencyCondition[]
   readonly otherwise: string | null
   readonly userdata: Dict<unknown>
   readonly settings: Dict<unknown>
@@ -380,16 +513,12 @@ export interface DocumentsChanged {
 /** A text to draw; without `check` the response is faster and has no findings. */
 export interface DraftBody {
   readonly text: string
-  readonly check: boolean
+  readonly check?: boolean
 }
 
-/** The graph and findings of a text; `graph` and `document` are null if the text cannot be read. `checked` is false if the request did not ask for findings; the route `findings` returns them. */
-export interface DraftResultBody {
-  readonly hash: string
-  readonly graph: DocumentNodeBody | null
-  readonly document: DocumentInfoBody | null
-  readonly findings: readonly FindingBody[]
-  readonly checked: boolean
+/** From the page, every 50 ms while the mouse is down on its 3D view. */
+export interface DragKeepAlive {
+  readonly k: "held"
 }
 
 /** Insert copies of nodes next to them; transitions among them connect the copies. */
@@ -398,8 +527,8 @@ export interface DuplicateNodes {
   readonly paths: readonly string[]
 }
 
-/** Why no edit was applied: `index` is the edit that failed. */
-export interface EditRefusalBody {
+/** Why no edit was applied; `index` is the edit that failed. */
+export interface EditRefusal {
   readonly message: string
   readonly hint: string
   readonly index: number
@@ -408,19 +537,19 @@ export interface EditRefusalBody {
 /** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. */
 export interface EditResultBody {
   readonly hash: string
-  readonly graph: DocumentNodeBody | null
-  readonly document: DocumentInfoBody | null
-  readonly findings: readonly FindingBody[]
+  readonly graph: DocumentNode | null
+  readonly document: DocumentInfo | null
+  readonly findings: readonly FindingView[]
   readonly checked: boolean
   readonly text: string
   readonly changed: readonly string[]
-  readonly refused: EditRefusalBody | null
+  readonly refused: EditRefusal | null
 }
 
 /** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. */
 export interface EditsBody {
   readonly text: string
-  readonly check: boolean
+  readonly check?: boolean
   readonly edits: readonly Dict<unknown>[]
 }
 
@@ -429,28 +558,42 @@ export interface EntriesChanged {
   readonly k: "entries"
 }
 
-/** A named entry of the cell's store. */
-export interface EntryBody {
-  readonly kind: string
-  readonly name: string
-  readonly tags: readonly string[]
-}
-
-/** The first matching entries, and the total number. */
-export interface EntryPage {
-  readonly entries: readonly EntryRow[]
-  readonly total: number
-}
-
-/** A named entry and its last change: by whom, why, and when (milliseconds since 1970). */
-export interface EntryRow {
+/** One change of an entry: author, time (UTC, milliseconds since 1970), reason; published on `store/changes`. */
+export interface EntryChanged {
   readonly kind: string
   readonly name: string
   readonly revision: number
+  readonly deleted: boolean
   readonly tags: readonly string[]
   readonly by: string
   readonly reason: string
   readonly changed_unix_ms: number
+}
+
+/** Every change of an entry, oldest first. */
+export interface EntryHistory {
+  readonly changes: readonly EntryChanged[]
+}
+
+/** A named entry of the cell's store. */
+export interface EntryName {
+  readonly kind: string
+  readonly name: string
+}
+
+/** The last changes of the first matching entries, and the total number of matching ones. */
+export interface EntryPage {
+  readonly entries: readonly EntryChanged[]
+  readonly total: number
+}
+
+/** A stored entry: `value` has the fields of its `kind`; `revision` counts its changes. `tags` is None when unspecified. */
+export interface EntryRecord {
+  readonly kind: string
+  readonly name: string
+  readonly value: Dict<unknown>
+  readonly revision: number
+  readonly tags?: readonly string[] | null
 }
 
 /** Why a request failed: message, location (a parameter's name, a file, a node path) and hint. */
@@ -462,7 +605,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly Dict<unknown>[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -482,15 +625,26 @@ export interface FailureStep {
   readonly text: string
 }
 
-/** One field that differs; null where the field is absent. */
-export interface FieldChangeBody {
+/** A fault of the fault file was applied to a request. */
+export interface FaultInjected {
+  readonly event: "fault"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly address: string
+  readonly fault: string
+  readonly detail?: string
+}
+
+/** One field that differs; None on the side on which it does not exist. */
+export interface FieldChange {
   readonly field: string
   readonly before: unknown
   readonly after: unknown
 }
 
-/** One problem of a document. */
-export interface FindingBody {
+/** One finding with its position in the document. */
+export interface FindingView {
   readonly severity: string
   readonly code: string
   readonly message: string
@@ -500,19 +654,23 @@ export interface FindingBody {
   readonly hint: string
 }
 
-/** A fix of a finding: the edits to send, and a title that describes them. */
-export interface FixBody {
+/** Edits that would resolve a finding; `title` describes them completely. A fix is `sure` if it only corrects an evident typo, or removes something without effect: it may be applied automatically. For all others a person must choose. */
+export interface Fix {
   readonly title: string
-  readonly edits: readonly Dict<unknown>[]
+  readonly edits: readonly (AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect)[]
+  readonly sure: boolean
 }
 
-/** The fixes of one finding of a text; `code`, `path`, `line` and `message` identify the finding. */
+/** A finding of a text with its fixes. */
 export interface FixesBody {
+  readonly severity: string
   readonly code: string
+  readonly message: string
   readonly path: string
   readonly line: number
-  readonly message: string
-  readonly fixes: readonly FixBody[]
+  readonly column: number
+  readonly hint: string
+  readonly fixes: readonly Fix[]
 }
 
 /** End an active or waiting node with an outcome. */
@@ -521,17 +679,167 @@ export interface ForceBody {
   readonly outcome: string
 }
 
-/** One node of the behavior with everything inside it. */
-export interface GraphNodeBody {
+/** The restored value of `key` in the scope of a container; `defined` is false when it had no value. */
+export interface FormerValue {
+  readonly scope: string
+  readonly key: string
+  readonly value?: unknown
+  readonly defined?: boolean
+}
+
+/** The node continues after the gate. */
+export interface GatePassed {
+  readonly event: "gate_passed"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly point: string
+}
+
+/** A node waits `before` its entry or `after` its outcome because of `reasons`. */
+export interface GateReached {
+  readonly event: "gate"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly point: string
+  readonly reasons: readonly string[]
+  readonly outcome?: string
+}
+
+/** A node that waits at the gate: gate point, visit, and reasons. `required` is the autonomy level that the outcome requires; empty before an entry. */
+export interface GateWait {
+  readonly path: string
+  readonly visit: number
+  readonly point: "after" | "before"
+  readonly outcome: string
+  readonly reasons: readonly string[]
+  readonly required: string
+}
+
+/** Last line: the end of the goal; the device is at rest. */
+export interface GoalEndLine {
+  readonly k: "end"
+  readonly end: GoalEnd
+}
+
+/** The end of a goal; `result` may be partial unless it succeeded, `cause` is the reason of a failure. */
+export interface GoalEnd {
+  readonly status: GoalStatus
+  readonly result: unknown
+  readonly cause: Cause | null
+}
+
+/** A goal ended: succeeded, canceled, aborted or rejected. */
+export interface GoalFinished {
+  readonly event: "goal_finished"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly goal: string
+  readonly status: string
+  readonly result?: Dict<unknown> | null
+  readonly cause?: Cause | null
+}
+
+/** The device confirmed rest and keeps the goal. */
+export interface GoalHeld {
+  readonly event: "goal_held"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly goal: string
+}
+
+/** An active goal: its run and node, and its newest feedback. */
+export interface GoalInfo {
+  readonly id: string
+  readonly address: string
+  readonly run: string
+  readonly node: string
+  readonly status: string
+  readonly feedback: unknown
+}
+
+/** An active goal: `share` is its progress from 0 to 1 if the feedback has it, `words` the feedback as text. */
+export interface GoalProgress {
+  readonly address: string
+  readonly status: string
+  readonly share: number | null
+  readonly words: string
+}
+
+/** Status and latest feedback of the goal; at most five lines per second. */
+export interface GoalProgressLine {
+  readonly k: "course"
+  readonly status: string
+  readonly feedback: unknown
+}
+
+/** A held goal was resumed. */
+export interface GoalResumed {
+  readonly event: "goal_resumed"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly goal: string
+}
+
+/** A state sent an action goal or service request. */
+export interface GoalSent {
+  readonly event: "goal"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly goal: string
+  readonly address: string
+  readonly request: Dict<unknown>
+}
+
+/** First line: the goal's id, for its cancellation. */
+export interface GoalSentLine {
+  readonly k: "sent"
+  readonly goal: string
+}
+
+/** The status of a goal; the last four are final. */
+export type GoalStatus = "aborted" | "active" | "canceled" | "canceling" | "held" | "pending" | "rejected" | "succeeded"
+
+/** All active goals of a run, by the path of the node that sent them. */
+export interface GoalsFrame {
+  readonly k: "goals"
+  readonly run: string
+  readonly goals: Dict<GoalProgress>
+}
+
+/** One node with its descendants; `path` is the node path of events. */
+export interface GraphNode {
   readonly path: string
   readonly name: string
   readonly kind: string
   readonly title: string
+  readonly description: string
   readonly outcomes: readonly string[]
-  readonly children: readonly GraphNodeBody[]
-  readonly transitions: readonly TransitionBody[]
+  readonly children: readonly GraphNode[]
+  readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
+}
+
+/** A transition of a state machine; the outcome of a timeout is `after 30 s`, that of on_error is `error`. */
+export interface GraphTransition {
+  readonly source: string
+  readonly outcome: string
+  readonly target: string
+}
+
+/** The taught setting of a gripper: `held` a part `width_m` wide, or was open by that width. `force_n` is the grasp force, 0 when unknown. */
+export interface GripperSetting {
+  readonly width_m: number
+  readonly held: boolean
+  readonly force_n: number
 }
 
 /** Group siblings in a new container in their place; transitions that leave them become its outcomes. */
@@ -540,6 +848,14 @@ export interface GroupNodes {
   readonly paths: readonly string[]
   readonly kind: "concurrency" | "machine" | "parallel" | "priority" | "selector" | "sequence"
   readonly name?: string | null
+}
+
+/** To the page: the arm whose handle it has (empty: none), and whether the handle is dragged. */
+export interface HandleStatus {
+  readonly k: "gripped"
+  readonly arm: string
+  readonly way: "move" | "push"
+  readonly pulled: boolean
 }
 
 /** First frame; a changed `epoch` means that the server was restarted. */
@@ -559,7 +875,7 @@ export interface HelpingHandFrame {
 
 /** A request for a hot change; with `preempt`, active nodes that cannot continue are preempted. */
 export interface HotChangeBody {
-  readonly preempt: boolean
+  readonly preempt?: boolean
 }
 
 /** The result of a hot change, one line per difference. */
@@ -567,12 +883,9 @@ export interface HotChangeResultBody {
   readonly changes: readonly string[]
 }
 
-/** A run of the journal whose engine ended without ending the run; `behavior` is the name of its behavior. */
-export interface InterruptedRunBody {
-  readonly id: string
-  readonly behavior: string
-  readonly started_at_s: number
-  readonly last_seq: number
+/** Keep-alive without data. */
+export interface IdleFrame {
+  readonly k: "ping"
 }
 
 /** The arm that this page jogs, empty for none, and what limits its motion, as text. */
@@ -588,6 +901,22 @@ export interface JogVelocity {
   readonly velocity: readonly number[]
 }
 
+/** A dynamic movement primitive in joint space (RCL table 6) for n joints and `N` kernels. `goal`, `y0` (rad) and `dy0` (rad/s) have n values; `c` and `sigma`, the centres and variances of the kernels over the phase, have `N`; `w` has one row of `N` weights for each joint, the table's w1 to wn. `tau` is the duration in seconds, `a_z` and `a_x` the dimensionless gains of transformation and phase. `tasktrans` is a linear map of the joints, n x n row by row, applied to the output of the primitive; empty for none. `id` is free for the user. */
+export interface JointDmp {
+  readonly N: number
+  readonly a_z: number
+  readonly a_x: number
+  readonly tau: number
+  readonly id: number
+  readonly goal: readonly number[]
+  readonly y0: readonly number[]
+  readonly dy0: readonly number[]
+  readonly c: readonly number[]
+  readonly sigma: readonly number[]
+  readonly w: readonly (readonly number[])[]
+  readonly tasktrans: readonly number[]
+}
+
 /** The error of a learned joint DMP against its recording: RMS, maximum, and at the goal. `joint` is the index of the joint with the greatest error, from 0. `rms_m` and `max_m` are the resulting errors of the tool centre point, None when it is not known which arm. */
 export interface JointFit {
   readonly kernels: number
@@ -600,37 +929,46 @@ export interface JointFit {
   readonly max_m: number | null
 }
 
-/** A parameter or userdata key, with its JSON Schema. */
-export interface KeyBody {
+/** One key with all its writers and readers, in document order. */
+export interface KeyFlow {
+  readonly key: string
+  readonly writers: readonly KeyWriter[]
+  readonly readers: readonly KeyReader[]
+}
+
+/** A node that reads a key. `by`: as an input of the same name, mapped through `in`, in an expression, or collected by a foreach. `sources` are the paths from which the value may come, `defined` whether there is one; `way` is how it is reached without one. */
+export interface KeyReader {
+  readonly path: string
+  readonly by: string
+  readonly name: string
+  readonly required: boolean
+  readonly defined: "always" | "maybe" | "never" | "unreachable"
+  readonly sources: readonly string[]
+  readonly way: string
+}
+
+/** A parameter or userdata key, with its JSON Schema and its default as plain data. */
+export interface KeyView {
   readonly name: string
   readonly required: boolean
   readonly default: unknown
   readonly schema: Dict<unknown>
 }
 
-/** One key with all its writers and readers. */
-export interface KeyFlowBody {
-  readonly key: string
-  readonly writers: readonly KeyWriterBody[]
-  readonly readers: readonly KeyReaderBody[]
+/** A node that writes a key, or a container that declares it; the path is empty for the document itself. `name` is the output key, or the field of the node that writes it. */
+export interface KeyWriter {
+  readonly path: string
+  readonly origin: "collect" | "index" | "item" | "output" | "parameter" | "post" | "userdata"
+  readonly name: string
 }
 
-/** A node that reads a key: `defined` is always, maybe (`way` is a path without it), never, or unreachable. */
-export interface KeyReaderBody {
-  readonly path: string
-  readonly by: string
-  readonly name: string
-  readonly required: boolean
-  readonly defined: string
-  readonly sources: readonly string[]
-  readonly way: string
-}
-
-/** A node that writes a key, or a container that declares it; the path is empty for the document itself. */
-export interface KeyWriterBody {
-  readonly path: string
-  readonly origin: string
-  readonly name: string
+/** The lease of `resource`: its run, node and goal, which may be empty, and its duration. */
+export interface LeaseMetrics {
+  readonly resource: string
+  readonly run: string
+  readonly node: string
+  readonly goal: string
+  readonly held_s: number
 }
 
 /** The changes of the watched run since `after`, the changed runs and arms, and the current control of the run. `dropped` is the number of missing log lines. */
@@ -641,38 +979,34 @@ export interface LiveDelta {
   readonly seq: number
   readonly now_s: number
   readonly ticking: boolean
-  readonly runs: readonly RunOverview[]
+  readonly runs: readonly RunView[]
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
-  readonly control: ControlLive | null
+  readonly control: ControlView | null
+  readonly lock_reasons: Dict<string>
   readonly robots: Dict<RobotLive>
 }
 
-/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active. */
+/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active; `lock_reasons` are what the operator said, by the path of the locked node. */
 export interface LiveSnapshot {
   readonly k: "snapshot"
   readonly run: string
   readonly seq: number
   readonly now_s: number
   readonly ticking: boolean
-  readonly runs: readonly RunOverview[]
+  readonly runs: readonly RunView[]
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
-  readonly control: ControlLive | null
+  readonly control: ControlView | null
+  readonly lock_reasons: Dict<string>
   readonly robots: Dict<RobotLive>
 }
 
 /** Hold the outcome of a node; `reason` goes into the event log. */
 export interface LockBody {
   readonly path: string
-  readonly reason: string
-}
-
-/** A locked node and the reason given by the operator. */
-export interface LockLive {
-  readonly path: string
-  readonly reason: string
+  readonly reason?: string
 }
 
 /** One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag. */
@@ -694,15 +1028,54 @@ export interface LoginLinkBody {
 
 /** The role of the requested login link. */
 export interface LoginLinkRequest {
-  readonly role: "operator" | "viewer"
+  readonly role?: "operator" | "viewer"
 }
 
-/** Lines that both sides changed differently; `line` is their position in the text to save. */
-export interface MergeConflictBody {
+/** A state blocked the event loop; all other states had to wait. */
+export interface LoopBlocked {
+  readonly event: "loop_blocked"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly blocked_s: number
+  readonly where: string
+}
+
+/** Lines that both sides changed differently; `line`, from 1, is their position in our text. */
+export interface MergeConflict {
   readonly line: number
   readonly base: string
   readonly ours: string
   readonly theirs: string
+}
+
+/** The latest message of the subscribed topic, truncated to a bounded size; at most five per second. `at_s` is the sampling time on the server's clock; `problem` tells why there is no message. */
+export interface MessageFrame {
+  readonly k: "message"
+  readonly topic: string
+  readonly at_s: number
+  readonly value: unknown
+  readonly problem: string
+}
+
+/** A log message of a state or the runner; `level` is debug, info, warning or error. */
+export interface MessageLogged {
+  readonly event: "log"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly level: string
+  readonly message: string
+}
+
+/** A state read a message of a topic. */
+export interface MessageReceived {
+  readonly event: "received"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly topic: string
+  readonly message: unknown
 }
 
 /** The new id of a document; with `follow`, references to it are updated. */
@@ -738,17 +1111,61 @@ export interface NewIdBody {
   readonly id: string
 }
 
-/** A node added, removed, changed or moved between two versions; the path `document` is the document itself. */
-export interface NodeChangeBody {
+/** A node did not stop in time and was abandoned; the run continues without it. */
+export interface NodeAbandoned {
+  readonly event: "abandoned"
+  readonly seq: number
+  readonly time_s: number
   readonly path: string
-  readonly change: string
+  readonly waited_s: number
+}
+
+/** A node that was added, removed, changed, or moved to another container or name, and possibly changed. The path `document` stands for the document itself. `before_path` is the previous path of a moved node. */
+export interface NodeChange {
+  readonly path: string
+  readonly change: "added" | "changed" | "moved" | "removed"
   readonly before_path: string | null
-  readonly fields: readonly FieldChangeBody[]
+  readonly fields: readonly FieldChange[]
 }
 
 /** The node that a command addresses. */
 export interface NodeCommandBody {
   readonly path: string
+}
+
+/** A node was left for `target` without an outcome: by timeout, guard or on_error (`by`). */
+export interface NodeDiverted {
+  readonly event: "diverted"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly by: string
+  readonly target: string
+  readonly cause?: Cause | null
+}
+
+/** A node became active. */
+export interface NodeEntered {
+  readonly event: "entered"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly kind: string
+  readonly inputs: Dict<unknown>
+}
+
+/** A node ended with an outcome, or was `preempted`. */
+export interface NodeExited {
+  readonly event: "exited"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly outcome: string
+  readonly preempted?: boolean
+  readonly cause?: Cause | null
 }
 
 /** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `followed` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
@@ -763,10 +1180,21 @@ export interface NodeLive {
   readonly plan: PlanLive | null
 }
 
+/** A node is run again after a failure; `attempt` counts from 2. */
+export interface NodeRetried {
+  readonly event: "retry"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly attempt: number
+  readonly wait_s: number
+  readonly cause: Cause | null
+}
+
 /** An open past run or recording, with the behavior as of the start of the run. */
 export interface OpenRunBody {
   readonly run: PastRunBody
-  readonly behavior: BehaviorBody
+  readonly behavior: BehaviorView
 }
 
 /** From the client: operate this run (empty: none); a lost connection is a lost operator. */
@@ -775,8 +1203,55 @@ export interface OperateRun {
   readonly run?: string
 }
 
-/** One parameter of a run, with the JSON Schema of its value. */
-export interface ParameterBody {
+/** The operator's status changed to `attached`, `detached` or `lost`. */
+export interface OperatorChanged {
+  readonly event: "operator"
+  readonly seq: number
+  readonly time_s: number
+  readonly status: string
+}
+
+/** A command of the operator; `command` is a name of `engine.runtime.control.Control`. */
+export interface OperatorCommanded {
+  readonly event: "command"
+  readonly seq: number
+  readonly time_s: number
+  readonly command: string
+  readonly path: string
+  readonly arguments: Dict<unknown>
+}
+
+/** The run's autonomy is below the level that `outcome` requires; the operator is asked once. */
+export interface OutcomeRequested {
+  readonly event: "outcome_requested"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly outcome: string
+  readonly required: string
+}
+
+/** The request of `OutcomeRequested` is withdrawn or has been answered. */
+export interface OutcomeWithdrawn {
+  readonly event: "outcome_withdrawn"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly outcome: string
+}
+
+/** A parameter with its present value and the JSON Schema of its values. */
+export interface ParameterInfo {
+  readonly name: string
+  readonly doc: string
+  readonly value: unknown
+  readonly schema: Dict<unknown>
+}
+
+/** One parameter for a form. */
+export interface ParameterView {
   readonly name: string
   readonly schema: Dict<unknown>
   readonly required: boolean
@@ -786,14 +1261,15 @@ export interface ParameterBody {
 export interface PastRunBody {
   readonly id: string
   readonly behavior: string
+  readonly document: string
   readonly status: string
   readonly outcome: string | null
   readonly success: boolean
-  readonly failed: boolean
   readonly cause: string
   readonly started_at_s: number
   readonly duration_s: number
   readonly events: number
+  readonly failed: boolean
   readonly recording: string
   readonly here: boolean
 }
@@ -814,6 +1290,28 @@ export interface PastRunsBody {
   readonly counts: Dict<number>
 }
 
+/** The scopes of a run after event `seq`, by container path; `problem` tells why there are none. */
+export interface PastUserdata {
+  readonly seq: number
+  readonly scopes: Dict<ScopeView>
+  readonly problem: string
+}
+
+/** From the page: show this run at this time of its clock; null shows the live cell. */
+export interface PastViewRequest {
+  readonly run: string
+  readonly time_s: number | null
+}
+
+/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. */
+export interface PastViewState {
+  readonly run: string
+  readonly time_s: number
+  readonly from_s: number
+  readonly until_s: number
+  readonly problem: string
+}
+
 /** Insert nodes, in the form that `copy` returns, into a container. */
 export interface PasteNodes {
   readonly edit: "paste"
@@ -831,6 +1329,14 @@ export interface PathLive {
   readonly since_s: number
 }
 
+/** All held goals are at rest; `cannot` names the goals that cannot be held. */
+export interface PauseConfirmed {
+  readonly event: "pause_confirmed"
+  readonly seq: number
+  readonly time_s: number
+  readonly cannot?: readonly string[]
+}
+
 /** Keep-alive; a page that does not answer with `Pong` in time is disconnected. */
 export interface Ping {
   readonly k: "ping"
@@ -846,14 +1352,14 @@ export interface PlanLive {
   readonly planning_s: number
 }
 
-/** Play back an entry (`kind`, `name`) or a capture with an arm; `speed` is a fraction of the taught speed. */
+/** Play back an entry or a capture with an arm; `speed` is a fraction of the taught speed. */
 export interface PlayBody {
+  readonly kind?: string
+  readonly name?: string
+  readonly capture?: number
+  readonly revision?: number
   readonly arm: string
   readonly speed: number
-  readonly kind: string
-  readonly name: string
-  readonly capture: number
-  readonly revision: number
 }
 
 /** The end of a playback: `succeeded`, `preempted`, `rejected` or `failed`, and the cause. */
@@ -867,15 +1373,22 @@ export interface Pong {
   readonly k: "pong"
 }
 
-/** From the page: preview this arm along an entry (`kind`, `name`) or a capture; without an arm, clear the preview. `revision` selects a revision of the entry, 0 the current one. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
+/** A rigid transform: position in metres and unit quaternion x y z w, in `frame`. */
+export interface Pose {
+  readonly xyz: readonly [number, number, number]
+  readonly xyzw: readonly [number, number, number, number]
+  readonly frame: string
+}
+
+/** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
 export interface PreviewTaught {
   readonly k: "look"
-  readonly arm: string
-  readonly kind: string
-  readonly name: string
-  readonly capture: number
-  readonly revision: number
-  readonly place: number
+  readonly kind?: string
+  readonly name?: string
+  readonly capture?: number
+  readonly revision?: number
+  readonly arm?: string
+  readonly place?: number
 }
 
 /** A recording and the primitive learned from it, as the arm would execute them, and their fit errors. */
@@ -886,26 +1399,30 @@ export interface PrimitiveComparison {
   readonly cart_fit: CartFit | null
 }
 
-/** The behavior as YAML, its description as text, and the choices made; `id` is the document it was written to. */
+/** A proposal with the findings of its behavior; `id` is the document it was written to, empty for none. */
 export interface ProposalBody {
   readonly text: string
-  readonly steps: readonly ProposedStepBody[]
+  readonly steps: readonly TaughtStep[]
   readonly words: readonly string[]
   readonly remarks: readonly string[]
   readonly arm: string
-  readonly tool: string
+  readonly tool: "gripper" | "hand" | "magnet"
   readonly arms: readonly string[]
   readonly parts: readonly string[]
-  readonly findings: readonly FindingBody[]
+  readonly findings: readonly FindingView[]
   readonly id: string
 }
 
-/** A step with its role, and the part of a grasp; an empty name is an unnamed part. */
-export interface ProposedStepBody {
-  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
-  readonly name: string
-  readonly role: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close"
-  readonly part: string | null
+/** Options of the behavior; every number is the default of one of its parameters. `approach_m` is the length of the straight approach to a grasp without a taught approach; `width_m` the width of the grasped part, None when unknown: then any part between the fingers counts. `cell` is the path of the cell document to be written in the behavior, empty for none. */
+export interface ProposalOptions {
+  readonly name?: string
+  readonly arm?: string
+  readonly tool?: "gripper" | "hand" | "magnet" | null
+  readonly speed?: number
+  readonly line_speed_m_s?: number
+  readonly approach_m?: number
+  readonly width_m?: number | null
+  readonly cell?: string
 }
 
 /** Push the tool of a simulated arm, along the world axes. */
@@ -915,14 +1432,8 @@ export interface PushToolBody {
   readonly duration_s: number
 }
 
-/** A state that was active when the engine crashed: a person must tell how it ended. */
-export interface QuestionBody {
-  readonly path: string
-  readonly outcomes: readonly string[]
-}
-
-/** One recording of the project; `problem` tells why it cannot be opened, empty if it can. */
-export interface RecordingBody {
+/** One recording of the project; `problem` says why it cannot be opened, else empty. */
+export interface RecordingFile {
   readonly path: string
   readonly run: string
   readonly behavior: string
@@ -932,18 +1443,8 @@ export interface RecordingBody {
   readonly problem: string
 }
 
-/** A behavior that another behavior may refer to. */
-export interface ReferableBehaviorBody {
-  readonly id: string
-  readonly name: string
-  readonly description: string
-  readonly outcomes: readonly string[]
-  readonly success: readonly string[]
-  readonly parameters: readonly KeyBody[]
-}
-
-/** A behavior that refers to another one, and its referring nodes. */
-export interface ReferrerBody {
+/** A behavior that references another one: its id and name, and the referencing nodes. */
+export interface ReferringBehavior {
   readonly id: string
   readonly name: string
   readonly paths: readonly string[]
@@ -976,12 +1477,18 @@ export interface ResumeBody {
   readonly changed?: boolean
 }
 
+/** An interrupted state that needs a decision. */
+export interface ResumeQuestion {
+  readonly path: string
+  readonly outcomes: readonly string[]
+}
+
 /** An interrupted run resumes only after these questions are answered. */
 export interface ResumeQuestionsBody {
   readonly message: string
   readonly where: string
   readonly hint: string
-  readonly questions: readonly QuestionBody[]
+  readonly questions: readonly ResumeQuestion[]
 }
 
 /** One arm: its mode, its activity, the error of a reflex stop, and its speed override. `way` is its planned path, which the 3D view shows. */
@@ -995,24 +1502,14 @@ export interface RobotLive {
   readonly way: PathLive | null
 }
 
-/** One rule of a concurrency container: the outcome, and the outcomes of children that it needs, all or `at_least`. A rule that preempts some children has no outcome. */
-export interface RuleBody {
-  readonly outcome: string
-  readonly when: Dict<string>
-  readonly at_least: number | null
-  readonly preempt: readonly string[]
-}
-
-/** One run, active or ended. */
-export interface RunBody {
-  readonly id: string
-  readonly behavior: string
+/** The run ended; `status` is finished, stopped or errored. */
+export interface RunEnded {
+  readonly event: "run_ended"
+  readonly seq: number
+  readonly time_s: number
   readonly status: string
-  readonly outcome: string | null
-  readonly success: boolean
-  readonly cause: string
-  readonly started_at_s: number
-  readonly duration_s: number
+  readonly outcome?: string | null
+  readonly cause?: Cause | null
 }
 
 /** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `steps` are the nodes from the root to the origin, `around` the requests, answers and writes of the origin. */
@@ -1027,8 +1524,65 @@ export interface RunFailure {
   readonly around: readonly LogLine[]
 }
 
-/** One run in the list of runs; `waits` is asks, paused or locked while it waits for a person. */
-export interface RunOverview {
+/** The event of a journaled run to begin at, at the last entered state unless `path` is given. */
+export interface RunPositionBody {
+  readonly run: string
+  readonly seq: number
+  readonly path?: string | null
+}
+
+/** The record of one run in the journal. `status` is running, or the status of `RunEnded`: finished, stopped, errored. A run that is still `running` but driven by no process was interrupted and can be resumed. `epoch` counts the engines that have driven it. */
+export interface RunRecord {
+  readonly id: string
+  readonly behavior: string
+  readonly document: string
+  readonly status: string
+  readonly epoch: number
+  readonly started_unix_s: number
+  readonly last_seq: number
+  readonly driver: number | null
+  readonly verified: boolean
+  readonly damage: string
+}
+
+/** The run was resumed after its engine died; nodes in `rerun` are entered again, others got an outcome. */
+export interface RunResumed {
+  readonly event: "resumed"
+  readonly seq: number
+  readonly time_s: number
+  readonly after_seq: number
+  readonly epoch: number
+  readonly rerun: readonly string[]
+}
+
+/** The run started; `document` is the semantic hash of the behavior. */
+export interface RunStarted {
+  readonly event: "run_started"
+  readonly seq: number
+  readonly time_s: number
+  readonly behavior: string
+  readonly document: string
+  readonly parameters: Dict<unknown>
+  readonly seed: number
+  readonly clock: string
+  readonly inputs: Dict<unknown>
+}
+
+/** The run stepped back to before the entry of `path` and abandoned `source`. `values` are restored in userdata. `went_wrong` and `reason` are the causes that the container had recorded of its children at that time. With `cause` the step back failed: some states may have been undone, and the run stays where it was. */
+export interface RunSteppedBack {
+  readonly event: "stepped_back"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly source: string
+  readonly values?: readonly FormerValue[]
+  readonly went_wrong?: Cause | null
+  readonly reason?: Cause | null
+  readonly cause?: Cause | null
+}
+
+/** One run, active or ended; `status` is running, stopping, finished, stopped or errored. `waits` is asks, paused or locked while it waits for a person. */
+export interface RunView {
   readonly id: string
   readonly behavior: string
   readonly status: string
@@ -1040,11 +1594,13 @@ export interface RunOverview {
   readonly waits: string
 }
 
-/** The event of a journaled run to begin at, at the last entered state unless `path` is given. */
-export interface RunPositionBody {
-  readonly run: string
-  readonly seq: number
-  readonly path?: string | null
+/** Rows of the chosen fields, in their order: time on the server's clock, and a value each (null where none). `dropped` is the number of earlier rows that were dropped because the page was too slow. */
+export interface SamplesFrame {
+  readonly k: "samples"
+  readonly number: number
+  readonly times_s: readonly number[]
+  readonly rows: readonly (readonly (number | null)[])[]
+  readonly dropped: number
 }
 
 /** A text to write, and the hash of the version it is based on. */
@@ -1053,10 +1609,50 @@ export interface SaveBody {
   readonly base_hash: string
 }
 
+/** Write a capture to the store as a named entry; it stays in the buffer. `form` selects another kind than the default: every recording can be saved as `trajectory`, `dmp` or `cart_dmp`, and its last configuration as `joints` or `pose`. Fails when the entry exists, unless `replace`. */
+export interface SaveCapture {
+  readonly id: number
+  readonly name: string
+  readonly form?: "cart_dmp" | "dmp" | "gripper" | "joints" | "pose" | "trajectory" | null
+  readonly tags?: readonly string[]
+  readonly replace?: boolean
+  readonly by?: string
+  readonly reason?: string
+}
+
 /** The version that is on disk now. */
 export interface SaveResultBody {
   readonly hash: string
   readonly saved_at: number
+}
+
+/** The values of one container, kept after its exit; `is_open` is False then. */
+export interface ScopeView {
+  readonly is_open: boolean
+  readonly since_s: number
+  readonly values: Dict<UserdataRecord>
+}
+
+/** The service responded, or failed with `cause`. */
+export interface ServiceAnswered {
+  readonly event: "answer"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly call: string
+  readonly result?: unknown
+  readonly cause?: Cause | null
+}
+
+/** A state called a service; `call` numbers the calls of one activation from 1. */
+export interface ServiceCalled {
+  readonly event: "call"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly call: string
+  readonly address: string
+  readonly request: Dict<unknown>
 }
 
 /** The role of the session and the features of this server; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, a separate origin; null without a 3D view. */
@@ -1065,8 +1661,8 @@ export interface SessionBody {
   readonly cell_name: string
   readonly cell_view_port: number | null
   readonly epoch: string
-  readonly cell: ConnectionBody
-  readonly stop: StopEndpointBody | null
+  readonly cell: CellConnection
+  readonly stop: StopEndpoint | null
 }
 
 /** Change declarations of the document; null removes a key. Other keys are unchanged. Keys: name, description, cell, parameters, userdata, outcomes, success. */
@@ -1112,11 +1708,34 @@ export interface SetTransition {
   readonly target: string
 }
 
+/** From the page: show the handle of this arm (empty: none); it moves the tool, or pushes an arm in hand guiding. */
+export interface ShowHandle {
+  readonly k: "take"
+  readonly arm?: string
+  readonly way?: "move" | "push"
+}
+
 /** From the client: the 3D view under `/cell/<page>/` shows exactly these groups. */
 export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
+}
+
+/** One numeric field of a topic: its path `position_rad.0`, its label `position_rad joint1`, its unit. */
+export interface SignalField {
+  readonly path: string
+  readonly label: string
+  readonly unit: string
+}
+
+/** A service or action: its address, request type, documentation and response type. */
+export interface SkillInfo {
+  readonly kind: string
+  readonly name: string
+  readonly type: string
+  readonly doc: string
+  readonly answer: string
 }
 
 /** A request to start a run; without a seed the server chooses one. */
@@ -1134,7 +1753,7 @@ export interface StartJog {
   readonly k: "jog"
   readonly arm: string
   readonly space: "joints" | "tool"
-  readonly frame: "base" | "tool" | "world"
+  readonly frame?: "base" | "tool" | "world"
 }
 
 /** The run that was started. */
@@ -1142,27 +1761,36 @@ export interface StartResultBody {
   readonly run: string
 }
 
-/** A state that a behavior can use. */
-export interface StateBody {
+/** A state; `group` is the part of its name before the last dot. */
+export interface StateView {
   readonly name: string
   readonly group: string
   readonly summary: string
   readonly doc: string
   readonly outcomes: readonly string[]
   readonly success: readonly string[]
-  readonly parameters: readonly KeyBody[]
-  readonly inputs: readonly KeyBody[]
-  readonly outputs: readonly KeyBody[]
+  readonly parameters: readonly KeyView[]
+  readonly inputs: readonly KeyView[]
+  readonly outputs: readonly KeyView[]
+}
+
+/** The status of a behavior tree node changed: success, failure, running, skipped or invalid. A leaf is invalid when it is halted or its result is discarded. It is running when it has ended but is not ticked because the condition of an enclosing `while_do_else` is running; its status is reported at its next tick. */
+export interface StatusChanged {
+  readonly event: "status"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly status: string
 }
 
 /** One step back of a paused run, in the branch of `path` if given. */
 export interface StepBackBody {
-  readonly path: string
+  readonly path?: string
 }
 
 /** One step of a paused run, in the branch of `path` if given. */
 export interface StepBody {
-  readonly mode?: "into" | "over" | "out"
+  readonly mode?: "into" | "out" | "over"
   readonly path?: string
 }
 
@@ -1171,8 +1799,8 @@ export interface StopBody {
   readonly reason?: string
 }
 
-/** The STOP endpoint, independent of this server: POST `{"token": …, "reason": …}` as plain text to `url`. */
-export interface StopEndpointBody {
+/** The address of STOP, independent of the engine: POST `{"token": …, "reason": …}` to `url`. */
+export interface StopEndpoint {
   readonly url: string
   readonly token: string
 }
@@ -1182,13 +1810,32 @@ export interface StopJog {
   readonly k: "rest"
 }
 
+/** A stop of the run was requested. */
+export interface StopRequested {
+  readonly event: "stop"
+  readonly seq: number
+  readonly time_s: number
+  readonly reason: string
+}
+
+/** The response to STOP: `acknowledged` once every connected device has it; `stop` is 0 before the first. `engine` is `informed` when its event loop has received the stop, `silent` while it is blocked or frozen, `ended` when its process has ended. `after_s` is the time from STOP to this response. */
+export interface StopStatus {
+  readonly stop: number
+  readonly reason: string
+  readonly acknowledged: boolean
+  readonly at_rest: boolean
+  readonly engine: "ended" | "informed" | "silent"
+  readonly after_s: number
+  readonly devices: readonly DeviceStop[]
+}
+
 /** Supervision options of a run; `flexcell run --help` explains the same options. */
 export interface SupervisionBody {
-  readonly autonomy?: "off" | "low" | "high" | "full"
+  readonly autonomy?: "full" | "high" | "low" | "off"
   readonly demand_operator?: boolean
   readonly breakpoints?: boolean
   readonly start_paused?: boolean
-  readonly loss_policy?: "hold" | "continue" | "stop"
+  readonly loss_policy?: "continue" | "hold" | "stop"
   readonly loss_timeout_s?: number
 }
 
@@ -1200,9 +1847,9 @@ export interface TagsBody {
   readonly revision: number
 }
 
-/** The targets that an arm of the document's cell cannot reach. `dropped` is true if the page has sent a newer text; `problem` tells why the targets could not be checked. */
+/** The targets that an arm of the document's cell cannot reach; `dropped` if the page has sent a newer text. */
 export interface TargetFindingsBody {
-  readonly findings: readonly FindingBody[]
+  readonly findings: readonly FindingView[]
   readonly problem: string
   readonly dropped: boolean
 }
@@ -1211,6 +1858,14 @@ export interface TargetFindingsBody {
 export interface TargetsBody {
   readonly text: string
   readonly page: string
+}
+
+/** An entry or an action of the tool; an omitted `role` is inferred. `part` is the part of a grasp. */
+export interface TaughtStep {
+  readonly kind: "action" | "cart_dmp" | "dmp" | "gripper" | "joints" | "pose" | "trajectory"
+  readonly name: string
+  readonly role?: "approach" | "close" | "depart" | "follow" | "grasp" | "open" | "release" | "via" | null
+  readonly part?: string | null
 }
 
 /** The status of the Helping Hand, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last message, such as why a capture was refused. */
@@ -1261,6 +1916,29 @@ export interface ToolLive {
   readonly held: boolean
 }
 
+/** The numeric fields of one topic. */
+export interface TopicFields {
+  readonly topic: string
+  readonly type: string
+  readonly fields: readonly SignalField[]
+}
+
+/** A topic: its message type with its documentation, and whether users may publish on it. */
+export interface TopicInfo {
+  readonly name: string
+  readonly type: string
+  readonly doc: string
+  readonly takes_commands: boolean
+}
+
+/** Traffic of one topic: rate over the last seconds, age of the latest message (null before the first). */
+export interface TopicMetrics {
+  readonly rate_hz: number
+  readonly age_s: number | null
+  readonly on_demand: boolean
+  readonly subscribers: number
+}
+
 /** The motion of an arm along an entry, one row per time. `joints` are radians in the order of `joint_names`, empty when the arm cannot follow; `poses` are x y z (m) and a unit quaternion x y z w of the tool centre point in the world. `times_s` is 0 for a single configuration. `remark` is the reason for missing joints. */
 export interface Trace {
   readonly times_s: readonly number[]
@@ -1270,17 +1948,32 @@ export interface Trace {
   readonly remark: string
 }
 
-/** A transition inside a machine. */
-export interface TransitionBody {
-  readonly source: string
-  readonly outcome: string
-  readonly target: string
+/** A motion recorded at strictly increasing `times_s`; each other list has one row per time, or is empty. `joints` are radians in the order of `names` or of the robot; `poses` are x y z (m) and a unit quaternion x y z w of the tool centre point in `frame`; `wrenches` are force (N) and torque (Nm) of the environment on the tool along the axes of `wrench_frame`. */
+export interface Trajectory {
+  readonly times_s: readonly number[]
+  readonly joints: readonly (readonly number[])[]
+  readonly names: readonly string[]
+  readonly poses: readonly (readonly number[])[]
+  readonly frame: string
+  readonly wrenches: readonly (readonly number[])[]
+  readonly wrench_frame: string
 }
 
 /** A transition of a machine: a child (its path), and one of its outcomes. */
 export interface TransitionRef {
   readonly from: string
   readonly outcome: string
+}
+
+/** State machine `path` takes the transition of `source` to `target`, a child or an outcome of its own. */
+export interface TransitionTaken {
+  readonly event: "transition"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly source: string
+  readonly outcome: string
+  readonly target: string
 }
 
 /** A trigger with its callback and robot; the fields of RCY figure 12. The topic's field `field` (when empty, the only boolean one, or `value` or `data`) is compared with `trig_value`: `rising_edge` fires when they become equal, `falling_edge` when they become unequal, `hold` is active while they are equal. `joint_dmp_N` is the number of kernels of the primitive, 0 selects it by the fit. `tf_save` captures the pose of `source_frame` in `target_frame`, `gripper_save` the opening of the gripper and whether it holds a part. */
@@ -1297,6 +1990,12 @@ export interface Trigger {
   readonly target_frame: string
 }
 
+/** The YAML text of the triggers and its file, empty when they are kept only while the server runs. */
+export interface TriggerDocument {
+  readonly file: string
+  readonly text: string
+}
+
 /** A trigger, the type of its topic's messages, and whether its button is pressed. `fault` is the reason why it cannot fire, such as a missing field of the messages; empty when it can. */
 export interface TriggerStatus {
   readonly trigger: Trigger
@@ -1311,10 +2010,72 @@ export interface TrimInterval {
   readonly end_s: number
 }
 
+/** The undo ended: done, failed with `cause`, or `preempted`. */
+export interface UndoEnded {
+  readonly event: "undo_ended"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly undoes: number
+  readonly preempted?: boolean
+  readonly cause?: Cause | null
+}
+
+/** A step back started to undo activation `undoes` of a state; `visit` numbers the undo. */
+export interface UndoStarted {
+  readonly event: "undo_began"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly visit: number
+  readonly undoes: number
+}
+
 /** Replace a container with its children. */
 export interface UngroupNode {
   readonly edit: "ungroup"
   readonly path: string
+}
+
+/** A node appended `value` to the list at `key` in the scope of the container `scope`. */
+export interface UserdataAppended {
+  readonly event: "userdata_appended"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly scope: string
+  readonly key: string
+  readonly value: unknown
+}
+
+/** The changed scopes, by the path of their container; null for a removed one. `first` means that the frame contains all scopes. */
+export interface UserdataFrame {
+  readonly k: "userdata"
+  readonly run: string
+  readonly first: boolean
+  readonly scopes: Dict<ScopeView | null>
+  readonly problem: string
+}
+
+/** One value: its last writer (a node path), the time on the clock of the run, and the number of writes. `by` is empty for an initial value of the scope. */
+export interface UserdataRecord {
+  readonly value: unknown
+  readonly by: string
+  readonly at_s: number
+  readonly writes: number
+}
+
+/** A node, or its post-condition named by `post`, wrote `key` into the scope of the container `scope`. */
+export interface UserdataWritten {
+  readonly event: "userdata"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly scope: string
+  readonly key: string
+  readonly value: unknown
+  readonly post?: string
 }
 
 /** One version of a document and when it was first seen; `by` is `editor`, or `file` for a change on disk. */
@@ -1334,31 +2095,20 @@ export interface VersionTextBody {
   readonly text: string
 }
 
-/** A node that waits at the gate, `before` its entry or `after` its outcome, with the reasons. */
-export interface WaitingNodeBody {
-  readonly path: string
-  readonly visit: number
-  readonly point: "before" | "after"
-  readonly outcome: string
-  readonly required: string
-  readonly reasons: readonly string[]
-}
-
-/** A node that waits `before` its entry or `after` its outcome; `reasons` are pause, lock, autonomy. */
-export interface WaitingNodeLive {
-  readonly path: string
-  readonly point: "after" | "before"
-  readonly outcome: string
-  readonly required: string
-  readonly reasons: readonly string[]
-}
-
 /** From the client: watch this run (empty: the list of runs only); the response is a snapshot. */
 export interface WatchRun {
   readonly k: "watch"
   readonly run?: string
 }
 
-export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping
+export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | IdleFrame
 
 export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
+
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping
+
+export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
+
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
+
+export type TeachingMessage = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught

@@ -7,7 +7,7 @@ import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
-import type { RunOverview } from '../api/types'
+import type { RunView } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
@@ -125,7 +125,7 @@ function sideItem(isCurrent: boolean): string {
 }
 
 /** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */
-function shownRun(route: Route, runs: readonly RunOverview[]): RunOverview | undefined {
+function shownRun(route: Route, runs: readonly RunView[]): RunView | undefined {
   if (route.page === 'run') return runs.find((run) => run.id === route.id)
   if (route.page !== 'behavior') return undefined
   const own = runs.filter((run) => run.behavior === route.id)

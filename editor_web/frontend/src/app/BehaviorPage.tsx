@@ -8,7 +8,7 @@ import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
 import { clearRefusal, showRefusal } from '../api/refusal'
 import { hasCellView } from '../api/session'
-import type { BehaviorBody, RunOverview, SessionBody } from '../api/types'
+import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
@@ -45,9 +45,9 @@ import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 export interface BehaviorPageProps {
   readonly id: string
   /** The run that is shown, if any. */
-  readonly run: RunOverview | undefined
+  readonly run: RunView | undefined
   /** All runs under way. */
-  readonly active: readonly RunOverview[]
+  readonly active: readonly RunView[]
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onStarted: () => void
@@ -70,10 +70,10 @@ export function BehaviorPage(props: BehaviorPageProps) {
   return <Loaded {...props} behavior={fetched.value} />
 }
 
-function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }: BehaviorPageProps & { behavior: BehaviorBody }) {
+function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }: BehaviorPageProps & { behavior: BehaviorView }) {
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
-  const [tab, setTab] = useState<Tab>(behavior.errors > 0 ? 'problems' : 'parameters')
+  const [tab, setTab] = useState<Tab>(hasErrors(behavior) ? 'problems' : 'parameters')
   const [isSheetOpen, setSheetOpen] = useState(false)
   const isConnected = useLive((s) => s.connection === 'live')
   const obstacle = isConnected ? obstacleOf(behavior, active, session) : 'The server does not answer'
@@ -106,7 +106,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     break: () => withNode('Breakpoint', 'breakpoint', (path) => void toggleBreakpoint(path)),
     lock: () =>
       withNode('Lock', 'lock', (path) => {
-        const isLocked = useLive.getState().control?.locks.some((each) => each.path === path)
+        const isLocked = useLive.getState().control?.locks.includes(path)
         void (isLocked ? commands.unlock(path) : commands.lock(path, ''))
       }),
     repeat: () => withNode('Run again', 'repeat', (path) => void commands.repeat(path)),
@@ -277,13 +277,17 @@ function focusFirst(id: string): boolean {
   return button !== null
 }
 
-function obstacleOf(behavior: BehaviorBody, active: readonly RunOverview[], session: SessionBody | undefined): string | undefined {
+function hasErrors(behavior: BehaviorView): boolean {
+  return behavior.findings.some((finding) => finding.severity === 'error')
+}
+
+function obstacleOf(behavior: BehaviorView, active: readonly RunView[], session: SessionBody | undefined): string | undefined {
   if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
-  if (behavior.errors > 0) return 'The document has errors; see its problems'
+  if (hasErrors(behavior)) return 'The document has errors; see its problems'
   return active.some((run) => run.behavior === behavior.id) ? 'This behavior is running' : undefined
 }
 
-function placeOf(session: SessionBody | undefined, active: readonly RunOverview[]): string {
+function placeOf(session: SessionBody | undefined, active: readonly RunView[]): string {
   const where = session?.cell_name ? `It runs in the cell ${session.cell_name}, in real time.` : 'It runs without a cell, in real time.'
   const others = active.length === 1 ? 'Another run is' : `${active.length} other runs are`
   return active.length > 0 ? `${where} ${others} under way: an arm that one of them holds is refused to this one.` : where

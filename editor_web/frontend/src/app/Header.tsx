@@ -4,7 +4,7 @@ import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler
 import { useState } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
-import type { RunOverview } from '../api/types'
+import type { RunView } from '../api/types'
 import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { nameOf, RunTime } from '../features/runs/RunList'
@@ -14,9 +14,9 @@ export interface HeaderProps {
   readonly cellName: string
   readonly mayOperate: boolean
   /** The run of the page. */
-  readonly shown: RunOverview | undefined
+  readonly shown: RunView | undefined
   /** The runs under way. */
-  readonly active: readonly RunOverview[]
+  readonly active: readonly RunView[]
   readonly onHome: () => void
   readonly isTeaching: boolean
   readonly onTeach: () => void
@@ -77,7 +77,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
   )
 }
 
-function StopButton({ run }: { run: RunOverview }) {
+function StopButton({ run }: { run: RunView }) {
   const [problem, setProblem] = useState<string>()
   const isStopping = run.status === 'stopping'
   const isConnected = useLive((s) => s.connection === 'live')

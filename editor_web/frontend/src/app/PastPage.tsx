@@ -2,7 +2,7 @@
 import { useEffect, useMemo, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
 import { hasCellView } from '../api/session'
-import type { OpenRunBody, RunOverview, SessionBody } from '../api/types'
+import type { OpenRunBody, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
@@ -115,7 +115,7 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
 }
 
 /** The run as a line of the list of runs; what has no end is not under way here. */
-function lineOf({ run, behavior }: OpenRunBody): RunOverview {
+function lineOf({ run, behavior }: OpenRunBody): RunView {
   const { id, status, outcome, success, cause, started_at_s, duration_s } = run
   return { id, behavior: behavior.id, status: status === 'running' ? 'interrupted' : status, outcome, success, cause, started_at_s, duration_s, waits: '' }
 }

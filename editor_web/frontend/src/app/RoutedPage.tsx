@@ -1,8 +1,8 @@
 /** The page that an address means; each but the first is loaded when it is first opened. */
 import { Suspense } from 'react'
 import { useLive } from '../api/live'
-import { hasCellView, type Session } from '../api/session'
-import type { RunOverview } from '../api/types'
+import { hasCellView } from '../api/session'
+import type { RunView, SessionBody } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/live'
@@ -23,8 +23,8 @@ const EditorPreview = lazyView(async () => (await import('./EditorPreview')).Edi
 export interface RoutedPageProps {
   readonly route: Route
   /** The run of the page, if any. */
-  readonly shown: RunOverview | undefined
-  readonly session: Session | undefined
+  readonly shown: RunView | undefined
+  readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onOpen: (href: string) => void
 }

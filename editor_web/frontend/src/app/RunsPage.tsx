@@ -1,10 +1,10 @@
 /** All runs under way at once, each with its commands; those that ended last; and two of them to be compared. */
 import { IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
-import { useData, type LeaseMetrics } from '../api/data'
+import { useData } from '../api/data'
 import { useLive } from '../api/live'
 import { clearRefusal, showRefusal } from '../api/refusal'
-import type { RunOverview } from '../api/types'
+import type { LeaseMetrics, RunView } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
@@ -96,7 +96,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
 }
 
 interface CardProps {
-  readonly run: RunOverview
+  readonly run: RunView
   readonly held: readonly string[]
   readonly isChosen: boolean
   readonly onChoose: (isChosen: boolean) => void
@@ -131,7 +131,7 @@ function useLeases(): readonly LeaseMetrics[] {
 }
 
 /** The two that were chosen; without a choice the only two that are under way. */
-function pairOf(chosen: readonly string[], active: readonly RunOverview[]): readonly [string, string] | undefined {
+function pairOf(chosen: readonly string[], active: readonly RunView[]): readonly [string, string] | undefined {
   const [left, right] = chosen.length > 0 ? chosen : active.length === 2 ? active.map((run) => run.id) : []
   return left !== undefined && right !== undefined ? [left, right] : undefined
 }

@@ -4,7 +4,7 @@ import { useEffect, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { useLive } from '../api/live'
 import { clearRefusal } from '../api/refusal'
-import type { RunOverview } from '../api/types'
+import type { RunView } from '../api/types'
 import { Elapsed } from '../components/Elapsed'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
@@ -107,7 +107,7 @@ function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
 }
 
 interface RunChoiceProps {
-  readonly runs: readonly RunOverview[]
+  readonly runs: readonly RunView[]
   readonly id: string
   readonly side: Side
   readonly onChange: (run: string) => void
@@ -129,7 +129,7 @@ function RunChoice({ runs, id, side, onChange }: RunChoiceProps) {
 }
 
 interface RunColumnProps {
-  readonly run: RunOverview
+  readonly run: RunView
   readonly side: Side
   readonly choice: ReactNode
   readonly onOpen: () => void

@@ -1,13 +1,13 @@
 /** What can be seen of a run below its graph, each in a tab; all but the log are loaded when they are first opened. */
 import { type ComponentType, type ReactNode } from 'react'
-import type { BehaviorBody, RunOverview, SessionBody } from '../api/types'
+import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { EventLog } from '../features/log/EventLog'
 
 export interface DockProps {
-  readonly behavior: BehaviorBody
+  readonly behavior: BehaviorView
   /** The run that is shown, if any. */
-  readonly run: RunOverview | undefined
+  readonly run: RunView | undefined
   /** Path of the chosen node, if any. */
   readonly node: string | undefined
   readonly session: SessionBody | undefined

@@ -17,7 +17,7 @@ it.each([
 it('is set, changed in place and taken away again', () => {
   const first = toggled([], { path: 'root/a', when: 'before' }, true)
   const both = toggled(first, { path: 'root/a', when: 'after' }, true)
-  const changed = replaced(both, { ...completed({ path: 'root/a' }), condition: 'tries > 1', hits: 3 })
+  const changed = replaced(both, { ...completed({ path: 'root/a' }), if: 'tries > 1', hits: 3 })
   expect(changed.map(breakpointWords)).toEqual(['before, if tries > 1, from time 3 on', 'after'])
   expect(toggled(changed, { path: 'root/a', when: 'before' }, false).map((each) => each.when)).toEqual(['after'])
 })

@@ -1,5 +1,8 @@
 /** Breakpoints: which nodes they are about, editing a list of them, saying them in words. Pure. */
-import type { BreakpointBody, BreakpointLive } from '../api/types'
+import type { Breakpoint } from '../api/types'
+
+/** A breakpoint with everything that the wire leaves out. */
+export type CompleteBreakpoint = Required<Breakpoint>
 
 /** Does a breakpoint's path, which may hold `*` and `?`, mean this node? */
 export function matches(pattern: string, path: string): boolean {
@@ -10,37 +13,37 @@ export function matches(pattern: string, path: string): boolean {
 }
 
 /** With everything that may be left out filled in. */
-export function completed(given: BreakpointBody): BreakpointLive {
+export function completed(given: Breakpoint): CompleteBreakpoint {
   return {
     path: given.path,
     when: given.when ?? 'before',
-    condition: given.condition ?? null,
+    if: given.if ?? null,
     hits: given.hits ?? 1,
     outcomes: given.outcomes ?? [],
     enabled: given.enabled ?? true,
   }
 }
 
-type Place = Pick<BreakpointLive, 'path' | 'when'>
+type Place = Pick<CompleteBreakpoint, 'path' | 'when'>
 
-function isAt(each: BreakpointLive, place: Place): boolean {
+function isAt(each: CompleteBreakpoint, place: Place): boolean {
   return each.path === place.path && each.when === place.when
 }
 
 /** The list with or without a breakpoint at this place. */
-export function toggled(list: readonly BreakpointLive[], place: Place, isSet: boolean): readonly BreakpointLive[] {
+export function toggled(list: readonly CompleteBreakpoint[], place: Place, isSet: boolean): readonly CompleteBreakpoint[] {
   const others = list.filter((each) => !isAt(each, place))
   return isSet ? [...others, completed(place)] : others
 }
 
 /** The list with this breakpoint in the place of the one that was there. */
-export function replaced(list: readonly BreakpointLive[], fresh: BreakpointLive): readonly BreakpointLive[] {
+export function replaced(list: readonly CompleteBreakpoint[], fresh: CompleteBreakpoint): readonly CompleteBreakpoint[] {
   const known = list.some((each) => isAt(each, fresh))
   return known ? list.map((each) => (isAt(each, fresh) ? fresh : each)) : [...list, fresh]
 }
 
 /** `before, if tries > 1, from the 3rd time on`. */
-export function breakpointWords({ when, condition, hits, outcomes, enabled }: BreakpointLive): string {
+export function breakpointWords({ when, if: condition, hits, outcomes, enabled }: CompleteBreakpoint): string {
   const parts: string[] = [when]
   if (outcomes.length > 0) parts.push(`with ${outcomes.join(' or ')}`)
   if (condition) parts.push(`if ${condition}`)

@@ -1,5 +1,5 @@
 /** Machines that run straight through are laid out by hand: a row, broken into several where it would be too long. */
-import type { GraphNodeBody, TransitionBody } from '../api/types'
+import type { GraphNode, GraphTransition } from '../api/types'
 import type { Box, Point } from './geometry'
 
 export interface ChainItem {
@@ -9,7 +9,7 @@ export interface ChainItem {
 }
 
 export interface ChainArrow {
-  readonly transition: TransitionBody
+  readonly transition: GraphTransition
   readonly points: readonly Point[]
   readonly label: Point
 }
@@ -31,17 +31,17 @@ const LABEL_OFFSET = 9
  * undefined when its drawn transitions are more than one line.
  */
 export function chainOf(
-  machine: GraphNodeBody,
-  drawn: readonly TransitionBody[],
+  machine: GraphNode,
+  drawn: readonly GraphTransition[],
   outcomes: readonly string[],
-): readonly TransitionBody[] | undefined {
-  const bySource = new Map<string, TransitionBody>()
+): readonly GraphTransition[] | undefined {
+  const bySource = new Map<string, GraphTransition>()
   for (const transition of drawn) {
     if (bySource.has(transition.source)) return undefined
     bySource.set(transition.source, transition)
   }
   const passed = new Set<string>()
-  const chain: TransitionBody[] = []
+  const chain: GraphTransition[] = []
   let name = machine.initial ?? machine.children[0]?.name
   while (name !== undefined && !outcomes.includes(name)) {
     if (passed.has(name)) return undefined
@@ -57,7 +57,7 @@ export function chainOf(
 /** Lay items out in rows no longer than `limit` where they can be broken, as few and as even as that allows. */
 export function layOutChain(
   items: readonly ChainItem[],
-  chain: readonly TransitionBody[],
+  chain: readonly GraphTransition[],
   labelWidth: (outcome: string) => number,
   limit: number,
 ): ChainLayout {
@@ -97,7 +97,7 @@ function drawRows(
   starts: readonly number[],
   items: readonly ChainItem[],
   gaps: readonly number[],
-  chain: readonly TransitionBody[],
+  chain: readonly GraphTransition[],
 ): ChainLayout {
   const boxes = new Map<string, Box>()
   const rowEnds: number[] = []

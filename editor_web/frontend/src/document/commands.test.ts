@@ -1,17 +1,17 @@
 /** Which commands are possible, and why not. */
 import { describe, expect, it } from 'vitest'
-import type { ControlLive, RunOverview, WaitingNodeLive } from '../api/types'
+import type { ControlView, RunView, GateWait } from '../api/types'
 import { disabledReason, operatorWords, requestsOf, runStatusText, waitingWords, type Command, type Situation } from './commands'
 
-const run: RunOverview = {
+const run: RunView = {
   id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '',
 }
-const control: ControlLive = {
-  paused: false, confirmed: false, stepping: false, cannot: [], waiting: [], locks: [], breakpoints: [], autonomy: 'full',
+const control: ControlView = {
+  paused: false, confirmed: false, stepping: false, cannot: [], active: [], waiting: [], locks: [], breakpoints: [], autonomy: 'full',
   operator: 'none', demanded: false, loss_policy: 'hold', loss_timeout_s: 5,
 }
 const now: Situation = { role: 'operator', isConnected: true, run, control, node: undefined, nodeStatus: 'idle' }
-const asks: WaitingNodeLive = { path: 'root/a', point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
+const asks: GateWait = { path: 'root/a', visit: 1, point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
 
 describe('a command', () => {
   it.each<[Command, Partial<Situation>, string | undefined]>([
@@ -28,7 +28,7 @@ describe('a command', () => {
     ['back', { control: { ...control, paused: true } }, undefined],
     ['back', { control: { ...control, paused: true, stepping: true } }, 'the run is stepping'],
     ['change', {}, 'pause the run first'],
-    ['change', { control: { ...control, locks: [{ path: 'root', reason: '' }] } }, undefined],
+    ['change', { control: { ...control, locks: ['root'] } }, undefined],
     ['lock', {}, 'choose a node in the graph first'],
     ['lock', { node: 'root/a' }, undefined],
     ['force', { node: 'root/a' }, 'this node is not active'],
@@ -41,7 +41,7 @@ describe('a command', () => {
 })
 
 describe('the words of a run', () => {
-  it.each<[Partial<ControlLive>, string]>([
+  it.each<[Partial<ControlView>, string]>([
     [{}, 'Running'],
     [{ paused: true }, 'Pausing: what moves comes to rest'],
     [{ paused: true, confirmed: true }, 'Paused, everything rests'],

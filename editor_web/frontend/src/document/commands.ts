@@ -1,5 +1,5 @@
 /** Which commands a run takes now, and in words why it does not take the others. Pure. */
-import type { ControlLive, RunOverview, WaitingNodeLive } from '../api/types'
+import type { ControlView, RunView, GateWait } from '../api/types'
 import { isActive } from './live'
 
 export const LEVELS = ['off', 'low', 'high', 'full'] as const
@@ -19,8 +19,8 @@ export type Command =
 export interface Situation {
   readonly role: string
   readonly isConnected: boolean
-  readonly run: RunOverview | undefined
-  readonly control: ControlLive | null
+  readonly run: RunView | undefined
+  readonly control: ControlView | null
   /** Path of the chosen node. */
   readonly node: string | undefined
   readonly nodeStatus: string
@@ -62,20 +62,20 @@ function obstacleToOrder({ control, node, nodeStatus }: Situation): string | und
 }
 
 /** The questions of a run to its operator. */
-export function requestsOf(control: ControlLive | null): readonly WaitingNodeLive[] {
+export function requestsOf(control: ControlView | null): readonly GateWait[] {
   return control?.waiting.filter((each) => each.reasons.includes('autonomy')) ?? []
 }
 
 const REASONS: Record<string, string> = { pause: 'paused', lock: 'locked', autonomy: 'asks for your agreement' }
 
 /** `before its entry: paused`, `with held: locked`. */
-export function waitingWords({ point, outcome, reasons }: WaitingNodeLive): string {
+export function waitingWords({ point, outcome, reasons }: GateWait): string {
   const place = point === 'before' ? 'before its entry' : outcome ? `with ${outcome}` : 'after its end'
   return `${place}: ${reasons.map((reason) => REASONS[reason] ?? `held by ${reason}`).join(', ')}`
 }
 
 /** How a run stands, in one line. */
-export function runStatusText(run: RunOverview | undefined, control: ControlLive | null): string {
+export function runStatusText(run: RunView | undefined, control: ControlView | null): string {
   if (!run || !isActive(run) || !control) return ''
   if (run.status === 'stopping') return 'Stopping: states clean up, robots come to rest'
   const asked = requestsOf(control).length
@@ -95,12 +95,12 @@ const LOSSES: Record<string, string> = {
 }
 
 /** What becomes of a run whose operator is lost. */
-export function lossWords({ loss_policy: policy, loss_timeout_s: after }: ControlLive): string {
+export function lossWords({ loss_policy: policy, loss_timeout_s: after }: ControlView): string {
   return `${after > 0 ? `${after} s later ` : ''}${LOSSES[policy] ?? policy}`
 }
 
 /** What is known of the operator, in words; `isMine` when this page is one. */
-export function operatorWords(control: ControlLive, isMine: boolean): string {
+export function operatorWords(control: ControlView, isMine: boolean): string {
   if (control.operator === 'lost') return `The operator was lost: ${lossWords(control)}`
   if (isMine) return `You operate this run. If this page is lost, ${lossWords(control)}.`
   if (control.operator === 'attached') return 'Another page or console operates this run.'

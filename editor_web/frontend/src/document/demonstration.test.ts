@@ -1,11 +1,11 @@
 import { describe, expect, it } from 'vitest'
-import type { ProposedStepBody } from '../api/types'
-import { added, bodyOf, moved, rolesOf, takes, teachable, type Step } from './demonstration'
+import type { TaughtStep } from '../api/types'
+import { added, bodyOf, moved, rolesOf, takes, teachable, type Role, type Step } from './demonstration'
 
 const home: Step = { key: 1, kind: 'joints', name: 'home' }
 const pick: Step = { key: 2, kind: 'pose', name: 'pick', role: 'grasp', part: '' }
 
-function decided(role: ProposedStepBody['role']): ProposedStepBody {
+function decided(role: Role): TaughtStep {
   return { kind: 'action', name: 'close', role, part: null }
 }
 

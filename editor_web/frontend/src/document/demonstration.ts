@@ -1,8 +1,8 @@
 /** The steps that a behavior is proposed from: taught entries in their order, and actions of the tool. Pure. */
-import type { ProposedStepBody, EntryBody, DemonstrationStepBody } from '../api/types'
+import type { EntryName, TaughtStep } from '../api/types'
 
-export type Role = ProposedStepBody['role']
-export type Kind = DemonstrationStepBody['kind']
+export type Role = NonNullable<TaughtStep['role']>
+export type Kind = TaughtStep['kind']
 
 export interface Step {
   /** Tells two steps of the same entry apart. */
@@ -45,8 +45,8 @@ export function rolesOf(kind: Kind): readonly Role[] {
 }
 
 /** The entries that a motion can be made of. */
-export function teachable(entries: readonly EntryBody[]): readonly (EntryBody & { kind: Kind })[] {
-  return entries.filter((entry): entry is EntryBody & { kind: Kind } => entry.kind in KIND_WORDS)
+export function teachable(entries: readonly EntryName[]): readonly (EntryName & { kind: Kind })[] {
+  return entries.filter((entry): entry is EntryName & { kind: Kind } => entry.kind in KIND_WORDS)
 }
 
 export function added(steps: readonly Step[], kind: Kind, name: string): readonly Step[] {
@@ -62,11 +62,11 @@ export function moved(steps: readonly Step[], index: number, by: number): readon
   return [...rest.slice(0, target), step, ...rest.slice(target)]
 }
 
-export function bodyOf({ kind, name, role, part }: Step): DemonstrationStepBody {
+export function bodyOf({ kind, name, role, part }: Step): TaughtStep {
   return { kind, name, ...(role ? { role } : {}), ...(part === undefined ? {} : { part }) }
 }
 
 /** Whether a step takes something: a grasp, or the tool that closes with no grasp before it. */
-export function takes(step: ProposedStepBody, before: ProposedStepBody | undefined): boolean {
+export function takes(step: TaughtStep, before: TaughtStep | undefined): boolean {
   return step.role === 'grasp' || (step.role === 'close' && before?.role !== 'grasp')
 }

@@ -1,18 +1,18 @@
 /** Layout: nothing overlaps, nothing leaves its container, every arrow is drawn or written on its state. */
 import { describe, expect, it } from 'vitest'
-import type { GraphNodeBody } from '../api/types'
+import type { GraphNode } from '../api/types'
 import { chainOf } from './chain'
 import { roundedPath } from './geometry'
 import { drawnOutcomes, exitsOf, layOut, type LayoutCall } from './layout'
 
 const noCall: LayoutCall = () => Promise.reject(new Error('a straight machine needs no layout engine'))
 
-function leaf(path: string): GraphNodeBody {
+function leaf(path: string): GraphNode {
   const name = path.split('/').pop() ?? ''
-  return { path, name, kind: 'state', title: 'motion.MoveJoints', outcomes: ['done', 'failed'], children: [], transitions: [], initial: null, conditions: [] }
+  return { path, name, kind: 'state', title: 'motion.MoveJoints', description: '', outcomes: ['done', 'failed'], children: [], transitions: [], initial: null, conditions: [] }
 }
 
-function straight(path: string, names: readonly string[]): GraphNodeBody {
+function straight(path: string, names: readonly string[]): GraphNode {
   const children = names.map((name) => leaf(`${path}/${name}`))
   const transitions = names.flatMap((name, index) => [
     { source: name, outcome: 'done', target: names[index + 1] ?? 'finished' },
@@ -72,7 +72,7 @@ describe('layOut', () => {
   it('draws the regions of a concurrency container without arrows, arrows inside them shifted with them', async () => {
     const left = straight('root/left', ['x', 'y'])
     const right = straight('root/right', ['x', 'y'])
-    const both: GraphNodeBody = { ...leaf('root'), kind: 'concurrency', children: [left, right] }
+    const both: GraphNode = { ...leaf('root'), kind: 'concurrency', children: [left, right] }
     const { boxes, courses } = await layOut(both, { direction: 'RIGHT', rowLimit: Infinity }, noCall)
     expect(courses.map((course) => course.machine)).toEqual(['root/left', 'root/left', 'root/right', 'root/right'])
     const box = boxes.get('root/right')
@@ -85,7 +85,7 @@ describe('layOut', () => {
 
   it('breaks the chains inside of containers too', async () => {
     const long = straight('root/left', ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'])
-    const both: GraphNodeBody = { ...leaf('root'), kind: 'concurrency', children: [long] }
+    const both: GraphNode = { ...leaf('root'), kind: 'concurrency', children: [long] }
     const { size } = await layOut(both, { direction: 'RIGHT', rowLimit: 800 }, noCall)
     expect(size.width).toBeLessThanOrEqual(860)
   })

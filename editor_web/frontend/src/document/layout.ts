@@ -4,7 +4,7 @@
  * One layout call per container, from the inside out: transitions never cross a container's border,
  * they end at its outcomes. Positions are relative to the parent; courses are absolute.
  */
-import type { GraphNodeBody, TransitionBody } from '../api/types'
+import type { GraphNode, GraphTransition } from '../api/types'
 import { chainOf, layOutChain } from './chain'
 import { moved, type Box, type Point, type Size } from './geometry'
 import { kindLabel } from './tree'
@@ -95,20 +95,20 @@ export function arrowId(machine: string, source: string, outcome: string): strin
  * The outcomes of a machine that get a place of their own on the canvas: those that one arrow leads to.
  * Arrows to the others, typically one from every state to `failed`, are written on the states.
  */
-export function drawnOutcomes(machine: GraphNodeBody): readonly string[] {
+export function drawnOutcomes(machine: GraphNode): readonly string[] {
   const inside = new Set(machine.children.map((child) => child.name))
   return machine.outcomes.filter(
     (outcome) => !inside.has(outcome) && machine.transitions.filter((t) => t.target === outcome).length === 1,
   )
 }
 
-function drawnTransitions(machine: GraphNodeBody): readonly TransitionBody[] {
+function drawnTransitions(machine: GraphNode): readonly GraphTransition[] {
   const drawn = new Set([...drawnOutcomes(machine), ...machine.children.map((child) => child.name)])
   return machine.transitions.filter((t) => drawn.has(t.target))
 }
 
 /** The ways out of `parent` that are written on its child `name`. */
-export function exitsOf(parent: GraphNodeBody | undefined, name: string): readonly Exit[] {
+export function exitsOf(parent: GraphNode | undefined, name: string): readonly Exit[] {
   if (!parent || parent.kind !== 'machine') return []
   const drawn = new Set([...drawnOutcomes(parent), ...parent.children.map((child) => child.name)])
   return parent.transitions.filter((t) => t.source === name && !drawn.has(t.target))
@@ -121,7 +121,7 @@ export interface Style {
 }
 
 /** Lay out a whole behavior. */
-export async function layOut(root: GraphNodeBody, style: Style, call: LayoutCall): Promise<Layout> {
+export async function layOut(root: GraphNode, style: Style, call: LayoutCall): Promise<Layout> {
   const inner = await layOutNode(root, undefined, style, call)
   return { size: { width: inner.width, height: inner.height }, boxes: inner.boxes, courses: inner.courses }
 }
@@ -134,8 +134,8 @@ interface Inner {
 }
 
 async function layOutNode(
-  node: GraphNodeBody,
-  parent: GraphNodeBody | undefined,
+  node: GraphNode,
+  parent: GraphNode | undefined,
   style: Style,
   call: LayoutCall,
 ): Promise<Inner> {
@@ -150,24 +150,24 @@ function exitsWidth(exits: readonly Exit[]): number {
   return texts.reduce((sum, text) => sum + textWidth(text.length, 6.2) + 26, 16)
 }
 
-async function layOutInside(node: GraphNodeBody, style: Style, call: LayoutCall): Promise<Inner> {
+async function layOutInside(node: GraphNode, style: Style, call: LayoutCall): Promise<Inner> {
   if (node.children.length === 0) return leaf(node)
   const inside = await Promise.all(node.children.map((child) => layOutNode(child, node, style, call)))
   return node.kind === 'machine' ? machine(node, inside, style, call) : regions(node, inside, style.direction)
 }
 
-function leaf(node: GraphNodeBody): Inner {
+function leaf(node: GraphNode): Inner {
   const wanted = Math.max(textWidth(node.name.length, 8), textWidth(node.title.length, 6.6)) + 64
   const width = Math.min(LEAF_MAX, Math.max(LEAF_MIN, wanted))
   return { width, height: LEAF_HEIGHT, boxes: new Map(), courses: [] }
 }
 
-function headerWidth(node: GraphNodeBody): number {
+function headerWidth(node: GraphNode): number {
   return textWidth(node.name.length, 8.8) + textWidth(kindLabel(node.kind).length, 6.4) + 150
 }
 
 /** Children of anything but a machine stand side by side, across the flow. */
-function regions(node: GraphNodeBody, inside: readonly Inner[], direction: Direction): Inner {
+function regions(node: GraphNode, inside: readonly Inner[], direction: Direction): Inner {
   const footer = node.conditions.length > 0 ? CONDITION_LINE : 0
   const boxes = new Map<string, Box>()
   const courses: Course[] = []
@@ -195,7 +195,7 @@ function regions(node: GraphNodeBody, inside: readonly Inner[], direction: Direc
 }
 
 async function machine(
-  node: GraphNodeBody,
+  node: GraphNode,
   inside: readonly Inner[],
   style: Style,
   call: LayoutCall,
@@ -224,9 +224,9 @@ async function machine(
 }
 
 function straightMachine(
-  node: GraphNodeBody,
+  node: GraphNode,
   inside: readonly Inner[],
-  chain: readonly TransitionBody[],
+  chain: readonly GraphTransition[],
   rowLimit: number,
 ): Inner {
   const sizes = new Map(node.children.map((child, index) => [child.name, { id: child.path, inner: inside[index] }]))
@@ -262,7 +262,7 @@ function straightMachine(
   }
 }
 
-function machineGraph(node: GraphNodeBody, inside: readonly Inner[], style: Style): ElkShape {
+function machineGraph(node: GraphNode, inside: readonly Inner[], style: Style): ElkShape {
   const paths = new Map(node.children.map((child) => [child.name, child.path]))
   const children: ElkShape[] = node.children.map((child, index) => ({
     id: child.path,
@@ -310,7 +310,7 @@ function options({ direction }: Style): Record<string, string> {
   }
 }
 
-function courseOf(node: GraphNodeBody, arrow: ElkArrow, shift: Point): Course | undefined {
+function courseOf(node: GraphNode, arrow: ElkArrow, shift: Point): Course | undefined {
   const section = arrow.sections?.[0]
   const [, source = '', outcome = ''] = arrow.id.split('|')
   if (!section) return undefined

@@ -1,6 +1,6 @@
 /** The live picture: snapshots replace, deltas add, gaps ask anew. */
 import { describe, expect, it } from 'vitest'
-import type { LiveDelta, LogLine, NodeLive, RunOverview, LiveSnapshot } from '../api/types'
+import type { LiveDelta, LogLine, NodeLive, RunView, LiveSnapshot } from '../api/types'
 import { EMPTY, fold, LOG_LINES, type LiveState } from './live'
 
 const node = (status: string, visits = 1): NodeLive => ({
@@ -14,7 +14,7 @@ const node = (status: string, visits = 1): NodeLive => ({
   plan: null,
 })
 const line = (seq: number): LogLine => ({ seq, time_s: 0, kind: 'log', level: 'info', path: '', text: '', causes: [] })
-const run = (id: string, started_at_s: number, status = 'running'): RunOverview => ({
+const run = (id: string, started_at_s: number, status = 'running'): RunView => ({
   id,
   behavior: 'b',
   status,
@@ -35,6 +35,7 @@ const snapshot = (change: Partial<LiveSnapshot> = {}): LiveSnapshot => ({
   nodes: { root: node('active') },
   log: [line(1), line(2), line(3)],
   control: null,
+  lock_reasons: {},
   robots: {},
   ...change,
 })
@@ -50,6 +51,7 @@ const delta = (change: Partial<LiveDelta> = {}): LiveDelta => ({
   log: [],
   dropped: 0,
   control: null,
+  lock_reasons: {},
   robots: {},
   ...change,
 })

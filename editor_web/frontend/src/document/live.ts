@@ -1,6 +1,6 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
 import type { Dict } from './dict'
-import type { ControlLive, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunOverview, LiveSnapshot } from '../api/types'
+import type { ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -16,12 +16,14 @@ export interface LiveState {
   readonly nowS: number
   readonly atMs: number
   readonly ticking: boolean
-  readonly runs: readonly RunOverview[]
+  readonly runs: readonly RunView[]
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
   /** What can be done with the watched run; null when it is over. */
-  readonly control: ControlLive | null
+  readonly control: ControlView | null
+  /** What the operator gave as the reason of a lock, by the path of the locked node. */
+  readonly lockReasons: Dict<string>
   readonly robots: Dict<RobotLive>
   /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
   readonly documents: Dict<string | null>
@@ -41,6 +43,7 @@ export const EMPTY: LiveState = {
   log: [],
   dropped: 0,
   control: null,
+  lockReasons: {},
   robots: {},
   documents: {},
 }
@@ -66,7 +69,7 @@ function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): Live
   const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
   const { robots } = frame
   const control = unchanged(state.control, frame.control)
-  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, robots }
+  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, lockReasons: frame.lock_reasons, robots }
 }
 
 function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState {
@@ -83,16 +86,17 @@ function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState 
     log: over > 0 ? log.slice(over) : log,
     dropped: state.dropped + frame.dropped + over,
     control: unchanged(state.control, frame.control),
+    lockReasons: unchanged(state.lockReasons, frame.lock_reasons),
     robots: Object.keys(frame.robots).length > 0 ? { ...state.robots, ...frame.robots } : state.robots,
   }
 }
 
 /** The old object where the new one says the same, so that nothing is drawn again. */
-function unchanged(old: ControlLive | null, fresh: ControlLive | null): ControlLive | null {
+function unchanged<T>(old: T, fresh: T): T {
   return JSON.stringify(old) === JSON.stringify(fresh) ? old : fresh
 }
 
-function mergeRuns(runs: readonly RunOverview[], changed: readonly RunOverview[]): readonly RunOverview[] {
+function mergeRuns(runs: readonly RunView[], changed: readonly RunView[]): readonly RunView[] {
   if (changed.length === 0) return runs
   const byId = new Map(changed.map((run) => [run.id, run]))
   const kept = runs.map((run) => byId.get(run.id) ?? run)
@@ -102,6 +106,6 @@ function mergeRuns(runs: readonly RunOverview[], changed: readonly RunOverview[]
 }
 
 /** Is this run still going? */
-export function isActive(run: RunOverview | undefined): boolean {
+export function isActive(run: RunView | undefined): boolean {
   return run?.status === 'running' || run?.status === 'stopping'
 }

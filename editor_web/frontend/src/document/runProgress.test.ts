@@ -1,13 +1,14 @@
 /** How far a run is. */
 import { expect, it } from 'vitest'
-import type { GraphNodeBody, NodeLive } from '../api/types'
+import type { GraphNode, NodeLive } from '../api/types'
 import { activeLeaves, stripCells, pathWords, progressText } from './runProgress'
 
-const graph = (path: string, children: readonly GraphNodeBody[] = []): GraphNodeBody => ({
+const graph = (path: string, children: readonly GraphNode[] = []): GraphNode => ({
   path,
   name: path.split('/').pop() ?? '',
   kind: children.length > 0 ? 'machine' : 'state',
   title: '',
+  description: '',
   outcomes: [],
   children,
   transitions: [],

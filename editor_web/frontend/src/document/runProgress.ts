@@ -1,6 +1,6 @@
 /** How far a run is, told from the state of its nodes: its steps, those under way, and a count. Pure. */
 import { lookup, type Dict } from './dict'
-import type { GraphNodeBody, NodeLive } from '../api/types'
+import type { GraphNode, NodeLive } from '../api/types'
 
 type Nodes = Dict<NodeLive>
 
@@ -8,8 +8,8 @@ type Nodes = Dict<NodeLive>
 export const MAX_STRIP_CELLS = 80
 
 /** What the strip of a behavior is made of: its states in the order of the document; only the outer ones where there are too many. */
-export function stripCells(root: GraphNodeBody, limit = MAX_STRIP_CELLS): readonly GraphNodeBody[] {
-  let cells: readonly GraphNodeBody[] = [root]
+export function stripCells(root: GraphNode, limit = MAX_STRIP_CELLS): readonly GraphNode[] {
+  let cells: readonly GraphNode[] = [root]
   for (;;) {
     const inner = cells.flatMap((node) => (node.children.length > 0 ? node.children : [node]))
     if (inner.length === cells.length && inner.every((node, index) => node === cells[index])) return cells
@@ -33,7 +33,7 @@ export function pathWords(path: string): string {
 }
 
 /** `2 of 5 steps done, 1 active, 1 failed`. A node that waits with its outcome is not done yet. */
-export function progressText(cells: readonly GraphNodeBody[], nodes: Nodes, waiting: readonly string[] = []): string {
+export function progressText(cells: readonly GraphNode[], nodes: Nodes, waiting: readonly string[] = []): string {
   const count = (status: string) => cells.filter((cell) => lookup(nodes, cell.path)?.status === status && !waiting.includes(cell.path)).length
   const waits = cells.filter((cell) => waiting.includes(cell.path)).length
   const more = [

@@ -1,6 +1,6 @@
 /** From a parameter's JSON Schema to a field of the form: kind, label, range, checks. Pure. */
 import { lookup, type Dict } from './dict'
-import type { ParameterBody } from '../api/types'
+import type { ParameterView } from '../api/types'
 
 export type FieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'json'
 
@@ -18,7 +18,7 @@ export interface Field {
 }
 
 /** Describe one parameter as a form field. */
-export function fieldOf(parameter: ParameterBody): Field {
+export function fieldOf(parameter: ParameterView): Field {
   const { schema } = parameter
   const choices = Array.isArray(schema['enum']) ? schema['enum'].map(String) : []
   const kind = choices.length > 0 ? 'choice' : kindOf(schema['type'])

@@ -1,14 +1,15 @@
 /** What is said of a STOP, for each way it can go. */
 import { describe, expect, it } from 'vitest'
-import { EMERGENCY, newStop, reportOf, type StopAnswer, type StopPath } from './stopReport'
+import { EMERGENCY, newStop, reportOf, type StopPath } from './stopReport'
+import type { StopStatus } from '../api/types'
 
 const SENT = newStop(1, true, '12:03:05')
 const FAILED: StopPath = { status: 'failed', problem: 'refused' }
 const ANSWERED: StopPath = { status: 'answered', problem: '' }
 
-function answer(changes: Partial<StopAnswer> = {}, atRest = true): StopAnswer {
-  const devices = [{ name: 'world', acknowledged: true, at_rest: atRest }]
-  return { stop: 3, acknowledged: true, devices, engine: 'informed', ...changes }
+function answer(changes: Partial<StopStatus> = {}, atRest = true): StopStatus {
+  const devices = [{ name: 'world', connected: true, acknowledged: true, at_rest: atRest }]
+  return { stop: 3, reason: '', acknowledged: true, at_rest: atRest, devices, engine: 'informed', after_s: 0.1, ...changes }
 }
 
 describe('a STOP of the cell', () => {
@@ -46,7 +47,7 @@ describe('a STOP of the cell', () => {
       { ...newStop(1, false, ''), engine: FAILED },
       { ...SENT, isUnanswered: true },
       { ...SENT, process: ANSWERED, answer: answer({}, false), isSlow: true },
-      { ...SENT, process: ANSWERED, answer: answer({ devices: [{ name: 'left', acknowledged: false, at_rest: true }] }) },
+      { ...SENT, process: ANSWERED, answer: answer({ devices: [{ name: 'left', connected: true, acknowledged: false, at_rest: true }] }) },
       { ...SENT, process: ANSWERED, answer: answer({ acknowledged: false }), engine: FAILED },
     ]
     for (const stop of cases) {

@@ -1,18 +1,6 @@
 /** What became of a STOP of the cell, in words: from the stop process, from the engine, and from the time that passed. Pure. */
 
-/** What the stop process answers. */
-export interface StopAnswer {
-  readonly stop: number
-  readonly acknowledged: boolean
-  readonly devices: readonly StopDevice[]
-  readonly engine: 'informed' | 'silent'
-}
-
-export interface StopDevice {
-  readonly name: string
-  readonly acknowledged: boolean
-  readonly at_rest: boolean
-}
+import type { DeviceStop, StopStatus } from '../api/types'
 
 /** One of the two ways that a STOP takes at the same time. */
 export interface StopPath {
@@ -26,7 +14,7 @@ export interface StopProgress {
   readonly number: number
   readonly process: StopPath
   /** The newest answer of the stop process. */
-  readonly answer: StopAnswer | undefined
+  readonly answer: StopStatus | undefined
   /** The engine's own stop, which answers once every robot is measured at rest. */
   readonly engine: StopPath
   /** No path has answered within its time. */
@@ -94,6 +82,6 @@ function notes({ answer, engine, process, heard }: StopProgress): readonly strin
   ].filter((line) => line !== false)
 }
 
-function namesOf({ answer }: StopProgress, is: (device: StopDevice) => boolean): string {
+function namesOf({ answer }: StopProgress, is: (device: DeviceStop) => boolean): string {
   return (answer?.devices ?? []).filter(is).map((device) => device.name).join(', ')
 }

@@ -1,13 +1,13 @@
 /** Looking things up in a behavior's tree of nodes. Pure. */
-import type { GraphNodeBody } from '../api/types'
+import type { GraphNode } from '../api/types'
 
 /** All nodes, parents before children. */
-export function flatten(root: GraphNodeBody): readonly GraphNodeBody[] {
+export function flatten(root: GraphNode): readonly GraphNode[] {
   return [root, ...root.children.flatMap(flatten)]
 }
 
 /** The node at a path. */
-export function nodeAt(root: GraphNodeBody, path: string): GraphNodeBody | undefined {
+export function nodeAt(root: GraphNode, path: string): GraphNode | undefined {
   return flatten(root).find((node) => node.path === path)
 }
 
@@ -18,7 +18,7 @@ export function pathsTo(path: string): readonly string[] {
 }
 
 /** Is it drawn with its children inside? */
-export function isContainer(node: GraphNodeBody): boolean {
+export function isContainer(node: GraphNode): boolean {
   return node.children.length > 0
 }
 

@@ -1,8 +1,9 @@
 import { expect, test } from 'vitest'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange } from './changes'
+import type { NodeChange } from '../../api/types'
 import { machineNode, node } from './testNodes'
 
-const changed = (path: string, change: string, more = {}) => ({ path, change, before_path: null, fields: [], ...more })
+const changed = (path: string, change: NodeChange['change'], more = {}): NodeChange => ({ path, change, before_path: null, fields: [], ...more })
 
 test('a change is said in words', () => {
   expect(wordsOfChange(changed('root/box/grasp', 'added')).title).toBe('grasp added in box')

@@ -1,5 +1,5 @@
 /** What differs between two versions, in words and as marks on both drawings. Pure. */
-import type { NodeChangeBody } from '../../api/types'
+import type { NodeChange } from '../../api/types'
 import { arrowId } from '../layout'
 import { allNodes, isMachine, nameOfPath, parentPath, pathsTo, type EditNode } from './model'
 
@@ -14,7 +14,7 @@ export interface ChangeWords {
 }
 
 /** Without what follows from other changes: a container's order counts only where what stays changed places. */
-export function meaningful(changes: readonly NodeChangeBody[]): readonly NodeChangeBody[] {
+export function meaningful(changes: readonly NodeChange[]): readonly NodeChange[] {
   return changes.flatMap((change) => {
     const fields = change.fields.filter(
       ({ field, before, after }) => !field.endsWith('.order') || isReordered(before, after),
@@ -30,7 +30,7 @@ function isReordered(before: unknown, after: unknown): boolean {
   return stayed.some((name, index) => name !== after.filter((each) => before.includes(each))[index])
 }
 
-export function wordsOfChange(change: NodeChangeBody): ChangeWords {
+export function wordsOfChange(change: NodeChange): ChangeWords {
   const isDocument = change.path === 'document'
   const name = isDocument
     ? 'The behavior'
@@ -90,7 +90,7 @@ export interface Markings {
 
 /** The marks of nodes and arrows in the older and in the newer drawing. */
 export function markingsOf(
-  changes: readonly NodeChangeBody[],
+  changes: readonly NodeChange[],
   before: EditNode | undefined,
   after: EditNode | undefined,
 ): Markings {

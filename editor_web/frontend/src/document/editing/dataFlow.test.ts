@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest'
-import type { KeyFlowBody } from '../../api/types'
+import type { KeyFlow, KeyReader } from '../../api/types'
 import { drawnLinks, flowCurve, flowOfNode, linksOf, soundnessOf } from './dataFlow'
 
-const reader = (path: string, sources: readonly string[], defined = 'always') => ({
+const reader = (path: string, sources: readonly string[], defined: KeyReader['defined'] = 'always'): KeyReader => ({
   path,
   by: 'mapped',
   name: 'value',
@@ -11,7 +11,7 @@ const reader = (path: string, sources: readonly string[], defined = 'always') =>
   sources,
   way: '',
 })
-const COUNT: KeyFlowBody = {
+const COUNT: KeyFlow = {
   key: 'count',
   writers: [
     { path: '', origin: 'userdata', name: 'count' },
@@ -19,7 +19,7 @@ const COUNT: KeyFlowBody = {
   ],
   readers: [reader('root/show', ['', 'root/box/set']), reader('root/box/add', ['root/box/set'], 'maybe')],
 }
-const OTHER: KeyFlowBody = { key: 'other', writers: [], readers: [reader('root/show', ['root/box/set'])] }
+const OTHER: KeyFlow = { key: 'other', writers: [], readers: [reader('root/show', ['root/box/set'])] }
 
 test('each reader has an arrow from each that its value may come from', () => {
   expect(linksOf([COUNT, OTHER], 'count').map((link) => `${link.from}>${link.to}`)).toEqual([

@@ -1,6 +1,6 @@
 /** Who writes and who reads the userdata keys of a behavior, as lists and arrows show it. Pure. */
 import { lookup } from '../dict'
-import type { CatalogueBody, DocumentInfoBody, KeyFlowBody, KeyReaderBody, KeyWriterBody } from '../../api/types'
+import type { CatalogueBody, DocumentInfo, KeyFlow, KeyReader, KeyWriter } from '../../api/types'
 import type { Box, Point } from '../geometry'
 import { nodeOf, pathsTo, type EditNode } from './model'
 
@@ -16,14 +16,14 @@ export interface FlowLink {
 /** How well a key is defined where it is read, the worst of its readers. */
 export type Soundness = 'sound' | 'maybe' | 'never'
 
-export function soundnessOf(flow: KeyFlowBody): Soundness {
+export function soundnessOf(flow: KeyFlow): Soundness {
   const due = flow.readers.filter((reader) => reader.required || reader.by !== 'input')
   if (due.some((reader) => reader.defined === 'never')) return 'never'
   return due.some((reader) => reader.defined === 'maybe') ? 'maybe' : 'sound'
 }
 
 /** The arrows of one key, or of all. */
-export function linksOf(flows: readonly KeyFlowBody[], key: string | undefined): readonly FlowLink[] {
+export function linksOf(flows: readonly KeyFlow[], key: string | undefined): readonly FlowLink[] {
   return flows
     .filter((flow) => key === undefined || flow.key === key)
     .flatMap((flow) =>
@@ -65,15 +65,15 @@ function nearestDrawn(drawn: ReadonlySet<string>, path: string): string | undefi
 
 /** What a node reads and writes. */
 export interface NodeFlow {
-  readonly reads: readonly { readonly key: string; readonly reader: KeyReaderBody }[]
+  readonly reads: readonly { readonly key: string; readonly reader: KeyReader }[]
   readonly writes: readonly {
     readonly key: string
-    readonly writer: KeyWriterBody
+    readonly writer: KeyWriter
     readonly readers: readonly string[]
   }[]
 }
 
-export function flowOfNode(flows: readonly KeyFlowBody[], path: string): NodeFlow {
+export function flowOfNode(flows: readonly KeyFlow[], path: string): NodeFlow {
   return {
     reads: flows.flatMap((flow) =>
       flow.readers.filter((reader) => reader.path === path).map((reader) => ({ key: flow.key, reader })),
@@ -92,9 +92,9 @@ export function flowOfNode(flows: readonly KeyFlowBody[], path: string): NodeFlo
 
 /** Of what kind the values of a key are, as far as somebody says so: `number, m`. */
 export function kindOfKey(
-  flow: KeyFlowBody,
+  flow: KeyFlow,
   root: EditNode | undefined,
-  info: DocumentInfoBody | undefined,
+  info: DocumentInfo | undefined,
   catalogue: CatalogueBody | undefined,
 ): string {
   const parameter = lookup(info?.parameters, flow.key)

@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest'
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { problemsOf, sameFindings } from './findings'
 
-const at = (line: number, code: string): FindingBody => ({
+const at = (line: number, code: string): FindingView => ({
   severity: 'warning',
   code,
   message: '',

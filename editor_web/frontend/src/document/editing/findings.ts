@@ -1,8 +1,8 @@
 /** The problems of a text: what the check finds, and the targets that an arm cannot be at, in the order of the text. Pure. */
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import type { Draft } from './model'
 
-type Findings = readonly FindingBody[]
+type Findings = readonly FindingView[]
 
 const together = new WeakMap<Findings, { readonly targets: Findings; readonly all: Findings }>()
 

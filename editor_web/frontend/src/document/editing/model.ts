@@ -1,8 +1,8 @@
 /** The document as the editor sees it: nodes with everything that can be edited, and where each stands in the text. Pure. */
-import type { DocumentInfoBody, DocumentNodeBody, FindingBody } from '../../api/types'
+import type { DocumentInfo, DocumentNode, FindingView } from '../../api/types'
 
 /** One node; what is inside a referenced behavior is drawn, not edited here. */
-export type EditNode = DocumentNodeBody
+export type EditNode = DocumentNode
 
 /** What is known of one text of the document. */
 export interface Draft {
@@ -10,15 +10,15 @@ export interface Draft {
   /** The last graph that could be read; of an earlier text while `isStale`. */
   readonly root: EditNode | undefined
   /** Of an earlier text until `isChecked`. */
-  readonly findings: readonly FindingBody[]
+  readonly findings: readonly FindingView[]
   readonly isChecked: boolean
   /** Targets that an arm cannot be at; of an earlier text until `areTargetsKnown`. */
-  readonly targets: readonly FindingBody[]
+  readonly targets: readonly FindingView[]
   readonly areTargetsKnown: boolean
   /** True while the text cannot be read, so that `root` belongs to an earlier one. */
   readonly isStale: boolean
   /** What stands beside the nodes: name, parameters, outcomes; undefined until the text could be read once. */
-  readonly document: DocumentInfoBody | undefined
+  readonly document: DocumentInfo | undefined
 }
 
 export const ROOT = 'root'

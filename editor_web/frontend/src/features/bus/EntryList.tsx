@@ -1,9 +1,9 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
-import type { TopicMetrics } from '../../api/data'
 import { byNamespace, shortName, type Named } from '../../document/busTree'
 import { ageText, rateText } from './words'
+import type { TopicMetrics } from '../../api/types'
 
 interface EntryListProps {
   readonly entries: readonly Named[]

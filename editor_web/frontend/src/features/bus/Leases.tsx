@@ -1,13 +1,13 @@
 /** Who commands which resource, from which node and with which goal, and since when. */
 import { IconLockOpen } from '@tabler/icons-react'
-import type { GoalMetrics, LeaseMetrics } from '../../api/data'
 import { Empty } from '../../components/Empty'
 import { duration } from '../../document/time'
 import { holderText } from './words'
+import type { GoalInfo, LeaseMetrics } from '../../api/types'
 
 interface LeasesProps {
   readonly leases: readonly LeaseMetrics[]
-  readonly goals: readonly GoalMetrics[]
+  readonly goals: readonly GoalInfo[]
   readonly search: string
 }
 
@@ -48,7 +48,7 @@ export function Leases({ leases, goals, search }: LeasesProps) {
   )
 }
 
-function goalText(lease: LeaseMetrics, goals: readonly GoalMetrics[]): string {
+function goalText(lease: LeaseMetrics, goals: readonly GoalInfo[]): string {
   const goal = goals.find((each) => each.id === lease.goal)
   return goal ? `${goal.address} (${goal.status})` : '–'
 }

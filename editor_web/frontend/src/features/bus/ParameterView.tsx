@@ -2,7 +2,7 @@
 import { lookup } from '../../document/dict'
 import { Button } from '@mantine/core'
 import { useState } from 'react'
-import { bus, type ParameterFacts } from '../../api/bus'
+import { bus } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 import { ValueTree } from '../../components/ValueTree'
 import { valueField } from '../../document/requestForm'
@@ -10,9 +10,10 @@ import { shortName } from '../../document/busTree'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { useForm } from './useForm'
+import type { ParameterInfo } from '../../api/types'
 
 interface ParameterViewProps {
-  readonly facts: ParameterFacts
+  readonly facts: ParameterInfo
   readonly mayChange: boolean
   readonly onBack: () => void
 }

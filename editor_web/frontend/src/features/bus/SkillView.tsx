@@ -2,16 +2,17 @@
 import { lookup } from '../../document/dict'
 import { Button, Progress } from '@mantine/core'
 import { IconPlayerStopFilled, IconSend } from '@tabler/icons-react'
-import { bus, type SkillFacts } from '../../api/bus'
+import { bus } from '../../api/bus'
 import { ValueTree } from '../../components/ValueTree'
 import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { cancel, isOver, send, useRequests, type RequestProgress } from './requests'
 import { useForm } from './useForm'
+import type { SkillInfo } from '../../api/types'
 
 interface SkillViewProps {
-  readonly facts: SkillFacts
+  readonly facts: SkillInfo
   readonly mayChange: boolean
   readonly onBack: () => void
 }

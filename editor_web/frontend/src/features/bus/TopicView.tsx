@@ -3,18 +3,18 @@ import type { Dict } from '../../document/dict'
 import { Button } from '@mantine/core'
 import { IconSend } from '@tabler/icons-react'
 import { useState } from 'react'
-import { bus, type TopicFacts } from '../../api/bus'
+import { bus } from '../../api/bus'
 import { wordsOf } from '../../api/client'
-import type { MessageFrame, TopicMetrics } from '../../api/data'
 import { ValueTree } from '../../components/ValueTree'
 import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { useForm } from './useForm'
 import { ageText, rateText } from './words'
+import type { MessageFrame, TopicInfo, TopicMetrics } from '../../api/types'
 
 interface TopicViewProps {
-  readonly facts: TopicFacts
+  readonly facts: TopicInfo
   readonly message: MessageFrame | undefined
   readonly traffic: TopicMetrics | undefined
   readonly mayChange: boolean

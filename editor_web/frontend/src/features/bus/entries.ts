@@ -1,6 +1,6 @@
 /** What a bus has, by kind. */
-import type { BusListing } from '../../api/bus'
 import type { Named } from '../../document/busTree'
+import type { BusListing } from '../../api/types'
 
 export type BusKind = 'topics' | 'services' | 'actions' | 'parameters' | 'leases'
 

@@ -1,8 +1,9 @@
 /** Requests to services and actions, from sending to answer, refusal or end; they go on while another entry is looked at. */
 import { lookup, type Dict } from '../../document/dict'
 import { create } from 'zustand'
-import { bus, sendGoal, type SkillFacts } from '../../api/bus'
+import { bus, sendGoal } from '../../api/bus'
 import { wordsOf } from '../../api/client'
+import type { SkillInfo } from '../../api/types'
 
 export interface RequestProgress {
   readonly status: string
@@ -28,7 +29,7 @@ export function isOver(course: RequestProgress): boolean {
 }
 
 /** Ask a service, or send a goal and follow it. */
-export async function send(facts: SkillFacts, request: Dict<unknown>): Promise<void> {
+export async function send(facts: SkillInfo, request: Dict<unknown>): Promise<void> {
   const { signal } = leaving
   put(facts.name, SENT)
   try {
@@ -68,7 +69,7 @@ async function follow(address: string, request: Dict<unknown>, signal: AbortSign
     (line) => {
       if (line.k === 'sent') latest = { ...latest, goal: line.goal }
       else if (line.k === 'course') latest = { ...latest, status: line.status, feedback: line.feedback }
-      else latest = { ...latest, status: line.status, answer: line.result, cause: line.cause?.message ?? '' }
+      else latest = { ...latest, status: line.end.status, answer: line.end.result, cause: line.end.cause?.message ?? '' }
       if (!signal.aborted) put(address, latest)
     },
     signal,

@@ -1,6 +1,6 @@
 /** Traffic in words. */
-import type { TopicMetrics } from '../../api/data'
 import { duration } from '../../document/time'
+import type { TopicMetrics } from '../../api/types'
 
 /** `125 Hz`, `0.5 Hz`, `on demand`; a dash where nothing comes. */
 export function rateText(line: TopicMetrics | undefined): string {

@@ -3,14 +3,14 @@ import { CloseButton, TextInput } from '@mantine/core'
 import { IconSearch } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
-import type { BehaviorSummaryBody } from '../../api/types'
+import type { BehaviorSummary } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive } from '../../document/live'
 import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
-  readonly behaviors: readonly BehaviorSummaryBody[]
+  readonly behaviors: readonly BehaviorSummary[]
   readonly current: string | undefined
   readonly href: (id: string) => string
   readonly onOpen: (id: string) => void

@@ -2,8 +2,7 @@
 import { NumberInput, Switch, TextInput } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { editBreakpoints, toggleBreakpoint, useBreakpoints } from '../../api/breakpoints'
-import type { BreakpointLive } from '../../api/types'
-import { breakpointWords, matches, replaced } from '../../document/breakpoints'
+import { breakpointWords, matches, replaced, type CompleteBreakpoint } from '../../document/breakpoints'
 
 const PLACES = [
   { when: 'before', label: 'Pause before its entry' },
@@ -40,17 +39,17 @@ export function BreakpointEditor({ path, isOff }: { path: string; isOff: string 
 }
 
 /** Condition and count; they count when the field is left, or with Enter. */
-function Details({ point, isOff }: { point: BreakpointLive; isOff: boolean }) {
-  const [condition, setCondition] = useState(point.condition ?? '')
+function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }) {
+  const [condition, setCondition] = useState(point.if ?? '')
   const [hits, setHits] = useState<number | string>(point.hits)
   useEffect(() => {
-    setCondition(point.condition ?? '')
+    setCondition(point.if ?? '')
     setHits(point.hits)
-  }, [point.condition, point.hits])
+  }, [point.if, point.hits])
 
   function keep(): void {
-    const fresh = { ...point, condition: condition.trim() || null, hits: Math.max(1, Number(hits) || 1) }
-    if (fresh.condition === point.condition && fresh.hits === point.hits) return
+    const fresh = { ...point, if: condition.trim() || null, hits: Math.max(1, Number(hits) || 1) }
+    if (fresh.if === point.if && fresh.hits === point.hits) return
     void editBreakpoints((list) => replaced(list, fresh))
   }
 

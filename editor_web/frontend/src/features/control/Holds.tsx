@@ -5,11 +5,13 @@ import { editBreakpoints, useBreakpoints } from '../../api/breakpoints'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
 import { breakpointWords } from '../../document/breakpoints'
+import { lookup } from '../../document/dict'
 import type { Commands } from './useCommands'
 
 export function Holds({ commands, onShow }: { commands: Commands; onShow: (path: string) => void }) {
   const breakpoints = useBreakpoints()
   const locks = useLive((s) => s.control?.locks)
+  const reasons = useLive((s) => s.lockReasons)
   if (breakpoints.length === 0 && !locks?.length) {
     return (
       <Empty icon={<IconBookmarkOff size={26} stroke={1.4} aria-hidden />} title="Nothing holds this behavior">
@@ -35,16 +37,16 @@ export function Holds({ commands, onShow }: { commands: Commands; onShow: (path:
           />
         </li>
       ))}
-      {locks?.map((each) => (
-        <li key={each.path}>
+      {locks?.map((path) => (
+        <li key={path}>
           <span className="hold-lock" aria-hidden />
           <span className="hold-text">
-            <button type="button" className="link" onClick={() => onShow(each.path)}>
-              {each.path}
+            <button type="button" className="link" onClick={() => onShow(path)}>
+              {path}
             </button>{' '}
-            <span className="quiet">locked{each.reason && `: ${each.reason}`}</span>
+            <span className="quiet">locked{lookup(reasons, path) && `: ${lookup(reasons, path)}`}</span>
           </span>
-          <CloseButton size="sm" aria-label={`Unlock ${each.path}`} onClick={() => void commands.unlock(each.path)} />
+          <CloseButton size="sm" aria-label={`Unlock ${path}`} onClick={() => void commands.unlock(path)} />
         </li>
       ))}
     </ul>

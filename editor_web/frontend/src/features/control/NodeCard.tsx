@@ -3,17 +3,18 @@ import { TextInput } from '@mantine/core'
 import { IconLock, IconLockOpen, IconRepeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { GoalLine } from '../../components/GoalLine'
 import { waitingWords } from '../../document/commands'
+import { lookup } from '../../document/dict'
 import { BreakpointEditor } from './BreakpointEditor'
 import type { Commands } from './useCommands'
 
 /** Where the key `f` goes. */
 export const FORCE_ID = 'force'
 
-export function NodeCard({ node, commands }: { node: GraphNodeBody; commands: Commands }) {
+export function NodeCard({ node, commands }: { node: GraphNode; commands: Commands }) {
   const waiting = useLive((s) => s.control?.waiting.find((each) => each.path === node.path))
   const forced = { obstacle: commands.obstacle('force'), onObstacle: () => commands.explain('force', 'Force') }
   return (
@@ -52,14 +53,15 @@ export function NodeCard({ node, commands }: { node: GraphNodeBody; commands: Co
 }
 
 function Lock({ path, commands }: { path: string; commands: Commands }) {
-  const lock = useLive((s) => s.control?.locks.find((each) => each.path === path))
+  const isLocked = useLive((s) => s.control?.locks.includes(path) ?? false)
+  const given = useLive((s) => lookup(s.lockReasons, path))
   const [reason, setReason] = useState('')
   const common = { obstacle: commands.obstacle('lock'), onObstacle: () => commands.explain('lock', 'Lock'), shortcut: 'l' }
-  if (lock) {
+  if (isLocked) {
     return (
       <div className="command-row">
         <CommandButton {...common} label="Unlock" icon={<IconLockOpen size={16} aria-hidden />} onPress={() => void commands.unlock(path)} />
-        <span className="quiet">{lock.reason ? `Locked: ${lock.reason}` : 'Locked without a reason given'}</span>
+        <span className="quiet">{given ? `Locked: ${given}` : 'Locked without a reason given'}</span>
       </div>
     )
   }

@@ -2,7 +2,7 @@
 import { lookup } from '../../document/dict'
 import { IconMessageQuestion, IconRoute } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
-import type { GraphNodeBody, WaitingNodeLive } from '../../api/types'
+import type { GraphNode, GateWait } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { requestsOf } from '../../document/commands'
 import { nodeAt } from '../../document/tree'
@@ -13,7 +13,7 @@ import type { Commands } from './useCommands'
 export const REQUESTS_ID = 'requests'
 
 export interface RequestsProps {
-  readonly root: GraphNodeBody | null
+  readonly root: GraphNode | null
   readonly commands: Commands
   readonly onShow: (path: string) => void
   /** Which run asks, where there are several. */
@@ -39,7 +39,7 @@ export function Requests({ root, commands, onShow, of }: RequestsProps) {
 }
 
 interface RequestProps {
-  readonly request: WaitingNodeLive
+  readonly request: GateWait
   readonly outcomes: readonly string[]
   readonly commands: Commands
   readonly onShow: (path: string) => void

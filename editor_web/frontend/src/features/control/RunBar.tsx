@@ -13,7 +13,7 @@ import {
 } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { isActive } from '../../document/live'
@@ -21,7 +21,7 @@ import { LEVEL_WORDS, LEVELS, operatorWords, runStatusText, waitingWords, type C
 import type { Commands } from './useCommands'
 
 export interface RunBarProps {
-  readonly run: RunOverview | undefined
+  readonly run: RunView | undefined
   readonly commands: Commands
   /** Show all keys; undefined where the keys of the page are not for this run. */
   readonly onSheet?: () => void

@@ -2,12 +2,12 @@
 import { IconHeadset, IconPlayerPause, IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { operatorWords } from '../../document/commands'
 import type { Commands } from './useCommands'
 
-export function RunButtons({ run, commands, of }: { run: RunOverview; commands: Commands; of: string }) {
+export function RunButtons({ run, commands, of }: { run: RunView; commands: Commands; of: string }) {
   const control = useLive((s) => s.control)
   const isMine = useOperated() === run.id
   const isHeld = control?.paused === true && !control.stepping

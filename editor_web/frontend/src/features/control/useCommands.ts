@@ -4,7 +4,7 @@ import { useMemo, useState } from 'react'
 import { api } from '../../api/client'
 import { operate, useLive } from '../../api/live'
 import { showRefusal, send } from '../../api/refusal'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { disabledReason, type Command, type Level, type Situation } from '../../document/commands'
 
 export interface Commands {
@@ -31,7 +31,7 @@ export interface Commands {
 }
 
 /** `name` says in refusals which run is meant, on a page that shows several. */
-export function useCommands(run: RunOverview | undefined, node: string | undefined, name = ''): Commands {
+export function useCommands(run: RunView | undefined, node: string | undefined, name = ''): Commands {
   const role = useLive((s) => s.role)
   const isConnected = useLive((s) => s.connection === 'live')
   const control = useLive((s) => s.control)

@@ -3,7 +3,7 @@ import './data.css'
 import { CloseButton, TextInput } from '@mantine/core'
 import { IconDatabase, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
-import { useData, type UserdataValue } from '../../api/data'
+import { useData } from '../../api/data'
 import { usePastValues } from '../../api/pastValues'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
@@ -11,6 +11,7 @@ import { useIsVisible } from '../../components/useIsVisible'
 import { ValueTree } from '../../components/ValueTree'
 import { shownScopes, withChanges, type Scopes } from '../../document/userdata'
 import { inShort, isShort } from '../../document/values'
+import type { UserdataRecord } from '../../api/types'
 
 interface DataProps {
   readonly run: { readonly id: string } | undefined
@@ -96,7 +97,7 @@ function NoData({ title, children }: { title: string; children: ReactNode }) {
 
 interface LineProps {
   readonly name: string
-  readonly line: UserdataValue
+  readonly line: UserdataRecord
   readonly onShow: (path: string) => void
 }
 

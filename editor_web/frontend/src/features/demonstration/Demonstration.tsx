@@ -5,7 +5,7 @@ import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { propose } from '../../api/demonstration'
 import { documents } from '../../api/documents'
-import type { DemonstrationBody, EntryBody, ProposalBody } from '../../api/types'
+import type { EntryName, ProposalBody, ProposalOptions } from '../../api/types'
 import { added, bodyOf, type Step } from '../../document/demonstration'
 import { fileProblem, idOfFile } from '../../document/editing/fileNames'
 import { EntryChoice } from './EntryChoice'
@@ -21,7 +21,7 @@ export interface DemonstrationProps {
 }
 
 export function Demonstration({ onMade, initial = [] }: DemonstrationProps) {
-  const [entries, setEntries] = useState<readonly EntryBody[]>()
+  const [entries, setEntries] = useState<readonly EntryName[]>()
   const [steps, setSteps] = useState(initial)
   const [options, setOptions] = useState<Options>({ arm: '', speed: 0.3, approach_m: 0.1, width_m: null })
   const [refusal, setRefusal] = useState<string>()
@@ -31,7 +31,7 @@ export function Demonstration({ onMade, initial = [] }: DemonstrationProps) {
       (error: unknown) => setRefusal(wordsOf(error)),
     )
   }, [])
-  const body = steps.length > 0 ? { ...options, steps: steps.map(bodyOf) } : undefined
+  const body = steps.length > 0 ? { options, steps: steps.map(bodyOf) } : undefined
   const proposed = useProposal(body)
 
   function make(id: string): void {
@@ -62,7 +62,7 @@ export function Demonstration({ onMade, initial = [] }: DemonstrationProps) {
   )
 }
 
-type Options = Required<Pick<DemonstrationBody, 'arm' | 'speed' | 'approach_m' | 'width_m'>>
+type Options = Required<Pick<ProposalOptions, 'arm' | 'speed' | 'approach_m' | 'width_m'>>
 
 interface OptionFieldsProps {
   readonly options: Options

@@ -1,11 +1,11 @@
 /** The taught entries and the two actions of the tool; each click adds one to the end of the steps. */
 import { IconArrowsHorizontal, IconMapPin, IconRoute, IconSearch } from '@tabler/icons-react'
 import { useState } from 'react'
-import type { EntryBody } from '../../api/types'
+import type { EntryName } from '../../api/types'
 import { KIND_WORDS, teachable, type Kind } from '../../document/demonstration'
 
 export interface EntryChoiceProps {
-  readonly entries: readonly EntryBody[] | undefined
+  readonly entries: readonly EntryName[] | undefined
   readonly onAdd: (kind: Kind, name: string) => void
 }
 

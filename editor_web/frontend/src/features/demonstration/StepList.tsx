@@ -1,14 +1,14 @@
 /** The chosen steps in their order: what each is for, and what a grasp takes. */
 import { IconArrowDown, IconArrowUp, IconX } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
-import type { ProposedStepBody } from '../../api/types'
+import type { TaughtStep } from '../../api/types'
 import { KIND_WORDS, moved, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '../../document/demonstration'
 import { KindIcon } from './EntryChoice'
 
 export interface StepListProps {
   readonly steps: readonly Step[]
   /** As the proposal of these steps decided; missing while it is being made. */
-  readonly decided: readonly ProposedStepBody[]
+  readonly decided: readonly TaughtStep[]
   readonly parts: readonly string[]
   readonly onChange: (steps: readonly Step[]) => void
 }
@@ -31,7 +31,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
               <span className="chosen-name">{words}</span>
               {step.kind !== 'action' && <span className="quiet chosen-kind">{KIND_WORDS[step.kind]}</span>}
               {rolesOf(step.kind).length > 1 && step.kind !== 'action' && (
-                <RoleChoice step={step} guessed={known?.role} onChange={(role) => changed(step.key, { role })} />
+                <RoleChoice step={step} guessed={known?.role ?? undefined} onChange={(role) => changed(step.key, { role })} />
               )}
               <span className="chosen-tools">
                 <StepButton label="Earlier" isOff={index === 0} onPress={() => onChange(moved(steps, index, -1))}>
@@ -60,7 +60,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
 }
 
 /** Whether what was decided is about these steps, and not about those before a change. */
-function fitting(decided: readonly ProposedStepBody[], steps: readonly Step[]): boolean {
+function fitting(decided: readonly TaughtStep[], steps: readonly Step[]): boolean {
   return decided.length === steps.length && decided.every((each, index) => each.name === steps[index]?.name)
 }
 

@@ -1,7 +1,7 @@
 /** The userdata keys beside the canvas: of what kind they are, who writes and reads each, and on which way one is not defined. */
 import { CloseButton } from '@mantine/core'
 import { IconAlertTriangleFilled, IconCircleXFilled, IconPencil, IconEye } from '@tabler/icons-react'
-import type { KeyFlowBody, KeyReaderBody, KeyWriterBody } from '../../api/types'
+import type { KeyFlow, KeyReader, KeyWriter } from '../../api/types'
 import { kindOfKey, soundnessOf } from '../../document/editing/dataFlow'
 import { nameOfPath } from '../../document/editing/model'
 import { goToUse, inputLabel, outputLabel, showKey, toggleDataFlow, useDataFlow, useFreshDataFlow } from './dataFlow'
@@ -37,7 +37,7 @@ export function DataFlowPanel() {
   )
 }
 
-function KeyItem({ flow, isChosen }: { flow: KeyFlowBody; isChosen: boolean }) {
+function KeyItem({ flow, isChosen }: { flow: KeyFlow; isChosen: boolean }) {
   const kind = useEditor((s) => kindOfKey(flow, rootOf(s), draftOf(s).document, s.catalogue))
   const soundness = soundnessOf(flow)
   return (
@@ -62,7 +62,7 @@ function KeyItem({ flow, isChosen }: { flow: KeyFlowBody; isChosen: boolean }) {
   )
 }
 
-function Uses({ flow }: { flow: KeyFlowBody }) {
+function Uses({ flow }: { flow: KeyFlow }) {
   return (
     <div className="flow-uses">
       <h3>Written by</h3>
@@ -114,11 +114,11 @@ const ORIGINS: Readonly<Record<string, string>> = {
   collect: 'collected from its rounds',
 }
 
-function writerWords(writer: KeyWriterBody, key: string): string {
+function writerWords(writer: KeyWriter, key: string): string {
   return ORIGINS[writer.origin] ?? (writer.name === key ? 'output' : `output ${writer.name}`)
 }
 
-function readerWords(reader: KeyReaderBody, key: string): string {
+function readerWords(reader: KeyReader, key: string): string {
   if (reader.by === 'expression') return 'in an expression'
   if (reader.by === 'collect') return 'collects it'
   if (reader.by === 'shared') return 'shares it among its branches'
@@ -126,7 +126,7 @@ function readerWords(reader: KeyReaderBody, key: string): string {
 }
 
 /** Where it comes from, or on which way it does not. */
-export function Definedness({ reader }: { reader: KeyReaderBody }) {
+export function Definedness({ reader }: { reader: KeyReader }) {
   switch (reader.defined) {
     case 'always':
       return <span className="quiet">from {sourceWords(reader)}</span>
@@ -143,6 +143,6 @@ export function Definedness({ reader }: { reader: KeyReaderBody }) {
   }
 }
 
-function sourceWords(reader: KeyReaderBody): string {
+function sourceWords(reader: KeyReader): string {
   return reader.sources.map((path) => (path === '' ? 'the behavior' : nameOfPath(path))).join(', ')
 }

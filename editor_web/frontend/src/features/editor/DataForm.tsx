@@ -1,6 +1,6 @@
 /** Where a state reads its inputs from, and under which userdata keys its outputs are written. */
 import { lookup, without } from '../../document/dict'
-import type { KeyBody } from '../../api/types'
+import type { KeyView } from '../../api/types'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { performOn } from './apply'
@@ -15,8 +15,8 @@ export function DataForm({
   outputs,
 }: {
   node: EditNode
-  inputs: readonly KeyBody[]
-  outputs: readonly KeyBody[]
+  inputs: readonly KeyView[]
+  outputs: readonly KeyView[]
 }) {
   const keys = useNames().map((name) => name.name)
   const ins = [...new Set([...inputs.map((key) => key.name), ...Object.keys(node.inputs)])]

@@ -2,7 +2,7 @@
 import { lookup, without, type Dict } from '../../document/dict'
 import { IconPlus, IconTrash } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
-import type { DocumentInfoBody } from '../../api/types'
+import type { DocumentInfo } from '../../api/types'
 import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform } from './apply'
 import { Section } from './Section'
@@ -14,7 +14,7 @@ type Mapping = Dict<unknown>
 const TYPES = ['number', 'integer', 'string', 'boolean', 'pose', 'joints', 'list', 'mapping'] as const
 
 /** What is a list or mapping is sent as a whole, and so made of what it is by then. */
-function setDocument(words: string, changes: (now: DocumentInfoBody) => Mapping): void {
+function setDocument(words: string, changes: (now: DocumentInfo) => Mapping): void {
   void perform(words, () => {
     const now = draftOf(editor()).document
     return now ? [{ edit: 'set_document', changes: changes(now) }] : []

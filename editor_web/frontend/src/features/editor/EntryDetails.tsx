@@ -3,13 +3,13 @@ import { useEffect, useState } from 'react'
 import { entries } from '../../api/entries'
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
-import type { EntryRow } from '../../api/types'
+import type { EntryChanged } from '../../api/types'
 import { entryLines, type EntryLine } from '../../document/editing/entryText'
 import { wallTime } from '../../document/time'
 
 interface Details {
   readonly of: string
-  readonly row: EntryRow | undefined
+  readonly row: EntryChanged | undefined
   readonly lines: readonly EntryLine[]
 }
 

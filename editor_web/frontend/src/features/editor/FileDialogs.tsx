@@ -2,7 +2,7 @@
 import { useEffect, useState, type ReactNode } from 'react'
 import { wordsOf } from '../../api/client'
 import { relations } from '../../api/relations'
-import type { ReferrerBody } from '../../api/types'
+import type { ReferringBehavior } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { fileProblem, idOfFile, partsOfId } from '../../document/editing/fileNames'
 import { openOther } from './pageActions'
@@ -30,8 +30,8 @@ const TITLES: Readonly<Record<Exclude<FileDialog, 'versions'>, string>> = {
 }
 
 /** Who refers to a document; undefined until it is known. */
-function useReferrers(id: string): readonly ReferrerBody[] | undefined {
-  const [found, setFound] = useState<readonly ReferrerBody[]>()
+function useReferrers(id: string): readonly ReferringBehavior[] | undefined {
+  const [found, setFound] = useState<readonly ReferringBehavior[]>()
   useEffect(() => {
     let isCurrent = true
     relations.referrers(id).then(
@@ -45,7 +45,7 @@ function useReferrers(id: string): readonly ReferrerBody[] | undefined {
   return found
 }
 
-function Referrers({ all, children }: { all: readonly ReferrerBody[] | undefined; children: ReactNode }) {
+function Referrers({ all, children }: { all: readonly ReferringBehavior[] | undefined; children: ReactNode }) {
   if (all === undefined) return <p className="quiet">Looking who refers to it …</p>
   if (all.length === 0) return <p className="quiet">No other behavior refers to it.</p>
   return (

@@ -1,12 +1,12 @@
 /** What would mend a problem, each to be chosen; and the problems of one node in its form. */
 import { IconBulb } from '@tabler/icons-react'
-import type { FixBody } from '../../api/types'
+import type { Fix } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
 import { fixesOf, makeFix, useFreshFixes } from './fixes'
 import { draftOf, useEditor } from './store'
 
-export function FixButtons({ fixes }: { fixes: readonly FixBody[] }) {
+export function FixButtons({ fixes }: { fixes: readonly Fix[] }) {
   if (fixes.length === 0) return null
   return (
     <div className="fixes" role="group" aria-label="Fixes">

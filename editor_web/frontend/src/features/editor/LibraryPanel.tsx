@@ -56,13 +56,12 @@ function entryItems(catalogue: CatalogueBody): readonly Item[] {
   return catalogue.entries.flatMap((entry) => {
     const addition = entryAddition(entry, catalogue)
     if (!addition) return []
-    const summary = [entry.kind, ...entry.tags].join(', ')
     return [
       {
         id: `entry:${entry.kind}:${entry.name}`,
         title: entry.name,
         group: 'Entries',
-        summary,
+        summary: entry.kind,
         doc: `A named ${entry.kind}. Adds ${addition.runs ?? ''} that goes there.`,
         outcomes: [],
         kind: 'entry',

@@ -3,7 +3,7 @@ import { lookup, type Dict } from '../../document/dict'
 import { Switch } from '@mantine/core'
 import { IconBraces, IconX } from '@tabler/icons-react'
 import { useId, useState } from 'react'
-import type { EntryBody, KeyBody } from '../../api/types'
+import type { EntryName, KeyView } from '../../api/types'
 import {
   editFieldOf,
   fieldProblem,
@@ -22,7 +22,7 @@ import { FieldPreview } from './ShowEntry'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
 
-export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly KeyBody[] }) {
+export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly KeyView[] }) {
   const entries = useEditor((s) => s.catalogue?.entries ?? NO_ENTRIES)
   const known = new Set(keys.map((key) => key.name))
   const stray = Object.keys(node.parameters).filter((name) => !known.has(name))
@@ -39,7 +39,7 @@ export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly
   )
 }
 
-const NO_ENTRIES: readonly EntryBody[] = []
+const NO_ENTRIES: readonly EntryName[] = []
 const NO_NAMES: Dict<readonly string[]> = {}
 
 function setParameter(node: EditNode, name: string, value: unknown): void {
@@ -51,7 +51,7 @@ function setParameter(node: EditNode, name: string, value: unknown): void {
   )
 }
 
-function ParameterRow({ node, field, entries }: { node: EditNode; field: EditField; entries: readonly EntryBody[] }) {
+function ParameterRow({ node, field, entries }: { node: EditNode; field: EditField; entries: readonly EntryName[] }) {
   const value = lookup(node.parameters, field.name)
   const [asTemplate, setAsTemplate] = useState(isTemplate(value))
   const [pointed, setPointed] = useState<string>()
@@ -123,7 +123,7 @@ interface InputProps {
   readonly field: EditField
   readonly value: unknown
   readonly isFree: boolean
-  readonly entries: readonly EntryBody[]
+  readonly entries: readonly EntryName[]
   /** Names of the cell to choose from. */
   readonly names: readonly string[]
   readonly hintId: string
@@ -217,7 +217,7 @@ function VectorInput({ field, value, onSet }: { field: EditField; value: unknown
 interface EntryProps {
   readonly field: EditField
   readonly value: unknown
-  readonly entries: readonly EntryBody[]
+  readonly entries: readonly EntryName[]
   readonly shared: {
     readonly label: string
     readonly describedBy: string

@@ -2,7 +2,7 @@
 import { IconCube } from '@tabler/icons-react'
 import { createContext, useContext, useEffect } from 'react'
 import { showPreview, usePreview } from '../../api/preview'
-import type { EntryBody } from '../../api/types'
+import type { EntryName } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import type { EditField } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
@@ -19,7 +19,7 @@ interface FieldPreviewProps {
   readonly node: EditNode
   readonly field: EditField
   readonly value: unknown
-  readonly entries: readonly EntryBody[]
+  readonly entries: readonly EntryName[]
   /** The choice of the opened list that is pointed at: it is shown before it is taken. */
   readonly pointed: string | undefined
 }
@@ -66,7 +66,7 @@ export function FieldPreview({ node, field, value, entries, pointed }: FieldPrev
 }
 
 /** Of an entry in the library no state says which arm goes there. */
-export function LibraryPreview({ entry }: { readonly entry: EntryBody }) {
+export function LibraryPreview({ entry }: { readonly entry: EntryName }) {
   const hasView = useContext(CellViewContext)
   const by = `library ${entry.kind} ${entry.name}`
   const isShown = usePreview((s) => s.shown?.by === by)

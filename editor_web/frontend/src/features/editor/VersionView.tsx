@@ -1,6 +1,6 @@
 /** Two versions side by side: what differs in words, on both drawings, and in the text; one alone read-only. */
 import { useEffect, useMemo, useState } from 'react'
-import type { DifferenceBody } from '../../api/types'
+import type { DocumentDiff } from '../../api/types'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange, type Marking } from '../../document/editing/changes'
 import type { EditNode } from '../../document/editing/model'
 import { folded, sideBySide } from '../../document/editing/textChange'
@@ -20,7 +20,7 @@ export interface Shown {
 export interface VersionViewProps {
   readonly before: Shown | undefined
   readonly after: Shown
-  readonly difference: DifferenceBody | undefined
+  readonly difference: DocumentDiff | undefined
 }
 
 const VIEWS = ['Changes', 'This version', 'Text'] as const
@@ -65,7 +65,7 @@ function Changes({
 }: {
   before: Shown
   after: Shown
-  difference: DifferenceBody | undefined
+  difference: DocumentDiff | undefined
 }) {
   const changes = useMemo(() => meaningful(difference?.changes ?? []), [difference])
   const marks = useMemo(() => markingsOf(changes, before.root, after.root), [changes, before, after])

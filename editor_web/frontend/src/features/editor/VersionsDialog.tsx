@@ -3,7 +3,7 @@ import { useEffect, useMemo, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
 import { relations } from '../../api/relations'
-import type { DifferenceBody, VersionBody } from '../../api/types'
+import type { DocumentDiff, VersionBody } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import type { EditNode } from '../../document/editing/model'
 import { wallTime } from '../../document/time'
@@ -146,7 +146,7 @@ function optionWords(versions: readonly VersionBody[], hash: string): string {
 interface Compared {
   readonly before: Shown | undefined
   readonly after: Shown
-  readonly difference: DifferenceBody | undefined
+  readonly difference: DocumentDiff | undefined
 }
 
 /** Both texts with what they draw, and what differs; undefined until they are there. */

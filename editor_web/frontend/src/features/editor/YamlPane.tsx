@@ -25,7 +25,7 @@ import {
 } from '@codemirror/view'
 import { tags } from '@lezer/highlight'
 import { useEffect, useRef } from 'react'
-import type { FindingBody, FixesBody } from '../../api/types'
+import type { FindingView, FixesBody } from '../../api/types'
 import { problemsOf } from '../../document/editing/findings'
 import { changeBetween } from '../../document/editing/textChange'
 import { nodeAtLine } from '../../document/editing/textPositions'
@@ -119,7 +119,7 @@ function follow(state: EditorState): void {
   }
 }
 
-function diagnosticsOf(view: EditorView, findings: readonly FindingBody[], fixes: readonly FixesBody[]): Diagnostic[] {
+function diagnosticsOf(view: EditorView, findings: readonly FindingView[], fixes: readonly FixesBody[]): Diagnostic[] {
   const { doc } = view.state
   return findings
     .map((finding) => {

@@ -1,6 +1,6 @@
 /** Everything that can be put into a container, for the library and the palette: one list. */
 import { createElement } from 'react'
-import type { CatalogueBody, EntryBody, StateBody } from '../../api/types'
+import type { CatalogueBody, EntryName, StateView } from '../../api/types'
 import { isTreePart, nameFor, type EditNode } from '../../document/editing/model'
 import type { Addition } from './actions'
 import { iconOf } from './kinds'
@@ -18,7 +18,7 @@ export interface Item {
   readonly onlyInTree: boolean
   readonly addition: Addition
   /** The named entry that it goes to. */
-  readonly entry?: EntryBody
+  readonly entry?: EntryName
 }
 
 /** States first, then containers, then other behaviors. */
@@ -60,7 +60,7 @@ export function itemsOf(catalogue: CatalogueBody, id: string): readonly Item[] {
   return [...states, ...containers, ...behaviors]
 }
 
-function stateItem(state: StateBody): Item {
+function stateItem(state: StateView): Item {
   return {
     id: `state:${state.name}`,
     title: state.name,
@@ -97,7 +97,7 @@ export function itemIcon(kind: string, size = 16) {
 }
 
 /** The state that goes to a named entry, with the entry as its target. */
-export function entryAddition(entry: EntryBody, catalogue: CatalogueBody): Addition | undefined {
+export function entryAddition(entry: EntryName, catalogue: CatalogueBody): Addition | undefined {
   const wanted: Record<string, string> = {
     joints: 'motion.MoveJoints',
     pose: 'motion.MoveLinear',

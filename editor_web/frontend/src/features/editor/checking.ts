@@ -1,7 +1,7 @@
 /** What is wrong with a text, for everybody: who may look only asks about the file, which is all that he sees. */
 import { api } from '../../api/client'
 import { documents } from '../../api/documents'
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 
 let role: Promise<string> | undefined
 
@@ -17,6 +17,6 @@ export async function mayAsk(): Promise<boolean> {
   return (await role) !== 'viewer'
 }
 
-export async function findingsOf(id: string, text: string): Promise<readonly FindingBody[]> {
+export async function findingsOf(id: string, text: string): Promise<readonly FindingView[]> {
   return (await mayAsk()) ? documents.findings(id, text) : (await documents.openChecked(id)).findings
 }

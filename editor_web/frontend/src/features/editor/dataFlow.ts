@@ -3,7 +3,7 @@ import { useEffect } from 'react'
 import { create } from 'zustand'
 import { wordsOf } from '../../api/client'
 import { relations } from '../../api/relations'
-import type { KeyFlowBody } from '../../api/types'
+import type { KeyFlow } from '../../api/types'
 import { setEditor, draftOf, useEditor } from './store'
 import { reveal } from './session'
 
@@ -12,7 +12,7 @@ export interface DataFlowState {
   readonly isShown: boolean
   /** The key whose arrows are drawn; those of all without. */
   readonly key: string | undefined
-  readonly flows: readonly KeyFlowBody[]
+  readonly flows: readonly KeyFlow[]
   /** Which text they are of. */
   readonly of: string | undefined
   /** Why nothing is known of the present text. */

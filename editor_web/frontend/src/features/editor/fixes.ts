@@ -3,12 +3,12 @@ import { useEffect } from 'react'
 import { create } from 'zustand'
 import { useLive } from '../../api/live'
 import { relations } from '../../api/relations'
-import type { Edit, FindingBody, FixBody, FixesBody } from '../../api/types'
+import type { Edit, FindingView, Fix, FixesBody } from '../../api/types'
 import { perform } from './apply'
 import { draftOf, useEditor } from './store'
 
 const PAUSE_MS = 200
-const NONE: readonly FixBody[] = []
+const NONE: readonly Fix[] = []
 
 const useFixes = create<{ readonly of: string; readonly found: readonly FixesBody[] }>(() => ({ of: '', found: [] }))
 
@@ -39,7 +39,7 @@ export function useFreshFixes(isWanted = true): readonly FixesBody[] {
 }
 
 /** The fixes of one finding. */
-export function fixesOf(all: readonly FixesBody[], finding: FindingBody): readonly FixBody[] {
+export function fixesOf(all: readonly FixesBody[], finding: FindingView): readonly Fix[] {
   const found = all.find(
     (each) => each.code === finding.code && each.path === finding.path && each.message === finding.message,
   )
@@ -47,7 +47,7 @@ export function fixesOf(all: readonly FixesBody[], finding: FindingBody): readon
 }
 
 /** Make a fix: one step of the history, which undo takes back. */
-export function makeFix(fix: FixBody): void {
+export function makeFix(fix: Fix): void {
   // The server made these edits; they are of the union that it takes.
   void perform(fix.title.replaceAll('`', ''), fix.edits as unknown as readonly Edit[])
 }

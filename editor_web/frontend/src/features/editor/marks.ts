@@ -1,6 +1,6 @@
 /** What the check says of each node and arrow, to be shown there. */
 import { useMemo } from 'react'
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { problemsOf } from '../../document/editing/findings'
 import { pathsTo } from '../../document/editing/model'
 import { draftOf, useEditor } from './store'
@@ -10,7 +10,7 @@ export interface Mark {
   readonly messages: readonly string[]
 }
 
-const NONE: readonly FindingBody[] = []
+const NONE: readonly FindingView[] = []
 
 /** The findings at a node; with `inside`, also those of the nodes in it. */
 export function useMark(path: string, inside: boolean): Mark | undefined {
@@ -26,20 +26,20 @@ export function useMark(path: string, inside: boolean): Mark | undefined {
 }
 
 interface Placed {
-  readonly at: ReadonlyMap<string, readonly FindingBody[]>
+  readonly at: ReadonlyMap<string, readonly FindingView[]>
   /** Those at a node and at the nodes in it. */
-  readonly around: ReadonlyMap<string, readonly FindingBody[]>
+  readonly around: ReadonlyMap<string, readonly FindingView[]>
 }
 
-const placed = new WeakMap<readonly FindingBody[], Placed>()
+const placed = new WeakMap<readonly FindingView[], Placed>()
 
 /** The findings by node: a thousand nodes ask for theirs each time something changes. */
-function placedOf(findings: readonly FindingBody[]): Placed {
+function placedOf(findings: readonly FindingView[]): Placed {
   const known = placed.get(findings)
   if (known) return known
-  const at = new Map<string, FindingBody[]>()
-  const around = new Map<string, FindingBody[]>()
-  const put = (into: Map<string, FindingBody[]>, path: string, finding: FindingBody) =>
+  const at = new Map<string, FindingView[]>()
+  const around = new Map<string, FindingView[]>()
+  const put = (into: Map<string, FindingView[]>, path: string, finding: FindingView) =>
     into.get(path)?.push(finding) ?? into.set(path, [finding])
   for (const finding of findings) {
     put(at, finding.path, finding)
@@ -50,11 +50,11 @@ function placedOf(findings: readonly FindingBody[]): Placed {
 }
 
 /** The findings that name a way out: they are shown at its arrow or port. */
-export function findingsOfTransition(findings: readonly FindingBody[], path: string, outcome: string): readonly FindingBody[] {
+export function findingsOfTransition(findings: readonly FindingView[], path: string, outcome: string): readonly FindingView[] {
   return findings.filter((finding) => finding.path === path && finding.message.includes(`\`${outcome}\``))
 }
 
-export function useTransitionFindings(path: string, outcome: string): readonly FindingBody[] {
+export function useTransitionFindings(path: string, outcome: string): readonly FindingView[] {
   const findings = useEditor((s) => placedOf(problemsOf(draftOf(s))).at.get(path))
   return useMemo(() => {
     const own = findings ? findingsOfTransition(findings, path, outcome) : NONE

@@ -1,5 +1,5 @@
 /** Going to a problem: its node on the canvas, its line in the text. */
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { problemsOf } from '../../document/editing/findings'
 import { allNodes } from '../../document/editing/model'
 import { nearestPath } from './marks'
@@ -8,7 +8,7 @@ import { draftOf, editor, rootOf, setEditor, showEditorNotice } from './store'
 
 let last = -1
 
-export function goTo(finding: FindingBody): void {
+export function goTo(finding: FindingView): void {
   const root = rootOf(editor())
   const path = root && nearestPath(new Set(allNodes(root).map((node) => node.path)), finding.path)
   if (path && path !== 'root') reveal(path)

@@ -2,7 +2,7 @@
 import { create } from 'zustand'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { sameFindings } from '../../document/editing/findings'
 import { replaced } from '../../document/editing/history'
 import type { Draft } from '../../document/editing/model'
@@ -40,7 +40,7 @@ async function look(): Promise<void> {
     const isWanted = editor().id === id && draftOf(editor()).text === text && useTargets.getState().level === level
     if (answer.dropped || !isWanted) return
     useTargets.setState({ problem: answer.problem })
-    take(answer.findings.map((each): FindingBody => ({ ...each, severity: level })), true)
+    take(answer.findings.map((each): FindingView => ({ ...each, severity: level })), true)
   } catch (error) {
     useTargets.setState({ problem: wordsOf(error) })
   }

@@ -1,12 +1,12 @@
 /** The problems of a document, with place and advice. */
 import { IconCircleCheck } from '@tabler/icons-react'
-import type { FindingBody } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 
 export interface FindingListProps {
   readonly document: string
-  readonly findings: readonly FindingBody[]
+  readonly findings: readonly FindingView[]
   readonly onSelect: (path: string) => void
 }
 

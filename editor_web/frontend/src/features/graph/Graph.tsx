@@ -13,7 +13,7 @@ import {
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
 import { useCallback, useEffect, useMemo, useState, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
-import type { GraphNodeBody, NodeLive } from '../../api/types'
+import type { GraphNode, NodeLive } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { flatten, isContainer } from '../../document/tree'
@@ -32,7 +32,7 @@ function fitOptions() {
 }
 
 export interface GraphProps {
-  readonly root: GraphNodeBody
+  readonly root: GraphNode
   /** Path of the selected node. */
   readonly selected: string | undefined
   readonly onSelect: (path: string | undefined) => void
@@ -108,7 +108,7 @@ interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'of'> {
 }
 
 /** The paths of the active leaves, in one string so that it changes only when they do. */
-function activeLeaves(root: GraphNodeBody, nodes: Dict<NodeLive>): string {
+function activeLeaves(root: GraphNode, nodes: Dict<NodeLive>): string {
   const leaves = flatten(root).filter((node) => !isContainer(node) && lookup(nodes, node.path)?.status === 'active')
   return leaves.map((node) => node.path).join('\n')
 }

@@ -6,7 +6,7 @@ import { useIsPage } from '../../api/liveStore'
 
 export function Marks({ path }: { path: string }) {
   const points = useBreakpointsAt(path)
-  const isLocked = useHolds((control) => control?.locks.some((each) => each.path === path) ?? false)
+  const isLocked = useHolds((control) => control?.locks.includes(path) ?? false)
   const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
   return (
     <>

@@ -2,23 +2,23 @@
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
 import { useNodeLive } from '../../api/liveParts'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { kindLabel } from '../../document/tree'
 
 export interface OutlineProps {
-  readonly root: GraphNodeBody
+  readonly root: GraphNode
   readonly selected: string | undefined
   readonly onSelect: (path: string) => void
 }
 
 interface Row {
-  readonly node: GraphNodeBody
+  readonly node: GraphNode
   readonly level: number
   readonly parent: string | undefined
 }
 
-function rowsOf(node: GraphNodeBody, closed: ReadonlySet<string>, level = 1, parent?: string): Row[] {
+function rowsOf(node: GraphNode, closed: ReadonlySet<string>, level = 1, parent?: string): Row[] {
   const below = closed.has(node.path) ? [] : node.children
   return [{ node, level, parent }, ...below.flatMap((child) => rowsOf(child, closed, level + 1, node.path))]
 }

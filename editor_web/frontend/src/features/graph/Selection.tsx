@@ -1,13 +1,13 @@
 /** What is known of the selected node: kind, state, outcomes, last visit, why it failed. */
 import { lookup } from '../../document/dict'
 import { useLive } from '../../api/live'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { StatusBadge } from '../../components/StatusBadge'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 
-export function Selection({ node }: { node: GraphNodeBody }) {
+export function Selection({ node }: { node: GraphNode }) {
   const live = useLive((s) => lookup(s.nodes, node.path))
   return (
     <section className="selection" aria-label={`Selected: ${node.name}`}>

@@ -1,12 +1,12 @@
 /** From a laid-out behavior to the canvas's nodes and edges; what is live is not in them. */
 import { Position, type Edge, type Node } from '@xyflow/react'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import type { Size } from '../../document/geometry'
 import { exitsOf, outcomeId, type Course, type Exit } from '../../document/layout'
 import { flatten, isContainer, kindLabel } from '../../document/tree'
 import type { LaidOut } from './useLayout'
 
-export type StepNode = Node<{ node: GraphNodeBody; isInitial: boolean; machine: string; exits: readonly Exit[] }, 'leaf' | 'container'>
+export type StepNode = Node<{ node: GraphNode; isInitial: boolean; machine: string; exits: readonly Exit[] }, 'leaf' | 'container'>
 export type OutcomeNode = Node<{ machine: string; outcome: string }, 'outcome'>
 export type CanvasNode = StepNode | OutcomeNode
 export type CourseEdge = Edge<{ course: Course }, 'course'>
@@ -34,7 +34,7 @@ function measured({ width, height }: Size): Pick<CanvasNode, 'width' | 'height' 
   }
 }
 
-function step(node: GraphNodeBody, parent: GraphNodeBody | undefined, layout: Boxes): StepNode {
+function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes): StepNode {
   const box = layout.boxes.get(node.path) ?? { x: 0, y: 0, ...layout.size }
   return {
     id: node.path,
@@ -54,7 +54,7 @@ function step(node: GraphNodeBody, parent: GraphNodeBody | undefined, layout: Bo
   }
 }
 
-function outcomes(node: GraphNodeBody, layout: Boxes): OutcomeNode[] {
+function outcomes(node: GraphNode, layout: Boxes): OutcomeNode[] {
   if (node.kind !== 'machine') return []
   return node.outcomes.flatMap((outcome) => {
     const box = layout.boxes.get(outcomeId(node.path, outcome))

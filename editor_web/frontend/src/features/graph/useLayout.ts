@@ -1,6 +1,6 @@
 /** Lays a behavior out in the direction that fills the pane best. */
 import { useEffect, useState } from 'react'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { zoom, type Size } from '../../document/geometry'
 import { layOut, type Direction, type Layout, type LayoutCall, type Style } from '../../document/layout'
 import { layOutRoughly } from '../../document/roughLayout'
@@ -8,14 +8,14 @@ import { flatten } from '../../document/tree'
 import { layOutByElk } from '../../components/elk'
 
 export interface LaidOut {
-  readonly root: GraphNodeBody
+  readonly root: GraphNode
   readonly layout: Layout
   readonly direction: Direction
 }
 
 export type Flow = Direction | 'AUTO'
 
-export function useLayout(root: GraphNodeBody, flow: Flow, pane: Size | undefined) {
+export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
   const [laidOut, setLaidOut] = useState<LaidOut>()
   const [problem, setProblem] = useState<string>()
   const measured = pane !== undefined

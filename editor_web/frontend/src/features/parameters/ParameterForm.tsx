@@ -3,7 +3,7 @@ import { lookup } from '../../document/dict'
 import { Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
-import type { BehaviorBody } from '../../api/types'
+import type { BehaviorView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { ParameterField } from '../../components/ParameterField'
 import { StartOptions } from './StartOptions'
@@ -13,7 +13,7 @@ import { useStart } from './useStart'
 export const FORM_ID = 'parameters'
 
 export interface ParameterFormProps {
-  readonly behavior: BehaviorBody
+  readonly behavior: BehaviorView
   /** Why it cannot be started now; undefined when it can. */
   readonly obstacle: string | undefined
   /** Where it will run, in words. */

@@ -7,14 +7,14 @@ import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
 import { clearRefusal, showRefusal, send } from '../../api/refusal'
-import type { BehaviorBody, StartBody } from '../../api/types'
+import type { BehaviorView, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
 type Values = Dict<unknown>
 type Problems = Dict<string | undefined>
 
-export function useStart(behavior: BehaviorBody, onStarted: () => void) {
+export function useStart(behavior: BehaviorView, onStarted: () => void) {
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
   const [values, setValues] = useState<Values>(() => Object.fromEntries(fields.map((f) => [f.name, f.initial])))
   const [problems, setProblems] = useState<Problems>({})

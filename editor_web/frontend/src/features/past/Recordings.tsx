@@ -4,7 +4,7 @@ import { IconFileAnalytics } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { pastApi } from '../../api/timeline'
-import type { RecordingBody } from '../../api/types'
+import type { RecordingFile } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { wallTime } from '../../document/time'
 
@@ -14,7 +14,7 @@ export interface RecordingsProps {
 }
 
 export function Recordings({ href, onOpen }: RecordingsProps) {
-  const [files, setFiles] = useState<readonly RecordingBody[]>()
+  const [files, setFiles] = useState<readonly RecordingFile[]>()
   const [problem, setProblem] = useState('')
   useEffect(() => {
     let isCurrent = true
@@ -66,7 +66,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
   )
 }
 
-function Named({ file }: { file: RecordingBody }) {
+function Named({ file }: { file: RecordingFile }) {
   return (
     <>
       <span className="past-item-name">{file.behavior || file.path.split('/').pop()}</span>

@@ -2,9 +2,9 @@
 import { Checkbox, CloseButton, TextInput } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useState } from 'react'
-import type { TopicFields } from '../../api/bus'
 import { idOf, rowsOf, shownTopics, type FieldRow } from './fields'
 import { MOST_CURVES } from './usePlot'
+import type { TopicFields } from '../../api/types'
 
 interface FieldChooserProps {
   readonly topics: readonly TopicFields[]

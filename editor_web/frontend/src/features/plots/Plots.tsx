@@ -3,7 +3,7 @@ import './plots.css'
 import { Button, SegmentedControl } from '@mantine/core'
 import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useEffect, useMemo, useRef, useState } from 'react'
-import { bus, type TopicFields } from '../../api/bus'
+import { bus } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
@@ -15,6 +15,7 @@ import { FieldChooser } from './FieldChooser'
 import { Legend } from './Legend'
 import { PlotCanvas } from './PlotCanvas'
 import { SPANS_S, usePlot } from './usePlot'
+import type { TopicFields } from '../../api/types'
 
 const NONE: readonly TopicFields[] = []
 /** New devices bring new numbers. */

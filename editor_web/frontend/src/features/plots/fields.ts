@@ -1,5 +1,5 @@
 /** The numbers that can be plotted: named, searched, and gathered in rows such as the joints of an arm. */
-import type { SignalField, TopicFields } from '../../api/bus'
+import type { SignalField, TopicFields } from '../../api/types'
 
 export interface FieldRow {
   readonly name: string

@@ -3,13 +3,13 @@ import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { entries } from '../../api/entries'
 import { teach, useTeach } from '../../api/teaching'
-import type { EntryRow, Trace } from '../../api/types'
+import type { EntryChanged, Trace } from '../../api/types'
 
 // Who goes through a list looks at none of what is between.
 const POINTING_MS = 120
 
 export interface EntryTrace {
-  readonly row?: EntryRow | undefined
+  readonly row?: EntryChanged | undefined
   readonly trace?: Trace | undefined
   readonly problem: string
 }

@@ -1,13 +1,13 @@
 /** The runs that ended last, one line each. */
 import { Checkbox } from '@mantine/core'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { StatusBadge } from '../../components/StatusBadge'
 import { PageLink } from '../../components/PageLink'
 import { duration, wallTime } from '../../document/time'
 import { isFailure, nameOf } from './RunList'
 
 interface FinishedRunsProps {
-  readonly runs: readonly RunOverview[]
+  readonly runs: readonly RunView[]
   readonly href: (run: string) => string
   readonly onOpen: (run: string) => void
   readonly chosen: readonly string[]

@@ -4,11 +4,11 @@ import { Alert, Button, Checkbox, Radio } from '@mantine/core'
 import { IconHeartbeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, ServerError } from '../../api/client'
-import type { ErrorBody, InterruptedRunBody, QuestionBody } from '../../api/types'
+import type { ErrorBody, RunRecord, ResumeQuestion } from '../../api/types'
 import { wallTime } from '../../document/time'
 
 export interface InterruptedProps {
-  readonly runs: readonly InterruptedRunBody[]
+  readonly runs: readonly RunRecord[]
   /** Why nothing can be resumed from this page. */
   readonly obstacle: string | undefined
   readonly onResumed: (run: string) => void
@@ -25,11 +25,11 @@ export function Interrupted({ runs, obstacle, onResumed }: InterruptedProps) {
 }
 
 interface ResumableProps extends Omit<InterruptedProps, 'runs'> {
-  readonly run: InterruptedRunBody
+  readonly run: RunRecord
 }
 
 function Resumable({ run, obstacle, onResumed }: ResumableProps) {
-  const [questions, setQuestions] = useState<readonly QuestionBody[]>([])
+  const [questions, setQuestions] = useState<readonly ResumeQuestion[]>([])
   const [answers, setAnswers] = useState<Dict<string>>({})
   const [changed, setChanged] = useState(false)
   const [problem, setProblem] = useState<ErrorBody>()
@@ -57,7 +57,7 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
         <span>
           <strong>{run.behavior}</strong> <span className="quiet mono">{run.id}</span>
           <span className="quiet resumable-facts">
-            started {wallTime(run.started_at_s)}; its engine ended in the middle of it, after event {run.last_seq}
+            started {wallTime(run.started_unix_s)}; its engine ended in the middle of it, after event {run.last_seq}
           </span>
         </span>
       </div>

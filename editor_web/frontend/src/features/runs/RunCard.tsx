@@ -3,7 +3,7 @@ import { Checkbox } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import { useNodePart } from '../../api/liveParts'
-import type { GraphNodeBody, RunOverview } from '../../api/types'
+import type { GraphNode, RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { PageLink } from '../../components/PageLink'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
@@ -14,9 +14,9 @@ import { nameOf } from './RunList'
 import { RunStrip } from './RunStrip'
 
 export interface RunCardProps {
-  readonly run: RunOverview
+  readonly run: RunView
   /** Its graph, where its document can be read. */
-  readonly root: GraphNodeBody | null
+  readonly root: GraphNode | null
   /** The arms and devices that it commands. */
   readonly held: readonly string[]
   readonly href: string

@@ -1,7 +1,7 @@
 /** The runs of this server, newest first. */
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
@@ -47,17 +47,17 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
 const WAITS: Record<string, string> = { asks: 'asks', paused: 'paused', locked: 'waits at a lock' }
 
 /** What a run waits for that somebody has to give, in words. */
-export function waitsText(run: RunOverview): string {
+export function waitsText(run: RunView): string {
   return WAITS[run.waits] ?? run.waits
 }
 
-function runText(run: RunOverview): string {
+function runText(run: RunView): string {
   if (isActive(run)) return [run.status, waitsText(run)].filter(Boolean).join(', ')
   return `${run.outcome ?? run.status}, ${duration(run.duration_s)}`
 }
 
 /** Did it end badly? */
-export function isFailure(run: RunOverview): boolean {
+export function isFailure(run: RunView): boolean {
   return run.status === 'errored' || (run.status === 'finished' && !run.success)
 }
 
@@ -67,7 +67,7 @@ export function nameOf(behavior: string): string {
 }
 
 /** How long a run takes or took. */
-export function RunTime({ run }: { run: RunOverview }) {
+export function RunTime({ run }: { run: RunView }) {
   const watched = useLive((s) => s.run)
   if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <SinceStart startedS={run.started_at_s} />
   return <span className="elapsed">{duration(run.duration_s)}</span>

@@ -2,11 +2,11 @@
 import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
-import type { GraphNodeBody } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { statusOf } from '../../components/StatusIcon'
 import { stripCells, pathWords, progressText } from '../../document/runProgress'
 
-export function RunStrip({ root }: { root: GraphNodeBody }) {
+export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])
   const words = useLive((s) => progressText(cells, s.nodes, s.control?.waiting.map((each) => each.path)))
   return (

@@ -4,8 +4,8 @@ import { Checkbox } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { previewTaught, teach, useDisabledReason, useTeach, type CapturedPlace } from '../../api/teaching'
-import type { CaptureSummary } from '../../api/types'
+import { previewTaught, teach, useDisabledReason, useTeach } from '../../api/teaching'
+import type { Capture, CaptureSummary } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
 import { degrees } from '../../document/teaching'
@@ -150,8 +150,8 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
 }
 
 /** Where a captured pose is in its own frame, where that is not the world. */
-function usePlace({ id, form }: CaptureSummary): NonNullable<CapturedPlace['pose']> | undefined {
-  const [place, setPlace] = useState<CapturedPlace['pose']>()
+function usePlace({ id, form }: CaptureSummary): NonNullable<Capture['pose']> | undefined {
+  const [place, setPlace] = useState<Capture['pose']>()
   useEffect(() => {
     if (form !== 'pose') return
     let current = true

@@ -4,14 +4,14 @@ import { IconArrowBackUp, IconEye, IconTag, IconTrash } from '@tabler/icons-reac
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { previewTaught, teach, useDisabledReason, useTeach } from '../../api/teaching'
-import type { EntryRow } from '../../api/types'
+import type { EntryChanged } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { tagFault, tagsOf } from '../../document/teaching'
 import { EntryHistory } from './EntryHistory'
 import { PLAYED } from './forms'
 import { PlayBack } from './PlayBack'
 
-export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryRow }) {
+export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryChanged }) {
   const off = useDisabledReason()
   const looked = useTeach((s) => s.refused.look)
   const [problem, setProblem] = useState('')
@@ -49,7 +49,7 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
 }
 
 interface TagsProps {
-  readonly entry: EntryRow
+  readonly entry: EntryChanged
   readonly obstacle: string | undefined
   readonly onKeep: (tags: readonly string[]) => void
 }

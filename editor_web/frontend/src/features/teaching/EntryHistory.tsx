@@ -2,8 +2,8 @@
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { previewTaught, teach, type EntryChange, type EntryValue } from '../../api/teaching'
-import type { EntryRow } from '../../api/types'
+import { previewTaught, teach } from '../../api/teaching'
+import type { EntryChanged, EntryRecord } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, degrees } from '../../document/teaching'
 import { wallTime } from '../../document/time'
@@ -13,7 +13,7 @@ import { poseWords } from './poseWords'
 
 const MOST_SHOWN = 1200
 
-export function EntryHistory({ arm, entry }: { readonly arm: string; readonly entry: EntryRow }) {
+export function EntryHistory({ arm, entry }: { readonly arm: string; readonly entry: EntryChanged }) {
   const [opened, setOpened] = useState<number>()
   const history = useHistory(entry)
   return (
@@ -45,7 +45,7 @@ export function EntryHistory({ arm, entry }: { readonly arm: string; readonly en
 
 interface WasProps {
   readonly arm: string
-  readonly entry: EntryRow
+  readonly entry: EntryChanged
   readonly revision: number
 }
 
@@ -104,13 +104,13 @@ function Was({ arm, entry, revision }: WasProps) {
   )
 }
 
-function valueWords({ value }: EntryValue): string {
+function valueWords({ value }: EntryRecord): string {
   const text = JSON.stringify(value, undefined, 1)
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)} …` : text
 }
 
-function useRevision(kind: string, name: string, revision: number): { readonly was: EntryValue | undefined; readonly problem: string } {
-  const [was, setWas] = useState<EntryValue>()
+function useRevision(kind: string, name: string, revision: number): { readonly was: EntryRecord | undefined; readonly problem: string } {
+  const [was, setWas] = useState<EntryRecord>()
   const [problem, setProblem] = useState('')
   useEffect(() => {
     let current = true
@@ -125,8 +125,8 @@ function useRevision(kind: string, name: string, revision: number): { readonly w
   return { was, problem }
 }
 
-function useHistory({ kind, name, revision }: EntryRow): readonly EntryChange[] {
-  const [changes, setChanges] = useState<readonly EntryChange[]>([])
+function useHistory({ kind, name, revision }: EntryChanged): readonly EntryChanged[] {
+  const [changes, setChanges] = useState<readonly EntryChanged[]>([])
   useEffect(() => {
     let current = true
     teach.history(kind, name).then(

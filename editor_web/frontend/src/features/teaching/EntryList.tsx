@@ -3,7 +3,7 @@ import { Checkbox, NativeSelect, TextInput } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { teach, useTeach } from '../../api/teaching'
-import type { EntryPage, EntryRow } from '../../api/types'
+import type { EntryPage, EntryChanged } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Comparison, MOST_COMPARED, type Compared } from './Comparison'
 import { EntryDetails } from './EntryDetails'
@@ -77,12 +77,12 @@ export function EntryList({ arm }: { readonly arm: string }) {
   )
 }
 
-function keyOf(entry: EntryRow): string {
+function keyOf(entry: EntryChanged): string {
   return `${entry.kind} ${entry.name}`
 }
 
 /** As it is at its revision, so that a change is asked for anew. */
-function asCompared({ kind, name, revision }: EntryRow, arm: string): Compared {
+function asCompared({ kind, name, revision }: EntryChanged, arm: string): Compared {
   return { key: `${kind} ${name}`, label: name, arm, what: { kind, name, capture: 0, revision } }
 }
 

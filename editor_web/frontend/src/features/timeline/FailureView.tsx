@@ -4,14 +4,14 @@ import { IconCircleCheck, IconCircleX, IconHistory } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { pastApi, seekEvent, type Subject } from '../../api/timeline'
-import type { RunFailure, RunOverview } from '../../api/types'
+import type { RunFailure, RunView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { isActive } from '../../document/live'
 import { useSubject } from './useSubject'
 
 export interface FailureViewProps {
-  readonly run: RunOverview | undefined
+  readonly run: RunView | undefined
   readonly onShow: (path: string) => void
 }
 
@@ -59,7 +59,7 @@ function Tools({ failure, onShow }: { failure: RunFailure; onShow: (at: At) => v
   )
 }
 
-function emptyTitle(run: RunOverview | undefined, isOver: boolean, failure: RunFailure | null | undefined): string {
+function emptyTitle(run: RunView | undefined, isOver: boolean, failure: RunFailure | null | undefined): string {
   if (!run) return 'No run yet'
   if (!isOver) return 'The run is under way'
   return failure === undefined ? 'Reading…' : 'This run did not fail'

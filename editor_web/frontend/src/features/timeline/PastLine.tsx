@@ -4,11 +4,11 @@ import { IconHistory } from '@tabler/icons-react'
 import { useEffect } from 'react'
 import { backToPresent, leave, servesCell, useTimeline } from '../../api/timeline'
 import { useLive } from '../../api/live'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { useSubject } from './useSubject'
 
 export interface PastLineProps {
-  readonly run: RunOverview | undefined
+  readonly run: RunView | undefined
   readonly hasCellView: boolean
 }
 

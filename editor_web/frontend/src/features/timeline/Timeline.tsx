@@ -5,7 +5,7 @@ import { IconTimeline } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
 import { backToPresent, seek, seekEvent, useTimeline } from '../../api/timeline'
 import { useLive } from '../../api/live'
-import type { BehaviorBody, RunOverview } from '../../api/types'
+import type { BehaviorView, RunView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
@@ -20,8 +20,8 @@ import { useRunTime } from './useRunTime'
 import { useFollowed, useSubject } from './useSubject'
 
 export interface TimelineProps {
-  readonly behavior: BehaviorBody
-  readonly run: RunOverview | undefined
+  readonly behavior: BehaviorView
+  readonly run: RunView | undefined
   readonly node: string | undefined
   readonly onShow: (path: string) => void
 }

@@ -2,10 +2,10 @@
 import { useEffect, useMemo } from 'react'
 import { streamedSeq, useLive } from '../../api/live'
 import { forget, refresh, runSubject, useTimeline, type Subject } from '../../api/timeline'
-import type { RunOverview } from '../../api/types'
+import type { RunView } from '../../api/types'
 import { isActive } from '../../document/live'
 
-export function useSubject(run: RunOverview | undefined): Subject | undefined {
+export function useSubject(run: RunView | undefined): Subject | undefined {
   const opened = useTimeline((s) => s.opened)
   const id = run?.id
   return useMemo(() => opened ?? (id ? runSubject(id) : undefined), [opened, id])
@@ -14,7 +14,7 @@ export function useSubject(run: RunOverview | undefined): Subject | undefined {
 const PERIOD_MS = 400
 
 /** Keep the timeline up to date while it is seen. */
-export function useFollowed(subject: Subject | undefined, run: RunOverview | undefined, isShown: boolean): void {
+export function useFollowed(subject: Subject | undefined, run: RunView | undefined, isShown: boolean): void {
   const generation = useLive((s) => s.generation)
   const goesOn = isActive(run) && !subject?.isPast
   useEffect(() => forget, [subject?.address, generation])
