@@ -7,15 +7,8 @@ from typing import Annotated
 from msgspec import Meta
 
 from editor_web.http_bodies.common_bodies import RequestBody
+from engine.project.run_factory import RunPosition
 from engine.runtime.control import AutonomyLevel, LossPolicy
-
-
-class RunPositionBody(RequestBody, frozen=True, kw_only=True):
-    """The event of a journaled run to begin at, at the last entered state unless `path` is given."""
-
-    run: str
-    seq: Annotated[int, Meta(ge=1)]
-    path: str | None = None
 
 
 class SupervisionBody(RequestBody, frozen=True, kw_only=True):
@@ -37,4 +30,4 @@ class StartBody(RequestBody, frozen=True, kw_only=True):
     inputs: dict[str, object] = {}
     seed: Annotated[int, Meta(ge=0, lt=2**31)] | None = None
     supervision: SupervisionBody = SupervisionBody()
-    begin: RunPositionBody | None = None
+    begin: RunPosition | None = None

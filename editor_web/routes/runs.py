@@ -15,7 +15,6 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import FlexcellError
 from engine.event import AnyEvent
-from engine.project.run_factory import RunPosition
 from engine.project.session_run import RunView
 from engine.runtime.run_options import RunOptions
 
@@ -58,7 +57,7 @@ async def start_run(
         inputs=body.inputs,
         supervision=RunOptions(**{name: value for name, value in asdict(watched).items() if name != "breakpoints"}),
         breakpoints=watched.breakpoints,
-        begin=RunPosition(**asdict(body.begin)) if body.begin is not None else None,
+        begin=body.begin,
     )
     if idempotency_key is not None:
         started[idempotency_key] = run_id

@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import msgspec
 
@@ -155,12 +156,11 @@ def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, paramete
     require_no_errors(check_given(behavior, catalogue, cell, parameters))
 
 
-@dataclass(frozen=True, kw_only=True)
-class RunPosition:
+class RunPosition(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An event of a run in the journal; `path` is the node to start at, by default the state entered last."""
 
     run: str
-    seq: int
+    seq: Annotated[int, msgspec.Meta(ge=1)]
     path: str | None = None
 
 

@@ -11,11 +11,7 @@ import type { HandleStatus, RefusedFrame } from './types'
 /** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
 export type HandleMode = HandleStatus['way']
 
-interface GripStore {
-  /** The arm that has a handle; empty for none. */
-  readonly arm: string
-  readonly way: HandleMode
-  readonly pulled: boolean
+interface GripStore extends Omit<HandleStatus, 'k'> {
   /** Why the last pull did nothing; empty where it did. */
   readonly refused: string
 }

@@ -1524,8 +1524,8 @@ export interface RunFailure {
   readonly around: readonly LogLine[]
 }
 
-/** The event of a journaled run to begin at, at the last entered state unless `path` is given. */
-export interface RunPositionBody {
+/** An event of a run in the journal; `path` is the node to start at, by default the state entered last. */
+export interface RunPosition {
   readonly run: string
   readonly seq: number
   readonly path?: string | null
@@ -1745,7 +1745,7 @@ export interface StartBody {
   readonly inputs?: Dict<unknown>
   readonly seed?: number | null
   readonly supervision?: SupervisionBody
-  readonly begin?: RunPositionBody | null
+  readonly begin?: RunPosition | null
 }
 
 /** From the page: prepare to jog this arm, until `rest`. */

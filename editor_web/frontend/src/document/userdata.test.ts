@@ -1,8 +1,9 @@
 /** Userdata as it is shown. */
 import { expect, test } from 'vitest'
-import { scopeName, shownScopes, withChanges, type Scope } from './userdata'
+import { scopeName, shownScopes, withChanges } from './userdata'
+import type { ScopeView } from '../api/types'
 
-const scope = (values: Record<string, unknown>, isOpen = true): Scope => ({
+const scope = (values: Record<string, unknown>, isOpen = true): ScopeView => ({
   is_open: isOpen,
   since_s: 0,
   values: Object.fromEntries(Object.entries(values).map(([key, value]) => [key, { value, by: 'root/set', at_s: 1, writes: 1 }])),

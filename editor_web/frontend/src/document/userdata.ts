@@ -1,33 +1,21 @@
 /** The userdata of a run as it is shown: scopes merged from what has changed, searched, named. Pure. */
+import type { ScopeView, UserdataRecord } from '../api/types'
 import type { Dict } from './dict'
 import { inShort } from './values'
 
-interface Line {
-  readonly value: unknown
-  readonly by: string
-  readonly at_s: number
-  readonly writes: number
-}
-
-export interface Scope {
-  readonly is_open: boolean
-  readonly since_s: number
-  readonly values: Dict<Line>
-}
-
-export type Scopes = Dict<Scope>
+export type Scopes = Dict<ScopeView>
 
 /** Scopes with what has changed in them; null takes one away. */
-export function withChanges(before: Scopes, changes: Dict<Scope | null>, isAll: boolean): Scopes {
+export function withChanges(before: Scopes, changes: Dict<ScopeView | null>, isAll: boolean): Scopes {
   const merged = isAll ? { ...changes } : { ...before, ...changes }
-  return Object.fromEntries(Object.entries(merged).filter((entry): entry is [string, Scope] => entry[1] !== null))
+  return Object.fromEntries(Object.entries(merged).filter((entry): entry is [string, ScopeView] => entry[1] !== null))
 }
 
 export interface ScopeShown {
   readonly path: string
   readonly name: string
   readonly isOpen: boolean
-  readonly lines: readonly (Line & { readonly key: string })[]
+  readonly lines: readonly (UserdataRecord & { readonly key: string })[]
 }
 
 /** The scopes that have values, or values that match; those of active containers first, each in the order of its path. */

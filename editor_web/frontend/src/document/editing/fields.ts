@@ -1,4 +1,5 @@
 /** From a state's JSON Schema to the fields of the editor's form, and values to and from what is typed. Pure. */
+import type { KeyView } from '../../api/types'
 import { lookup, type Dict } from '../dict'
 
 export type Schema = Dict<unknown>
@@ -29,15 +30,8 @@ export interface EditField {
   readonly fallback: unknown
 }
 
-export interface KeyLike {
-  readonly name: string
-  readonly required: boolean
-  readonly default: unknown
-  readonly schema: Schema
-}
-
 /** Describe one parameter of a state as a field. */
-export function editFieldOf(key: KeyLike): EditField {
+export function editFieldOf(key: KeyView): EditField {
   const definitions = record(key.schema['$defs'])
   const { schema, isNullable } = resolved(key.schema, definitions)
   const said = { ...schema, ...withoutShape(key.schema) }

@@ -1,4 +1,5 @@
 /** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
+import type { ConcurrencyCondition } from '../../api/types'
 import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
@@ -12,14 +13,13 @@ import {
   withCount,
   without,
   withPreempted,
-  type Rule,
 } from '../../document/editing/rules'
 import { perform, performOn } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 
 export function RulesForm({ node }: { node: EditNode }) {
-  const set = (change: (rules: readonly Rule[]) => readonly Rule[], words: string) =>
+  const set = (change: (rules: readonly ConcurrencyCondition[]) => readonly ConcurrencyCondition[], words: string) =>
     void performOn(node.path, words, (now) => [
       setField(node.path, 'conditions', conditionsOf(change(now.rules))),
     ])
@@ -172,7 +172,7 @@ function Preempted({
   onSet,
 }: {
   index: number
-  rule: Rule
+  rule: ConcurrencyCondition
   names: readonly string[]
   onSet: (child: string, isPreempted: boolean) => void
 }) {
