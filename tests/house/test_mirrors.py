@@ -20,8 +20,6 @@ from typing import Any
 import msgspec
 from pydantic import BaseModel
 
-import editor_web
-import engine
 from editor_web.schema import TYPES
 
 LEAST_FIELDS = 3
@@ -57,9 +55,9 @@ _FIELD = re.compile(r"^  readonly (\w+)\??:", re.MULTILINE)
 
 def test_no_class_of_the_server_repeats_a_class_of_the_engine() -> None:
     """But those that are named above, all of which are needed."""
-    ours = _classes(editor_web)
+    ours = _classes("editor_web")
     assert len(ours) > 50, "the classes of the server are not found any more"
-    theirs = {name: _field_names(each) for name, each in _classes(engine).items()}
+    theirs = {name: _field_names(each) for name, each in _classes("engine").items()}
     found = _mirrors({name: _own_fields(each) for name, each in ours.items()}, theirs)
     named = {name.rsplit(".", 1)[-1]: words for name, words in found.items()}
     assert named == {name: named.get(name, "no mirror: take its exception away") for name in NOT_MIRRORS}
@@ -125,9 +123,7 @@ def _mirrors(ours: Mapping[str, frozenset[str]], theirs: Mapping[str, frozenset[
 def _own_fields(cls: type[Any], *, apart_from: tuple[type[Any], ...] = ()) -> frozenset[str]:
     """Return the fields of a class that it does not inherit from the engine, or from one of these classes."""
     inherited = [
-        _field_names(base)
-        for base in cls.__mro__[1:]
-        if base in apart_from or base.__module__.startswith(f"{engine.__name__}.")
+        _field_names(base) for base in cls.__mro__[1:] if base in apart_from or base.__module__.startswith("engine.")
     ]
     return _field_names(cls).difference(*inherited)
 
@@ -153,11 +149,11 @@ def _protocol_fields(cls: type[Any]) -> Iterator[str]:
 
 
 @cache
-def _classes(package: ModuleType) -> dict[str, type[Any]]:
+def _classes(package: str) -> dict[str, type[Any]]:
     """Return the public classes with fields that a package defines, by their full names."""
     return {
         f"{cls.__module__}.{cls.__qualname__}": cls
-        for module in _modules(package)
+        for module in _modules(importlib.import_module(package))
         for _, cls in inspect.getmembers(module, inspect.isclass)
         if cls.__module__ == module.__name__ and not cls.__name__.startswith("_") and _field_names(cls)
     }
