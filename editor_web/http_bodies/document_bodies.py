@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody, GraphNodeBody, HttpBody
+from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody, GraphNodeBody, HttpBody, TransitionBody
 from engine.document.yaml_source import MAX_BYTES
 
 Text = Annotated[str, Field(max_length=MAX_BYTES)]
@@ -109,12 +109,34 @@ class EditRefusalBody(HttpBody):
     index: int
 
 
+class GraphDifferenceBody(HttpBody):
+    """How the graph of the text with the hash `base` becomes another one; nodes are named by path.
+
+    `nodes` are those that are new or say something else, without children, transitions and lines. `children` are the
+    names of all children, in order, where these changed; a node that is no child any more is gone. `arrows` are the
+    transitions between children of a node, by the child that they leave, where they changed. `shifts` are pairs of a
+    line of the old graph and a number of lines by which everything from there on moved; `lines` are line, column and
+    last line of all other nodes.
+    """
+
+    base: Hash
+    nodes: dict[str, DocumentNodeBody]
+    children: dict[str, tuple[str, ...]]
+    arrows: dict[str, dict[str, tuple[TransitionBody, ...]]]
+    shifts: tuple[tuple[int, int], ...]
+    lines: dict[str, tuple[int, int, int]]
+
+
 class EditResultBody(DraftResultBody):
-    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused."""
+    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused.
+
+    With a `difference` there is no `graph`.
+    """
 
     text: str
     changed: tuple[str, ...]
     refused: EditRefusalBody | None
+    difference: GraphDifferenceBody | None = None
 
 
 class CopyResultBody(HttpBody):
@@ -153,9 +175,14 @@ class DraftBody(TextBody):
 
 
 class EditsBody(DraftBody):
-    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`."""
+    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`.
+
+    `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server
+    knows that graph too.
+    """
 
     edits: Annotated[list[dict[str, object]], Field(max_length=500)]
+    graph: Hash | None = None
 
 
 class CopyBody(TextBody):

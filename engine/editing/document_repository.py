@@ -18,13 +18,13 @@ from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.yaml_source import MAX_BYTES, parse_source
-from engine.editing.apply import EditResult
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.data_flow import KeyFlow, data_flow
 from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.draft import Draft
-from engine.editing.draft_cache import DraftCache
+from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edit import AnyEdit
+from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext, StoredEntryNames
 from engine.editing.templates import new_text
 from engine.editing.three_way_merge import MergeConflict, merge_texts
@@ -172,10 +172,26 @@ class DocumentRepository:
         """Check a text as if it were the document's, without building its graph again."""
         return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
 
-    def edit(self, document_id: str, text: str, edits: Sequence[AnyEdit]) -> tuple[EditResult, DocumentAnalysis]:
-        """Apply edits to a text, all or none, and build the graph of the result; nothing is saved."""
-        context = self.context(document_id)
-        return self._desk.edit(text, edits, file=self.file_of(document_id), context=context)
+    def edit(
+        self,
+        document_id: str,
+        text: str,
+        edits: Sequence[AnyEdit],
+        *,
+        check: bool = False,
+        graph: str | None = None,
+    ) -> EditAnswer:
+        """Apply edits to a text, all or none, and build the graph of the result; nothing is saved.
+
+        Args:
+            document_id: Id of the document.
+            text: The text.
+            edits: The edits.
+            check: Whether to find the problems of the result.
+            graph: The hash of the text of which the asker has the graph, if any; the answer has the difference from it.
+        """
+        file, context = self.file_of(document_id), self.context(document_id)
+        return self._desk.edit(text, edits, file=file, context=context, check=check, graph=graph)
 
     def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
         """Return the writers and readers of each key of a text.
@@ -184,7 +200,8 @@ class DocumentRepository:
             DocumentError: the text is not a valid behavior, or leads out of the project.
         """
         file, context = self.file_of(document_id), self.context(document_id)
-        stray = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
+        draft = Draft(text, file=str(file))
+        stray = next(iter(find_external_references(draft, context, file, Outline(draft.data))), None)
         if stray is not None:
             where = Position(file=document_id, line=stray.line, column=stray.column)
             raise DocumentError(stray.message, where=where, hint=stray.hint)

@@ -405,7 +405,7 @@ export interface EditRefusalBody {
   readonly index: number
 }
 
-/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. */
+/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. With a `difference` there is no `graph`. */
 export interface EditResultBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
@@ -415,13 +415,15 @@ export interface EditResultBody {
   readonly text: string
   readonly changed: readonly string[]
   readonly refused: EditRefusalBody | null
+  readonly difference: GraphDifferenceBody | null
 }
 
-/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. */
+/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server knows that graph too. */
 export interface EditsBody {
   readonly text: string
   readonly check: boolean
   readonly edits: readonly Dict<unknown>[]
+  readonly graph: string | null
 }
 
 /** Entries of the store have changed. */
@@ -519,6 +521,16 @@ export interface FixesBody {
 export interface ForceBody {
   readonly path: string
   readonly outcome: string
+}
+
+/** How the graph of the text with the hash `base` becomes another one; nodes are named by path. `nodes` are those that are new or say something else, without children, transitions and lines. `children` are the names of all children, in order, where these changed; a node that is no child any more is gone. `arrows` are the transitions between children of a node, by the child that they leave, where they changed. `shifts` are pairs of a line of the old graph and a number of lines by which everything from there on moved; `lines` are line, column and last line of all other nodes. */
+export interface GraphDifferenceBody {
+  readonly base: string
+  readonly nodes: Dict<DocumentNodeBody>
+  readonly children: Dict<readonly string[]>
+  readonly arrows: Dict<Dict<readonly TransitionBody[]>>
+  readonly shifts: readonly (readonly [number, number])[]
+  readonly lines: Dict<readonly [number, number, number]>
 }
 
 /** One node of the behavior with everything inside it. */
