@@ -2,8 +2,9 @@
 
 `python -m benchmarks.edits` starts `flexcell serve` in a temporary project, opens a document as the page does, and
 sends edits one after the other, each of the text that the last one left. It prints, for each kind of edit, the median
-and the 95th percentile of the time until the answer is there and until the findings are, and the size of an answer
-beside that of the whole graph. The first edit of each kind is not counted.
+and the 95th percentile of the time until the answer is there and until the findings are, the CPU time of the server,
+and the size of an answer beside that of the whole graph. The first edit of each kind is not counted. Positions and
+notes are not checked: the page has them before it asks.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import http.client
 import json
 import os
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -23,11 +25,13 @@ from pathlib import Path
 from typing import cast
 
 from benchmarks.large_document import large_document
+from benchmarks.process_cpu import cpu_s
 from editor_web.security.authentication import load_access_tokens
 
 _PROGRAM = "from engine.cli.main import main; main()"
 _HOST = "127.0.0.1"
 _GIVE_UP_S = 60.0
+_LAYOUT = ("position", "note")
 Plain = dict[str, object]
 
 
@@ -43,10 +47,11 @@ class Subject:
 
 @dataclass(frozen=True)
 class Timing:
-    """One edit: seconds until its answer and until its findings, and bytes of its answer."""
+    """One edit: seconds until its answer and until its findings, of CPU of the server, and bytes of its answer."""
 
     answer_s: float
     findings_s: float
+    cpu_s: float
     size: int
 
 
@@ -108,7 +113,8 @@ def edits_of(subject: Subject) -> dict[str, Callable[[int], Plain]]:
 class Page:
     """Asks the server as the page does, on one connection."""
 
-    def __init__(self, port: int, token: str) -> None:
+    def __init__(self, port: int, token: str, server: int) -> None:
+        self._server = server
         self._connection = http.client.HTTPConnection(_HOST, port, timeout=_GIVE_UP_S)
         self._headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/json"}
 
@@ -126,17 +132,17 @@ class Page:
             raise RuntimeError(f"{method} {path}: {response.status} {read[:300].decode()}")
         return cast("Plain", json.loads(read)) if read.startswith(b"{") else {}, len(read)
 
-    def edit(self, document: str, state: Plain, edit: Plain) -> tuple[Plain, Timing]:
+    def edit(self, document: str, state: Plain, edit: Plain, *, check: bool) -> tuple[Plain, Timing]:
         """Send one edit of the text in `state`; return its answer, and how long it took."""
-        body: Plain = {"text": state["text"], "edits": [edit], "check": True, "graph": state["hash"]}
-        start = time.perf_counter()
+        body: Plain = {"text": state["text"], "edits": [edit], "check": check, "graph": state["hash"]}
+        spent, start = cpu_s(self._server), time.perf_counter()
         answer, size = self.ask("POST", f"{document}/edits", body)
         answered = time.perf_counter()
         if answer["refused"] is not None:
             raise RuntimeError(f"refused: {answer['refused']}")
-        if not answer["checked"]:
+        if check and not answer["checked"]:
             self.ask("POST", f"{document}/findings", {"text": answer["text"]})
-        return answer, Timing(answered - start, time.perf_counter() - start, size)
+        return answer, Timing(answered - start, time.perf_counter() - start, cpu_s(self._server) - spent, size)
 
 
 def measure(page: Page, document: str, subject: Subject, rounds: int) -> tuple[dict[str, list[Timing]], int]:
@@ -147,7 +153,7 @@ def measure(page: Page, document: str, subject: Subject, rounds: int) -> tuple[d
         state = opened
         timings: list[Timing] = []
         for number in range(rounds + 1):
-            state, timing = page.edit(document, state, make(number))
+            state, timing = page.edit(document, state, make(number), check=name not in _LAYOUT)
             timings.append(timing)
         found[name] = timings[1:]
     return found, whole
@@ -161,19 +167,20 @@ def percentile(values: Sequence[float], share: float) -> float:
 
 def _report(subject: Subject, found: dict[str, list[Timing]], whole: int) -> None:
     print(f"{subject.name}: text {len(subject.text) / 1e3:.0f} kB, answer with the whole graph {whole / 1e3:.0f} kB")
-    print(f"  {'edit':16}{'answer, ms':>18}{'findings, ms':>18}{'answer, kB':>14}")
-    print(f"  {'':16}{'p50':>9}{'p95':>9}{'p50':>9}{'p95':>9}")
+    print(f"  {'edit':16}{'answer, ms':>18}{'findings, ms':>18}{'CPU, ms':>10}{'answer, kB':>12}")
+    print(f"  {'':16}{'p50':>9}{'p95':>9}{'p50':>9}{'p95':>9}{'mean':>10}")
     for name, timings in found.items():
         shown = ""
         for times in ([each.answer_s for each in timings], [each.findings_s for each in timings]):
             shown += "".join(f"{percentile(times, share) * 1e3:9.1f}" for share in (0.5, 0.95))
-        print(f"  {name:16}{shown}{max(each.size for each in timings) / 1e3:14.1f}")
+        cpu_ms = statistics.mean(each.cpu_s for each in timings) * 1e3
+        print(f"  {name:16}{shown}{cpu_ms:10.1f}{max(each.size for each in timings) / 1e3:12.1f}")
 
 
 def _wait(server: subprocess.Popen[bytes], port: int, token: str) -> Page:
     deadline = time.monotonic() + _GIVE_UP_S
     while time.monotonic() < deadline and server.poll() is None:
-        page = Page(port, token)
+        page = Page(port, token, server.pid)
         try:
             page.ask("GET", "behaviors/flat.yaml?check=false")
             return page
