@@ -183,15 +183,16 @@ def _wait(server: subprocess.Popen[bytes], port: int, token: str) -> Page:
         page = Page(port, token, server.pid)
         try:
             page.ask("GET", "behaviors/flat.yaml?check=false")
-            return page
         except OSError:
             time.sleep(0.1)
+        else:
+            return page
     raise RuntimeError("the server did not start")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table for each document."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description="Measure edits of large documents through the real server.")
     parser.add_argument("--states", type=int, default=1000, help="states of each document")
     parser.add_argument("--rounds", type=int, default=30, help="edits of each kind")
     parser.add_argument("--port", type=int, default=8649)

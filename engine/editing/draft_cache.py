@@ -103,8 +103,9 @@ class DraftCache:
         before = sheet.graph if sheet is not None else None
         analysis, now = self._analyzed(done.draft, done.outline, file, context, before, check=check)
         difference = None
-        if before is not None and before.root is not None and now.root is not None and graph == text_hash(text):
-            difference = graph_difference(graph, before.nodes, now.nodes)
+        base = text_hash(text)
+        if before is not None and before.root is not None and now.root is not None and graph == base:
+            difference = graph_difference(base, before.nodes, now.nodes)
         return EditAnswer(result=done, analysis=analysis, difference=difference)
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:

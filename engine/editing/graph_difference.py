@@ -58,9 +58,7 @@ def graph_difference(base: str, before: Mapping[str, DrawnNode], now: Mapping[st
         kept.append((path, was.lines, node.lines))
     shifts = _shifts(kept)
     begins, moves = [begin for begin, _ in shifts], [by for _, by in shifts]
-    for path, old, new in kept:
-        if shifted(old, begins, moves) != new:
-            lines[path] = new
+    lines |= {path: new for path, old, new in kept if shifted(old, begins, moves) != new}
     return GraphDifference(base=base, nodes=nodes, children=children, arrows=arrows, shifts=tuple(shifts), lines=lines)
 
 

@@ -228,7 +228,7 @@ class _Rereading:
         shifts = self._shifts.get(id(found))
         if depth > MAX_DEPTH or (shifts is None and value is not found.data) or type(value) is not type(found.data):
             raise _Unlike
-        data = found.data = cast("Plain | list[object]", value)
+        data = found.data = value
         if id(data) in self.sources or len(data) != len(found.members):
             raise _Unlike
         self.sources[id(data)] = found
@@ -322,4 +322,4 @@ def is_equal_data(a: object, b: object) -> bool:
     if isinstance(a, list) and isinstance(b, list):
         many, more = cast("list[object]", a), cast("list[object]", b)
         return len(many) == len(more) and all(is_equal_data(one, other) for one, other in zip(many, more, strict=True))
-    return is_same_value(a, b)
+    return is_same_value(cast("object", a), b)
