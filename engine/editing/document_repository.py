@@ -173,22 +173,11 @@ class DocumentRepository:
         return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def edit(
-        self,
-        document_id: str,
-        text: str,
-        edits: Sequence[AnyEdit],
-        *,
-        check: bool = False,
-        graph: str | None = None,
+        self, document_id: str, text: str, edits: Sequence[AnyEdit], *, check: bool = False, graph: str | None = None
     ) -> EditAnswer:
         """Apply edits to a text, all or none, and build the graph of the result; nothing is saved.
 
-        Args:
-            document_id: Id of the document.
-            text: The text.
-            edits: The edits.
-            check: Whether to find the problems of the result.
-            graph: The hash of the text of which the asker has the graph, if any; the answer has the difference from it.
+        With `check` the findings are in the answer; with the hash `graph` of a text, the difference from its graph.
         """
         file, context = self.file_of(document_id), self.context(document_id)
         return self._desk.edit(text, edits, file=file, context=context, check=check, graph=graph)
