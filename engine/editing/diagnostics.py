@@ -112,10 +112,13 @@ def _check(text: str, file: Path, context: ProjectContext, source: DocumentSourc
     return [finding_view(finding, file) for finding in check_survey(survey, file, context.catalogue, entries)]
 
 
-def find_external_references(draft: Draft, context: ProjectContext, file: Path, outline: Outline) -> list[FindingView]:
-    """Return the references of a text to files outside the project, which must not be read."""
+def find_external_references(
+    draft: Draft, context: ProjectContext, file: Path, outline: Outline | None = None
+) -> list[FindingView]:
+    """Return the references of a text to files outside the project, which must not be read; `outline` are its nodes."""
+    refs = (outline or Outline(draft.data)).refs
     named: list[tuple[str, Plain, str]] = [
-        (path, ref.data, "behavior") for path, ref in outline.refs.items() if "behavior" in ref.data
+        (path, ref.data, "behavior") for path, ref in refs.items() if "behavior" in ref.data
     ]
     named += [("", draft.data, "cell")] if isinstance(draft.data.get("cell"), str) else []
     found: list[FindingView] = []

@@ -24,7 +24,6 @@ from engine.editing.diagnostics import DocumentAnalysis, find_external_reference
 from engine.editing.draft import Draft
 from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edit import AnyEdit
-from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext, StoredEntryNames
 from engine.editing.templates import new_text
 from engine.editing.three_way_merge import MergeConflict, merge_texts
@@ -189,8 +188,7 @@ class DocumentRepository:
             DocumentError: the text is not a valid behavior, or leads out of the project.
         """
         file, context = self.file_of(document_id), self.context(document_id)
-        draft = Draft(text, file=str(file))
-        stray = next(iter(find_external_references(draft, context, file, Outline(draft.data))), None)
+        stray = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
         if stray is not None:
             where = Position(file=document_id, line=stray.line, column=stray.column)
             raise DocumentError(stray.message, where=where, hint=stray.hint)
