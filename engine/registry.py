@@ -21,7 +21,6 @@ from typing import Any, cast
 from engine.document.project import Project, find_project
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import RegistryError
-from engine.host.gc_pause import pause_gc
 from engine.host.isolated_loading import LoadFailure, load_isolated
 from engine.state import State
 from engine.suggestions import did_you_mean
@@ -34,7 +33,6 @@ SERVERS = "flexcell.servers"
 MODELS = "flexcell.models"
 
 
-@pause_gc
 def load_states(start: Path | None = None) -> StateCatalogue:
     """Load the states of installed packages, and those of the modules that a project allows.
 

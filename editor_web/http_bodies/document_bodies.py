@@ -13,6 +13,7 @@ from engine.document.yaml_source import MAX_BYTES
 from engine.editing import DocumentAnalysis, StoredDocument
 from engine.editing.apply import EditRefusal
 from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView
+from engine.editing.graph_difference import GraphDifference
 from engine.editing.target_messages import TargetFindings
 from engine.editing.three_way_merge import MergeConflict
 
@@ -33,11 +34,15 @@ class DocumentBody(DocumentAnalysis):
 
 @dataclass(frozen=True, kw_only=True)
 class EditResultBody(DocumentAnalysis):
-    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused."""
+    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused.
+
+    With a `difference` there is no `graph`.
+    """
 
     text: str
     changed: tuple[str, ...]
     refused: EditRefusal | None
+    difference: GraphDifference | None = None
 
 
 class CopyResultBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -71,9 +76,14 @@ class DraftBody(TextBody, frozen=True, kw_only=True):
 
 
 class EditsBody(DraftBody, frozen=True, kw_only=True):
-    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`."""
+    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`.
+
+    `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server
+    knows that graph too.
+    """
 
     edits: Annotated[list[dict[str, object]], Meta(max_length=500)]
+    graph: Hash | None = None
 
 
 class CopyBody(TextBody, frozen=True, kw_only=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import HTTPException, Query
@@ -86,13 +87,18 @@ def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[s
 
 @router.post("/{document_id:path}/edits")
 def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditResultBody:
-    """Apply edits to a text, all or none; nothing is saved."""
-    documents = services.documents
+    """Apply edits to a text, all or none; nothing is saved. A graph that the server knows comes as a difference."""
     edits, refusal = read_edits(body.edits)
-    done, analysis = documents.edit(document_id, body.text, edits)
-    if body.check:
-        analysis = documents.examine(document_id, done.text)
-    return EditResultBody(**fields_of(analysis), text=done.text, changed=done.changed, refused=refusal or done.refused)
+    answer = services.documents.edit(document_id, body.text, edits, check=body.check, graph=body.graph)
+    done, difference = answer.result, answer.difference
+    analysis = answer.analysis if difference is None else replace(answer.analysis, graph=None)
+    return EditResultBody(
+        **fields_of(analysis),
+        text=done.text,
+        changed=done.changed,
+        refused=refusal or done.refused,
+        difference=difference,
+    )
 
 
 @router.post("/{document_id:path}/data_flow")

@@ -20,7 +20,6 @@ from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries_document import load_entries
 from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
-from engine.host.gc_pause import gc_paused
 from engine.preemption import OverduePolicy, preempt
 from engine.registry import DRIVERS, WORLDS, load_factory
 from engine.robot import Robot, World
@@ -111,9 +110,7 @@ class OpenCell:
 
     async def __aenter__(self) -> Self:
         try:
-            # Opening a world imports nearly a thousand modules.
-            with gc_paused():
-                await self._open()
+            await self._open()
         except BaseException:
             # After any error, the devices opened so far must come to rest and close.
             await self._stack.aclose()

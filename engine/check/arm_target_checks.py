@@ -22,7 +22,6 @@ from engine.document.cell import Cell
 from engine.document.entries_document import EntriesDocument, NamedAngles
 from engine.document.step_meter import METER
 from engine.errors import CellError
-from engine.host.gc_pause import pause_gc
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, StaticCell, ToolChange
 
@@ -59,7 +58,6 @@ class _Named:
     target: ArmTarget
 
 
-@pause_gc
 def check_targets(
     behavior: Behavior, catalogue: Catalogue, *, cell: Cell | CellContext | None = None
 ) -> tuple[Finding, ...]:

@@ -34,13 +34,11 @@ from engine.document.expression_cost import MAX_STEPS
 from engine.document.loader import BehaviorSurvey, CircularReference, survey_behavior
 from engine.document.step_meter import METER
 from engine.errors import DocumentError
-from engine.host.gc_pause import pause_gc
 
 MAX_CHECK_STEPS = 200 * MAX_STEPS
 """Maximum total cost of the constant expressions of a behavior in one check: 2 s."""
 
 
-@pause_gc
 def check_behavior(
     behavior: Behavior,
     catalogue: Catalogue,
@@ -78,7 +76,6 @@ def check_behavior(
     return tuple(findings)
 
 
-@pause_gc
 def check_given(
     behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]
 ) -> tuple[Finding, ...]:

@@ -79,4 +79,4 @@ def _is_open(referred: Behavior | None) -> bool:
 
 
 def _has(gap: Collection[str], *keys: str) -> bool:
-    return ANY_KEY in gap or any(key in gap for key in keys)
+    return bool(gap) and (ANY_KEY in gap or any(key in gap for key in keys))

@@ -11,6 +11,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.annotated_values import annotated_lists, is_annotated
 from engine.check.finding import Finding, new_finding
 from engine.check.known_values import known_part
+from engine.document.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 
 
@@ -32,6 +33,7 @@ _UNITS: Mapping[str, _Unit] = {
     "m": _Unit(other="millimetres", factor=0.001, alone=10.0, in_list=30.0),
     "m/s": _Unit(other="millimetres per second", factor=0.001, alone=10.0, in_list=30.0),
 }
+_SMALLEST_LIMIT = min(each.alone for each in _UNITS.values())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,11 +106,16 @@ def _given(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> Iterator[Uni
     signature, referred = subject.signature(placed.node), subject.referred(placed.node)
     if signature is not None and name in signature.parameters:
         declared = signature.parameters[name].type
-        if is_annotated(declared):
+        if is_annotated(declared) and not (isinstance(given, Template) and given.constant and _is_small(given.value)):
             yield from unit_suspicions(declared, known_part(given, {}), name=name)
     elif referred is not None and name in referred.behavior.parameters:
         found = unit_suspicion(name, [known_part(given, {})], _unit(referred.behavior.parameters[name]))
         yield from [found] if found is not None else []
+
+
+def _is_small(value: object) -> bool:
+    """Return whether a single value is plausible in each unit, which most are."""
+    return isinstance(value, int | float) and abs(value) <= _SMALLEST_LIMIT
 
 
 def _unit(parameter: ParameterSpec) -> str:

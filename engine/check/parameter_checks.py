@@ -62,8 +62,10 @@ def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, o
 
 
 def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    given = {("with", name): found for name, found in subject.given_to(placed).items()}
-    for keys, found in {**given, **conditions(placed), **assignments(placed)}.items():
+    for name, found in subject.given_to(placed).items():
+        if isinstance(found, ExpressionError):
+            yield subject.finding("bad-expression", found.message, placed.path, "with", name, hint=found.hint or "")
+    for keys, found in (*conditions(placed).items(), *assignments(placed).items()):
         if isinstance(found, ExpressionError):
             yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
 

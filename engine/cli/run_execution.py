@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import os
 import sys
 import time
@@ -26,7 +25,7 @@ from engine.document.faults import Faults
 from engine.errors import FlexcellError
 from engine.event import Event
 from engine.faults import FaultPort
-from engine.host.gc_pause import gc_paused
+from engine.host.garbage_collection import freeze_loaded_objects
 from engine.host.thread_switch_interval import short_switch_interval
 from engine.journal import Journal, NullJournal
 from engine.recording import RecordingOptions, RunRecording
@@ -129,8 +128,6 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
     log: list[Event] = []
     over = asyncio.Event()
     with ExitStack() as stack:
-        opening = stack.enter_context(ExitStack())
-        opening.enter_context(gc_paused())
         interruption = stack.enter_context(InterruptHandler(_print_message))
         journal = _journal(setup, stack)
         async with (
@@ -159,8 +156,8 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
                 stack.enter_context(
                     OperatorConsole(run, say=_print_line, reload=setup.reload, policy=setup.supervision)
                 )
-            _freeze_loaded_objects(setup)
-            opening.close()
+            # A collection that scanned what is loaded would block the loop while arms move.
+            freeze_loaded_objects(collect=not setup.virtual)
             with short_switch_interval(), LoopWatchdog():
                 result = await _execute_within(setup.timeout_s, run)
             over.set()
@@ -169,13 +166,6 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
         for line in faults.unapplied():
             _print_message(line)
     return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason))
-
-
-def _freeze_loaded_objects(setup: RunSetup) -> None:
-    """Exclude the loaded objects from garbage collection: scanning them would block the loop while arms move."""
-    if not setup.virtual:
-        gc.collect()
-    gc.freeze()
 
 
 async def _execute_within(timeout_s: float | None, execution: Run) -> RunResult:

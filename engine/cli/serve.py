@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import signal
 import sys
 import webbrowser
@@ -21,6 +20,7 @@ from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
 from engine.document.state_catalogue import Catalogue
+from engine.host.garbage_collection import freeze_loaded_objects
 from engine.host.thread_switch_interval import short_switch_interval
 from engine.journal import Journal
 from engine.project.server_state_folder import ServerStateFolder, lock_server_state_folder
@@ -121,8 +121,7 @@ async def _serve(
     def ready(dashboard: Any) -> None:
         folder.announce(url=dashboard.url, token=dashboard.token, stop=relay.endpoint)
         # The loaded objects stay alive: a collection that scanned them would block the loop while arms move.
-        gc.collect()
-        gc.freeze()
+        freeze_loaded_objects()
         # Delays before this point affect no run.
         watched.enter_context(LoopWatchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")

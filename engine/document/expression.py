@@ -79,6 +79,8 @@ def compile_template(value: object) -> Template:
     """
     found: list[_Found] = []
     evaluation = _prepare(value, found)
+    if not found and evaluation is None:
+        return Template(value, _NO_NAMES, None, _NOTHING_READ)
     return Template(value, _names(expression for expression, _ in found), evaluation, _new_read(found))
 
 
@@ -119,6 +121,10 @@ class _Read(msgspec.Struct, frozen=True, gc=False):
             if steps > MAX_STEPS:
                 raise expression.too_long(steps)
         return steps + sum(sizes[name].weight for name in self.shown if name in sizes)
+
+
+_NO_NAMES = frozenset[str]()
+_NOTHING_READ = _Read()
 
 
 def _new_read(found: list[_Found]) -> _Read:

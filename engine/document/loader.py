@@ -17,7 +17,6 @@ from engine.document.structural_rules import require_structural_rules
 from engine.document.text_recovery import RecoveredText, load_recovering, recover_text
 from engine.document.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
-from engine.host.gc_pause import pause_gc
 
 MAX_CHAIN = 64
 MAX_EXPANDED_NODES = 50_000
@@ -61,7 +60,6 @@ def load_behavior(path: Path | str) -> Behavior:
     return behavior
 
 
-@pause_gc
 def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, ...]]:
     """Read a behavior like `load_behavior`; also return the circular references, which stay unresolved.
 
@@ -73,7 +71,6 @@ def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, 
     return behavior, tuple(reading.circles)
 
 
-@pause_gc
 def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     """Return the behavior that `text` describes; references are read relative to `file`, which need not exist.
 
@@ -88,21 +85,30 @@ def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     return behavior
 
 
-@pause_gc
-def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within: Path | None = None) -> BehaviorSurvey:
+def survey_behavior(
+    path: Path | str,
+    text: bytes | str | None = None,
+    *,
+    source: DocumentSource | None = None,
+    within: Path | None = None,
+) -> BehaviorSurvey:
     """Read a behavior with all its mistakes and those of the behaviors it refers to.
 
     Args:
         path: Its file.
         text: Edited text to read instead of the file; references are relative to `path`.
+        source: The text as it was read already; the text is read again only if it has mistakes.
         within: A folder; references to files outside of it are not read and are mistakes.
     """
     file = Path(path)
     try:
-        strict = _Reading()
+        if source is not None:
+            return _survey_strictly(source, file)
+    except DocumentError:
+        pass  # the text is read again below, for the positions of all mistakes
+    try:
         source = parse_source(text, file=str(path)) if text is not None else load_source(file)
-        behavior = strict.build(source, file, ())
-        return BehaviorSurvey(behavior=behavior, circles=tuple(strict.circles))
+        return _survey_strictly(source, file)
     except DocumentError as refusal:
         first = refusal
     around = _Reading(mistakes=[], within=within)
@@ -114,6 +120,12 @@ def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within
         return BehaviorSurvey(behavior=None, mistakes=tuple(known))
     mistakes = tuple(around.mistakes[:MAX_MISTAKES] or [first])
     return BehaviorSurvey(behavior=behavior, mistakes=mistakes, circles=tuple(around.circles))
+
+
+def _survey_strictly(source: DocumentSource, file: Path) -> BehaviorSurvey:
+    reading = _Reading()
+    behavior = reading.build(source, file, ())
+    return BehaviorSurvey(behavior=behavior, circles=tuple(reading.circles))
 
 
 class _Reading:

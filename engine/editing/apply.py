@@ -16,6 +16,7 @@ from engine.editing import node_insertion as adding
 from engine.editing import transition_edits as wiring
 from engine.editing.draft import Draft, EditRefused
 from engine.editing.edit_session import EditSession
+from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError
 
@@ -54,11 +55,12 @@ class EditRefusal:
 class EditResult:
     """A text after edits, with the paths of the nodes created or changed; unchanged if an edit was rejected.
 
-    `draft` is the text as read, where edits were made.
+    `draft` is the text as read, where edits were made, and `outline` its nodes.
     """
 
     text: str
     draft: Draft | None = None
+    outline: Outline | None = None
     changed: tuple[str, ...] = ()
     refused: EditRefusal | None = None
 
@@ -94,11 +96,13 @@ def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, context:
     return apply_edits_to_draft(draft, edits, context=context)
 
 
-def apply_edits_to_draft(draft: Draft, edits: Sequence[edit.AnyEdit], *, context: ProjectContext) -> EditResult:
-    """Apply edits to a text that is parsed already; this consumes its `draft`."""
+def apply_edits_to_draft(
+    draft: Draft, edits: Sequence[edit.AnyEdit], *, context: ProjectContext, outline: Outline | None = None
+) -> EditResult:
+    """Apply edits to a text that is parsed already; this consumes its `draft`, of which `outline` are the nodes."""
     index, text = 0, draft.given
     try:
-        session = EditSession(draft, context)
+        session = EditSession(draft, context, outline)
         for each in edits:
             _MAKERS[type(each)](session, each)
             session.stale()
@@ -114,7 +118,10 @@ def apply_edits_to_draft(draft: Draft, edits: Sequence[edit.AnyEdit], *, context
             message="the edited document exceeds the size limit", hint="split it with behavior references", index=index
         )
         return EditResult(text=text, refused=refusal)
-    return EditResult(text=made.given, draft=made, changed=session.changed())
+    changed, now = session.changed(), session.outline
+    if any(made.source_of(ref.data) is None for ref in now.refs.values()):
+        now = Outline(made.data)  # with the data of new nodes as it was read back
+    return EditResult(text=made.given, draft=made, outline=now, changed=changed)
 
 
 def copy_nodes(text: str, paths: Sequence[str], *, file: str, context: ProjectContext) -> str:

@@ -10,8 +10,10 @@ import msgspec
 
 from engine.check import Finding, check_survey
 from engine.document.loader import survey_behavior
-from engine.editing.document_graph import DocumentInfo, DocumentNode, document_graph, info_of
+from engine.document.yaml_source import DocumentSource
+from engine.editing.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
 from engine.editing.draft import Draft
+from engine.editing.draft_source import syntax_source
 from engine.editing.outline import Outline, Plain
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError, Position
@@ -22,7 +24,7 @@ from engine.library.behavior_library import FindingView
 class DocumentAnalysis:
     """Graph and findings of a text; `graph` and `document` are None if it cannot be read.
 
-    `with_findings` is False if the graph was built but the check has not run yet.
+    `checked` is False if the graph was built but the check has not run yet.
     """
 
     hash: str
@@ -57,18 +59,38 @@ def analyze_unreadable_text(
 
 def draw_document(draft: Draft, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
     """Build the graph of a text, as if it were the content of `file`; one that leaves the project is not checked."""
-    graph = document_graph(draft, context)
-    out = sorted_findings(find_external_references(draft, context, file), graph)
-    return DocumentAnalysis(
-        hash=text_hash(draft.given), graph=graph, document=info_of(draft), findings=out, checked=bool(out)
+    return analyze_graph(draft, Outline(draft.data), file=file, context=context)[0]
+
+
+def analyze_graph(
+    draft: Draft, outline: Outline, *, file: Path, context: ProjectContext, before: DrawnGraph | None = None
+) -> tuple[DocumentAnalysis, DrawnGraph]:
+    """Build the graph of a text like `draw_document`; also return it node by node.
+
+    Args:
+        draft: The text as it was read.
+        outline: Its nodes.
+        file: Its file.
+        context: The states and behaviors around it.
+        before: The graph of the text from which the draft was made.
+    """
+    graph = draw_graph(draft, context, outline, before)
+    out = sorted_findings(find_external_references(draft, context, file, outline), graph.root)
+    drawn = DocumentAnalysis(
+        hash=text_hash(draft.given), graph=graph.root, document=info_of(draft), findings=out, checked=bool(out)
     )
+    return drawn, graph
 
 
-def with_findings(drawn: DocumentAnalysis, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-    """Return the diagnostics of a text whose graph exists, with its findings."""
+def with_findings(
+    drawn: DocumentAnalysis, text: str, *, file: Path, context: ProjectContext, draft: Draft | None = None
+) -> DocumentAnalysis:
+    """Return the diagnostics of a text whose graph exists, with its findings; `draft` is the text as it was read."""
     if drawn.checked:
         return drawn
-    return replace(drawn, findings=sorted_findings(_check(text, file, context), drawn.graph), checked=True)
+    source = syntax_source(draft) if draft is not None else None
+    found = _check(text, file, context, source)
+    return replace(drawn, findings=sorted_findings(found, drawn.graph), checked=True)
 
 
 def sorted_findings(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
@@ -83,17 +105,20 @@ def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[Find
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
 
 
-def _check(text: str, file: Path, context: ProjectContext) -> list[FindingView]:
-    survey = survey_behavior(file, text, within=context.project)
+def _check(text: str, file: Path, context: ProjectContext, source: DocumentSource | None = None) -> list[FindingView]:
+    survey = survey_behavior(file, text, source=source, within=context.project)
     cell = survey.behavior.cell_file if survey.behavior is not None else None
     entries = context.stored(cell) if cell is not None else None
     return [finding_view(finding, file) for finding in check_survey(survey, file, context.catalogue, entries)]
 
 
-def find_external_references(draft: Draft, context: ProjectContext, file: Path) -> list[FindingView]:
-    """Return the references of a text to files outside the project, which must not be read."""
+def find_external_references(
+    draft: Draft, context: ProjectContext, file: Path, outline: Outline | None = None
+) -> list[FindingView]:
+    """Return the references of a text to files outside the project, which must not be read; `outline` are its nodes."""
+    refs = (outline or Outline(draft.data)).refs
     named: list[tuple[str, Plain, str]] = [
-        (path, ref.data, "behavior") for path, ref in Outline(draft.data).refs.items() if "behavior" in ref.data
+        (path, ref.data, "behavior") for path, ref in refs.items() if "behavior" in ref.data
     ]
     named += [("", draft.data, "cell")] if isinstance(draft.data.get("cell"), str) else []
     found: list[FindingView] = []

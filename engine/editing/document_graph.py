@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from itertools import accumulate
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import accumulate, groupby
+from operator import attrgetter
 from typing import cast
 
 import msgspec
@@ -59,6 +62,41 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     children: tuple[DocumentNode, ...]  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
+Lines = tuple[int, int, int]
+"""Line, column and last line of a node."""
+
+
+class DrawnNode(msgspec.Struct, frozen=True, gc=False):
+    """A node by itself: `own` is its JSON without children, transitions and lines.
+
+    `children` are the names of its children, `arrows` the transitions from each of them that has any.
+    """
+
+    own: bytes
+    lines: Lines
+    children: tuple[str, ...]
+    arrows: dict[str, tuple[GraphTransition, ...]]
+
+
+class _Leaf(msgspec.Struct, frozen=True):
+    """A state as drawn, with what it depends on beside its own text."""
+
+    source: Collection
+    around: tuple[object, ...]
+    node: DocumentNode
+    own: bytes
+
+
+@dataclass(frozen=True)
+class DrawnGraph:
+    """The graph of a document; None as `root` if it has none. `nodes` are those of the graph by path."""
+
+    root: DocumentNode | None
+    nodes: dict[str, DrawnNode]
+    leaves: dict[int, _Leaf] = field(repr=False)
+    """States by the id of their text, for the next graph."""
+
+
 class DocumentInfo(msgspec.Struct, frozen=True, kw_only=True):
     """The declarations of the document itself, as written."""
 
@@ -90,15 +128,25 @@ def info_of(draft: Draft) -> DocumentInfo:
     )
 
 
-def document_graph(draft: Draft, context: ProjectContext) -> DocumentNode | None:
-    """Build the graph of a document; None if it has no root."""
-    outline = Outline(draft.data)
+def draw_graph(draft: Draft, context: ProjectContext, outline: Outline, before: DrawnGraph | None = None) -> DrawnGraph:
+    """Build the graph of a document.
+
+    Args:
+        draft: The document.
+        context: The states and behaviors around it.
+        outline: Its nodes.
+        before: The graph of the text from which the draft was made: states whose text is the same are not drawn again.
+    """
+    drawing = _Drawing(draft, context, outline, before.leaves if before is not None else {})
     root = outline.refs.get("root")
-    return _Drawing(draft, context, outline).node(root) if root is not None else None
+    return DrawnGraph(drawing.node(root) if root is not None else None, drawing.drawn, drawing.leaves)
 
 
 class _Drawing:
-    def __init__(self, draft: Draft, context: ProjectContext, outline: Outline) -> None:
+    def __init__(self, draft: Draft, context: ProjectContext, outline: Outline, known: Mapping[int, _Leaf]) -> None:
+        self.drawn: dict[str, DrawnNode] = {}
+        self.leaves: dict[int, _Leaf] = {}
+        self._known = known
         self._draft = draft
         self._knowledge = context
         self._outline = outline
@@ -107,19 +155,53 @@ class _Drawing:
         text = draft.origin.text
         self._starts = list(accumulate((len(line) + 1 for line in text.split("\n")), initial=0))[:-1]
         self._ends: dict[str, NodeOutcomes] = {}
-        self._places = {
-            id(member.value): member.at
-            for found in draft.collections()
-            for member in found.members
-            if isinstance(member.value, Collection)
-        }
+        self._places: dict[int, int] = {}
+        self._place(draft.data)
+
+    def _place(self, *inside: object) -> None:
+        """Remember where the keys of all entries of these collections are."""
+        for each in inside:
+            source = self._draft.source_of(each)
+            for member in source.members if source is not None else ():
+                self._places[id(member.value)] = member.at
 
     def node(self, ref: NodeRef) -> DocumentNode:
+        """Draw a node and everything inside it."""
+        lines = self._lines(ref.data)
+        source = self._draft.source_of(ref.data)
+        if source is None or not isinstance(ref.data.get("state"), str) or ref.parent is None:
+            return self._add(self._new(ref), lines)[0]
+        # What it shows follows from its text and from these.
+        around = (
+            ref.path, ref.role, ref.kind, ref.parent.kind in MACHINES,
+            _text(self._notes.get(ref.path)), _point(self._view.get(ref.path)),
+        )  # fmt: skip
+        leaf = self._known.get(id(source))
+        if leaf is not None and leaf.source is source and leaf.around == around:
+            node, own = self._add(leaf.node, lines, leaf.own)
+        else:
+            node, own = self._add(self._new(ref), lines)
+        self.leaves[id(source)] = _Leaf(source, around, node, own)
+        return node
+
+    def _add(self, node: DocumentNode, lines: Lines, own: bytes | None = None) -> tuple[DocumentNode, bytes]:
+        """Return the node with its lines, and its own JSON."""
+        if own is None:
+            bare = msgspec.structs.replace(node, children=(), transitions=()) if node.children else node
+            own = msgspec.json.encode(bare)
+        children = tuple(child.name for child in node.children)
+        self.drawn[node.path] = DrawnNode(own, lines, children, _by_source(node.transitions))
+        if (node.line, node.column, node.end_line) != lines:
+            node = msgspec.structs.replace(node, line=lines[0], column=lines[1], end_line=lines[2])
+        return node, own
+
+    def _new(self, ref: NodeRef) -> DocumentNode:
+        """Draw a node, without its lines."""
         data, body = ref.data, ref.body
+        self._place(data, data.get(ref.kind), body.get("states"), body.get("children"))
         ends = self._knowledge.ends(self._outline, ref, known=self._ends)
         targets = _names(data.get("transitions"))
         wired = ref.parent is not None and ref.parent.kind in MACHINES
-        line, column, end_line = self._lines(data)
         reference = data.get("behavior")
         return DocumentNode(
             path=ref.path,
@@ -134,9 +216,9 @@ class _Drawing:
             transitions=self._arrows(ref),
             initial=_optional(body.get("initial")),
             conditions=_in_words(ref),
-            line=line,
-            column=column,
-            end_line=end_line,
+            line=0,
+            column=0,
+            end_line=0,
             state=_optional(data.get("state")),
             reference=_optional(reference),
             document=self._document(reference),
@@ -186,7 +268,7 @@ class _Drawing:
         file = self._knowledge.file_of(reference) if isinstance(reference, str) else None
         return file.relative_to(self._knowledge.project.resolve()).as_posix() if file is not None else None
 
-    def _lines(self, data: Plain) -> tuple[int, int, int]:
+    def _lines(self, data: Plain) -> Lines:
         source = self._draft.source_of(data)
         if not isinstance(source, Collection):
             return 1, 1, 1
@@ -196,6 +278,10 @@ class _Drawing:
 
     def _line(self, offset: int) -> int:
         return bisect_right(self._starts, offset) - 1
+
+
+def _by_source(arrows: Iterable[GraphTransition]) -> dict[str, tuple[GraphTransition, ...]]:
+    return {source: tuple(group) for source, group in groupby(arrows, key=attrgetter("source"))}
 
 
 def _rules(ref: NodeRef) -> list[ConcurrencyCondition]:

@@ -18,12 +18,11 @@ from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.yaml_source import MAX_BYTES, parse_source
-from engine.editing.apply import EditResult
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.data_flow import KeyFlow, data_flow
 from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.draft import Draft
-from engine.editing.draft_cache import DraftCache
+from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
 from engine.editing.templates import new_text
@@ -172,10 +171,15 @@ class DocumentRepository:
         """Check a text as if it were the document's, without building its graph again."""
         return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
 
-    def edit(self, document_id: str, text: str, edits: Sequence[AnyEdit]) -> tuple[EditResult, DocumentAnalysis]:
-        """Apply edits to a text, all or none, and build the graph of the result; nothing is saved."""
-        context = self.context(document_id)
-        return self._desk.edit(text, edits, file=self.file_of(document_id), context=context)
+    def edit(
+        self, document_id: str, text: str, edits: Sequence[AnyEdit], *, check: bool = False, graph: str | None = None
+    ) -> EditAnswer:
+        """Apply edits to a text, all or none, and build the graph of the result; nothing is saved.
+
+        With `check` the findings are in the answer; with the hash `graph` of a text, the difference from its graph.
+        """
+        file, context = self.file_of(document_id), self.context(document_id)
+        return self._desk.edit(text, edits, file=file, context=context, check=check, graph=graph)
 
     def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
         """Return the writers and readers of each key of a text.

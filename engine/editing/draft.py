@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping
-from typing import Any, cast
+from typing import cast
 
-from engine.editing.node_matching import is_same_value
+from engine.editing.reread import RereadTree, is_equal_data, reread
 from engine.editing.syntax import Collection, SourceText, SyntaxTree, read_syntax
 from engine.editing.text_rewriter import TextRewriter
 from engine.errors import DocumentError, FlexcellError
@@ -22,19 +22,21 @@ class Draft:
     Args:
         text: YAML or JSON.
         file: Its name, for positions; `.json` makes it JSON.
+        reread: The tree of the text, if it has been read already.
 
     Raises:
         DocumentError: the text cannot be read; `where` is the position.
     """
 
-    def __init__(self, text: str, *, file: str) -> None:
+    def __init__(self, text: str, *, file: str, reread: RereadTree | None = None) -> None:
         self.file = file
         self.given = text
         self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
-        self._tree = read_syntax(self._plain(text), file=file)
-        self._sources: dict[int, Collection] = {}
+        self._tree = reread.tree if reread is not None else read_syntax(self._plain(text), file=file)
+        self._sources: dict[int, Collection] = reread.sources if reread is not None else {}
         self._kept: list[object] = []
-        self._take(self._tree)
+        if reread is None:
+            self._take(self._tree)
         root = cast("Collection", self._tree.root)
         self.data = cast("dict[str, object]", root.data)
 
@@ -87,15 +89,22 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        return self.rewritten().given
+        return self._in_full(self._written()).given
 
     def rewritten(self) -> Draft:
-        """Return the current document, parsed again from its text.
+        """Return the current document, parsed again from its text; this consumes the draft.
 
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        made = TextRewriter(self._sources, self.json).document(self._tree, self.data)
+        made = self._written()
+        found = reread(self._tree, made, self.data, file=self.file)
+        return Draft(self._with_newlines(made), file=self.file, reread=found) if found else self._in_full(made)
+
+    def _written(self) -> str:
+        return TextRewriter(self._sources, self.json).document(self._tree, self.data)
+
+    def _in_full(self, made: str) -> Draft:
         # Text that ends with a line feed cannot be written on a last line without one.
         again = self._read_back(made) or self._read_back(made + "\n")
         if again is None:
@@ -106,10 +115,13 @@ class Draft:
     def _read_back(self, made: str) -> Draft | None:
         """Return the parsed text if it equals the data in type and order."""
         try:
-            again = Draft(made.replace("\n", self._newline) if self._newline != "\n" else made, file=self.file)
+            again = Draft(self._with_newlines(made), file=self.file)
         except DocumentError:
             return None
-        return again if _equal(again.data, self.data) else None
+        return again if is_equal_data(again.data, self.data) else None
+
+    def _with_newlines(self, made: str) -> str:
+        return made.replace("\n", self._newline) if self._newline != "\n" else made
 
     def _plain(self, text: str) -> str:
         return text.replace("\r\n", "\n") if self._newline != "\n" else text
@@ -125,14 +137,3 @@ class Draft:
             self._sources[id(made)] = source
         self._kept.append(made)  # ids are reused after objects are deleted
         return made
-
-
-def _equal(a: Any, b: Any) -> bool:
-    """Return whether two values are equal in type and order."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        one, two = cast("dict[str, Any]", a), cast("dict[str, Any]", b)
-        return list(one) == list(two) and all(_equal(each, two[key]) for key, each in one.items())
-    if isinstance(a, list) and isinstance(b, list):
-        many, more = cast("list[Any]", a), cast("list[Any]", b)
-        return len(many) == len(more) and all(_equal(one, other) for one, other in zip(many, more, strict=True))
-    return is_same_value(cast("object", a), cast("object", b))

@@ -1,4 +1,4 @@
-"""Cache of parsed texts under edit: the next edit of a text does not parse it again."""
+"""Cache of texts under edit, read and drawn: the next edit reads and draws only what it changes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from engine.editing.apply import EditResult, apply_edits, apply_edits_to_draft
-from engine.editing.diagnostics import DocumentAnalysis, analyze_unreadable_text, draw_document, with_findings
+from engine.editing.diagnostics import (
+    DocumentAnalysis,
+    analyze_graph,
+    analyze_unreadable_text,
+    text_hash,
+    with_findings,
+)
+from engine.editing.document_graph import DrawnGraph
 from engine.editing.draft import Draft
 from engine.editing.edit import AnyEdit
+from engine.editing.graph_difference import GraphDifference, graph_difference
+from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError
-from engine.host.gc_pause import gc_paused
 from engine.library.behavior_library import FindingView
 
 MAX_TEXTS = 6
@@ -25,10 +33,20 @@ MAX_ENTRIES = 60_000
 
 @dataclass
 class _CachedDraft:
-    """Cached data of one text; the edit that uses its draft consumes it."""
+    """Cached data of one text; whoever uses its draft takes it out."""
 
-    drawn: DocumentAnalysis
+    graph: DrawnGraph
+    outline: Outline
     draft: Draft | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class EditAnswer:
+    """What an edit makes of a text, the graph of the result, and its difference from a graph that the asker has."""
+
+    result: EditResult
+    analysis: DocumentAnalysis
+    difference: GraphDifference | None = None
 
 
 class DraftCache:
@@ -44,63 +62,88 @@ class DraftCache:
         """Number of entries in the cached texts, counted by their separators."""
         return sum(text.count("\n") + text.count(",") for _, text in self._cache)
 
-    def draw(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-        """Parse a text and build its graph; the check runs only if the text cannot be read."""
-        with gc_paused():
-            draft = self._taken(file, text)
-            try:
-                draft = draft or Draft(text, file=str(file))
-            except DocumentError as error:
-                return analyze_unreadable_text(text, error, file=file, context=context)
-            return self._put(draft, file, context)
+    def draw(self, text: str, *, file: Path, context: ProjectContext, check: bool = False) -> DocumentAnalysis:
+        """Parse a text and build its graph; the check runs if asked for, and if the text cannot be read."""
+        kept, sheet = self._taken(file, text)
+        try:
+            draft = kept or Draft(text, file=str(file))
+        except DocumentError as error:
+            return analyze_unreadable_text(text, error, file=file, context=context)
+        outline = sheet.outline if sheet is not None and kept is not None else Outline(draft.data)
+        graph = sheet.graph if sheet is not None else None
+        return self._analyzed(draft, outline, file, context, graph, check=check)[0]
 
     def edit(
-        self, text: str, edits: Sequence[AnyEdit], *, file: Path, context: ProjectContext
-    ) -> tuple[EditResult, DocumentAnalysis]:
-        """Apply edits to a text, all or none, and build the graph of the result."""
-        with gc_paused():
-            done = self._edited(text, edits, file, context)
-            if done.draft is not None:
-                return done, self._put(done.draft, file, context)
-        return done, self.draw(text, file=file, context=context)
+        self,
+        text: str,
+        edits: Sequence[AnyEdit],
+        *,
+        file: Path,
+        context: ProjectContext,
+        check: bool = False,
+        graph: str | None = None,
+    ) -> EditAnswer:
+        """Apply edits to a text, all or none, and build the graph of the result.
+
+        Args:
+            text: The text.
+            edits: The edits.
+            file: The file of the text.
+            context: The states and behaviors around it.
+            check: Whether to find the problems of the result.
+            graph: The hash of the text of which the asker has the graph, if any.
+        """
+        draft, sheet = self._taken(file, text)
+        if draft is not None and sheet is not None:
+            done = apply_edits_to_draft(draft, edits, context=context, outline=sheet.outline)
+        else:
+            done = apply_edits(text, edits, file=str(file), context=context)
+        if done.draft is None or done.outline is None:
+            return EditAnswer(result=done, analysis=self.draw(text, file=file, context=context, check=check))
+        before = sheet.graph if sheet is not None else None
+        analysis, now = self._analyzed(done.draft, done.outline, file, context, before, check=check)
+        difference = None
+        base = text_hash(text)
+        if before is not None and before.root is not None and now.root is not None and graph == base:
+            difference = graph_difference(base, before.nodes, now.nodes)
+        return EditAnswer(result=done, analysis=analysis, difference=difference)
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
-        drawn = self.draw(text, file=file, context=context)
-        with gc_paused():
-            return with_findings(drawn, text, file=file, context=context)
+        return self.draw(text, file=file, context=context, check=True)
 
     def findings(self, text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
         """Check a text; a cached graph is reused."""
-        with self._lock:
-            sheet = self._cache.get((file, text))
-        drawn = sheet.drawn if sheet is not None else self.draw(text, file=file, context=context)
-        with gc_paused():
-            return with_findings(drawn, text, file=file, context=context).findings
+        return self.draw(text, file=file, context=context, check=True).findings
 
-    def _edited(self, text: str, edits: Sequence[AnyEdit], file: Path, context: ProjectContext) -> EditResult:
-        draft = self._taken(file, text)
-        if draft is not None:
-            return apply_edits_to_draft(draft, edits, context=context)
-        return apply_edits(text, edits, file=str(file), context=context)
-
-    def _taken(self, file: Path, text: str) -> Draft | None:
-        """Remove the draft of a text from the cache and return it: the caller may change it."""
+    def _taken(self, file: Path, text: str) -> tuple[Draft | None, _CachedDraft | None]:
+        """Return the draft of a text, and what else is known of it; the draft is taken out, to be changed."""
         with self._lock:
             sheet = self._cache.get((file, text))
             if sheet is None:
-                return None
+                return None, None
             draft, sheet.draft = sheet.draft, None
-            return draft
+            return draft, sheet
 
-    def _put(self, draft: Draft, file: Path, context: ProjectContext) -> DocumentAnalysis:
-        drawn = draw_document(draft, file=file, context=context)
+    def _analyzed(
+        self,
+        draft: Draft,
+        outline: Outline,
+        file: Path,
+        context: ProjectContext,
+        before: DrawnGraph | None,
+        *,
+        check: bool,
+    ) -> tuple[DocumentAnalysis, DrawnGraph]:
+        drawn, graph = analyze_graph(draft, outline, file=file, context=context, before=before)
+        if check:
+            drawn = with_findings(drawn, draft.given, file=file, context=context, draft=draft)
         with self._lock:
-            self._cache[file, draft.given] = _CachedDraft(drawn, draft)
+            self._cache[file, draft.given] = _CachedDraft(graph, outline, draft)
             self._cache.move_to_end((file, draft.given))
             while len(self._cache) > 1 and self._too_much():
                 self._cache.popitem(last=False)
-        return drawn
+        return drawn, graph
 
     def _too_much(self) -> bool:
         return len(self._cache) > self._kept or self.kept_entries > MAX_ENTRIES

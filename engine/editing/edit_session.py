@@ -21,11 +21,11 @@ DanglingTarget = Callable[[Plain, str], "str | None"]
 class EditSession:
     """One document under edit; edits change its data and call `stale`."""
 
-    def __init__(self, draft: Draft, context: ProjectContext) -> None:
+    def __init__(self, draft: Draft, context: ProjectContext, outline: Outline | None = None) -> None:
         self.draft = draft
         self.context = context
         self._changed: dict[int, Plain] = {}
-        self._outline: Outline | None = None
+        self._outline = outline
 
     @property
     def outline(self) -> Outline:

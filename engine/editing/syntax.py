@@ -126,10 +126,22 @@ def read_syntax(text: str, *, file: str) -> SyntaxTree:
     return SyntaxTree(origin, found)
 
 
+def read_entries(origin: SourceText, start: int, end: int, column: int, file: str) -> list[Member]:
+    """Read lines of a text alone, which are entries of a block mapping at `column`; none if they are anything else.
+
+    Raises:
+        DocumentError: the strict reader rejects them; the position is one in these lines.
+    """
+    found = _Reader(origin, StrictReader(origin.text[start:end], file=file, places=False), start).read()
+    fits = isinstance(found, Collection) and isinstance(found.data, dict) and not found.flow and found.column == column
+    return cast("Collection", found).members if fits else []
+
+
 class _Reader:
-    def __init__(self, origin: SourceText, reading: StrictReader) -> None:
+    def __init__(self, origin: SourceText, reading: StrictReader, start: int = 0) -> None:
         self._origin = origin
         self._text = origin.text
+        self._from = start
         self._reading = reading
         # PyYAML is untyped: the cast contains it here.
         self._events = cast("Iterator[_Event]", iter(reading))
@@ -142,7 +154,7 @@ class _Reader:
         """Return start and end of an event in the original text."""
         start, end = event.start_mark.index, event.end_mark.index
         if not self._shorter:
-            return start, end
+            return self._from + start, self._from + end
         return start + _LOST * bisect_right(self._shorter, start), end + _LOST * bisect_right(self._shorter, end)
 
     def read(self) -> Syntax | None:
@@ -161,7 +173,7 @@ class _Reader:
         mapping = kind is yaml.MappingStartEvent
         start = self._span(event)[0]
         if not event.flow_style:
-            start = self._head(start, event.start_mark.column)
+            start = block_start(self._text, start, event.start_mark.column)
         data = cast("dict[str, object] | list[object]", self._reading.said)
         made = Collection(self._origin, start, start, event.flow_style, event.start_mark.column, data)
         while True:
@@ -175,19 +187,6 @@ class _Reader:
         elif made.members:
             made.end = made.members[-1].stop
         return made
-
-    def _head(self, start: int, column: int) -> int:
-        """Return the start of the comments directly above the first member of a block."""
-        text = self._text
-        line = text.rfind("\n", 0, start) + 1
-        if text[line:start].strip(" "):
-            return start
-        while line > 0:
-            above = text.rfind("\n", 0, line - 1) + 1
-            if not text.startswith(f"{' ' * column}#", above):
-                break
-            line, start = above, above + column
-        return start
 
     def _entry(self, event: _Event, made: Collection, previous: int) -> Member:
         key = Scalar(*self._span(event), event.value, event.style or "")
@@ -208,7 +207,7 @@ class _Reader:
         if made.flow:
             return Member(at, at, key, value, max(value.end, key.end if key is not None else 0))
         start = previous if not made.members else min(previous + 1, at)
-        return Member(start, at, key, value, self._last_line(max(value.end, at + 1), made.column))
+        return Member(start, at, key, value, last_line(self._text, max(value.end, at + 1), made.column))
 
     def _scalar(self, event: _Event, outside: int) -> Scalar:
         (start, end), style = self._span(event), event.style or ""
@@ -227,21 +226,34 @@ class _Reader:
         before = self._text[previous:at].rstrip(" ")
         return previous + len(before) - 1 if before.endswith("?") else at
 
-    def _last_line(self, end: int, column: int) -> int:
-        """Return the end of the line at `end`, or of the last comment below it indented deeper than `column`."""
-        text = self._text
-        stop = _line_end(text, end)
-        at = stop
-        while at < len(text):
-            line_end = _line_end(text, at + 1)
-            line = text[at + 1 : line_end]
-            bare = line.lstrip(" ")
-            if bare.startswith("#") and len(line) - len(bare) > column:
-                stop = line_end
-            elif bare.strip():
-                break
-            at = line_end
-        return stop
+
+def block_start(text: str, start: int, column: int) -> int:
+    """Return the start of the comments directly above the first member of a block, which is at `start`."""
+    line = text.rfind("\n", 0, start) + 1
+    if text[line:start].strip(" "):
+        return start
+    while line > 0:
+        above = text.rfind("\n", 0, line - 1) + 1
+        if not text.startswith(f"{' ' * column}#", above):
+            break
+        line, start = above, above + column
+    return start
+
+
+def last_line(text: str, end: int, column: int) -> int:
+    """Return the end of the line at `end`, or of the last comment below it indented deeper than `column`."""
+    stop = _line_end(text, end)
+    at = stop
+    while at < len(text):
+        line_end = _line_end(text, at + 1)
+        line = text[at + 1 : line_end]
+        bare = line.lstrip(" ")
+        if bare.startswith("#") and len(line) - len(bare) > column:
+            stop = line_end
+        elif bare.strip():
+            break
+        at = line_end
+    return stop
 
 
 def skip_space(text: str, at: int) -> int:

@@ -11,7 +11,6 @@ import msgspec
 from engine.check import Finding, check_survey, invalid_document_finding, read_beside
 from engine.document import Behavior, ParameterSpec, load_source, survey_behavior
 from engine.errors import DocumentError, Position
-from engine.host.gc_pause import pause_gc
 from engine.library.behavior_graph import GraphNode, new_graph
 from engine.runtime.plan import Catalogue
 from engine.suggestions import did_you_mean
@@ -142,7 +141,6 @@ class Library:
             read = self._read[behavior_id] = self._load(behavior_id)
         return read
 
-    @pause_gc
     def _load(self, behavior_id: str) -> _Read:
         file = self._project / behavior_id
         stamps = {file: _stamp(file)}

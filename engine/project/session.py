@@ -20,7 +20,6 @@ from engine.editing import DocumentRepository
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.faults import FaultPort
-from engine.host.gc_pause import pause_gc
 from engine.journal import Journal, RunRecord, list_runs
 from engine.library.behavior_library import BehaviorView, Library
 from engine.project.bus_inspector import BusInspector
@@ -281,7 +280,6 @@ class Session:
         self.control(run_id)
         return await self._known(run_id).run.step_back(path)
 
-    @pause_gc
     def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
         """Read, check and plan a behavior, on a thread because it may be large."""
         behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)

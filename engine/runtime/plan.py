@@ -14,7 +14,6 @@ from engine.document.signature import read_signature
 from engine.document.state_catalogue import Catalogue, find_state
 from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, ExpressionError, RegistryError
-from engine.host.gc_pause import pause_gc
 from engine.runtime.nodes import concurrency, machine
 from engine.runtime.nodes.behavior_reference import BehaviorReference
 from engine.runtime.nodes.foreach import ForEach
@@ -95,7 +94,6 @@ class Plan:
         return dict(given)
 
 
-@pause_gc
 def new_plan(behavior: document.Behavior, catalogue: Catalogue) -> Plan:
     """Build the plan of a behavior, with its substitutes.
 

@@ -27,13 +27,14 @@ def test_edits_one_after_the_other_are_what_they_are_without_a_desk(tmp_path: Pa
     edits, _ = read_edits([{"edit": "duplicate", "paths": [NODE]}])
     text = TEXT
     for at in (file, file, file, tmp_path / "y.yaml"):
-        done, drawn = desk.edit(text, edits, file=at, context=context)
+        answer = desk.edit(text, edits, file=at, context=context)
+        done, drawn = answer.result, answer.analysis
         alone = apply_edits(text, edits, file=str(at), context=context)
         assert (done.text, done.changed, done.refused) == (alone.text, alone.changed, None)
         assert desk.examine(done.text, file=at, context=context) == analyze_text(done.text, file=at, context=context)
         assert not drawn.checked
         text = done.text
-    again, _ = desk.edit(TEXT, edits, file=file, context=context)
+    again = desk.edit(TEXT, edits, file=file, context=context).result
     assert again.text == apply_edits(TEXT, edits, file=str(file), context=context).text
 
 
@@ -43,7 +44,8 @@ def test_a_refused_edit_leaves_the_text_as_it_was(tmp_path: Path, context: Proje
     removed, _ = read_edits(
         [{"edit": "remove_nodes", "paths": [NODE]}, {"edit": "remove_nodes", "paths": ["root/nowhere"]}]
     )
-    done, drawn = desk.edit(TEXT, removed, file=file, context=context)
+    answer = desk.edit(TEXT, removed, file=file, context=context)
+    done, drawn = answer.result, answer.analysis
     assert (done.text, done.refused is None) == (TEXT, False)
     assert drawn.graph == analyze_text(TEXT, file=file, context=context).graph
 
@@ -67,7 +69,8 @@ def test_a_text_that_cannot_be_read_says_so_in_every_way(text: str, tmp_path: Pa
     expected: DocumentAnalysis = analyze_text(text, file=file, context=context)
     assert desk.draw(text, file=file, context=context) == expected
     assert desk.findings(text, file=file, context=context) == expected.findings
-    done, drawn = desk.edit(text, edits, file=file, context=context)
+    answer = desk.edit(text, edits, file=file, context=context)
+    done, drawn = answer.result, answer.analysis
     assert (done.text, drawn) == (text, expected)
     assert done.refused is not None
 

@@ -19,7 +19,7 @@ function at(id: string, rest = ''): string {
 }
 
 export const documents = {
-  /** Drawn, not checked yet: `findings` follow. So do `draft` and `edit`. */
+  /** Drawn, not checked yet: `findings` follow, as after `draft`. */
   open: (id: string) => call<DocumentBody>(at(id, '?check=false')),
   openChecked: (id: string) => call<DocumentBody>(at(id)),
   make: (body: NewDocumentBody) => post<DocumentBody>('/documents', body),
@@ -27,7 +27,13 @@ export const documents = {
   findings: (id: string, text: string) => post<readonly FindingView[]>(at(id, '/findings'), { text }),
   targets: (id: string, text: string, page: string) => post<TargetFindingsBody>(at(id, '/targets'), { text, page }),
   names: (id: string, text: string) => post<CatalogueBody['names']>(at(id, '/names'), { text }),
-  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditResultBody>(at(id, '/edits'), { text, edits, check: false }),
+  /** `graph` is the hash of the text whose graph is there already: only the difference from it comes. */
+  edit: (
+    id: string,
+    text: string,
+    edits: readonly Edit[],
+    { check, graph }: { readonly check: boolean; readonly graph: string | null },
+  ) => post<EditResultBody>(at(id, '/edits'), { text, edits, check, graph }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopyResultBody>(at(id, '/copy'), { text, paths }),
   save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
   catalogue: () => call<CatalogueBody>('/catalogue'),

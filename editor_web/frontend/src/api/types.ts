@@ -424,7 +424,7 @@ export interface DeviceStop {
   readonly at_rest: boolean
 }
 
-/** Graph and findings of a text; `graph` and `document` are None if it cannot be read. `with_findings` is False if the graph was built but the check has not run yet. */
+/** Graph and findings of a text; `graph` and `document` are None if it cannot be read. `checked` is False if the graph was built but the check has not run yet. */
 export interface DocumentAnalysis {
   readonly hash: string
   readonly graph: DocumentNode | null
@@ -534,7 +534,7 @@ export interface EditRefusal {
   readonly index: number
 }
 
-/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. */
+/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. With a `difference` there is no `graph`. */
 export interface EditResultBody {
   readonly hash: string
   readonly graph: DocumentNode | null
@@ -544,13 +544,15 @@ export interface EditResultBody {
   readonly text: string
   readonly changed: readonly string[]
   readonly refused: EditRefusal | null
+  readonly difference: GraphDifference | null
 }
 
-/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. */
+/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server knows that graph too. */
 export interface EditsBody {
   readonly text: string
   readonly check?: boolean
   readonly edits: readonly Dict<unknown>[]
+  readonly graph?: string | null
 }
 
 /** Entries of the store have changed. */
@@ -812,6 +814,16 @@ export interface GoalsFrame {
   readonly k: "goals"
   readonly run: string
   readonly goals: Dict<GoalProgress>
+}
+
+/** How the graph of the text with the hash `base` becomes another one; nodes are named by path. `nodes` are those that are new or say something else, without children, transitions and lines. `children` are the names of all children, in order, where these changed; a node that is no child any more is gone. `arrows` are the transitions between children of a node, by the child that they leave, where they changed. `shifts` are pairs of a line of the old graph and a number of lines by which everything from there on moved; `lines` are line, column and last line of all other nodes. */
+export interface GraphDifference {
+  readonly base: string
+  readonly nodes: Dict<DocumentNode>
+  readonly children: Dict<readonly string[]>
+  readonly arrows: Dict<Dict<readonly GraphTransition[]>>
+  readonly shifts: readonly (readonly [number, number])[]
+  readonly lines: Dict<readonly [number, number, number]>
 }
 
 /** One node with its descendants; `path` is the node path of events. */

@@ -9,6 +9,8 @@ export interface Draft {
   readonly text: string
   /** The last graph that could be read; of an earlier text while `isStale`. */
   readonly root: EditNode | undefined
+  /** The hash of the text that `root` was drawn from; empty where that is not known. */
+  readonly hash: string
   /** Of an earlier text until `isChecked`. */
   readonly findings: readonly FindingView[]
   readonly isChecked: boolean

@@ -7,7 +7,7 @@ import { newHistory, presentOf } from '../../document/editing/history'
 import { node } from '../../document/editing/testNodes'
 import { lookForFindings, perform, redo, typed, undo } from './apply'
 import { disabledReason, type Command } from './commands'
-import { blank, draftOf, editor, useEditor } from './store'
+import { blank, draftOf, editor, rootOf, useEditor } from './store'
 
 vi.mock('../../api/documents', () => ({ documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn() } }))
 vi.mock('../../api/client', async (original) => ({
@@ -35,7 +35,7 @@ function slowServer(): { readonly sent: string[]; readonly release: () => void }
 
 beforeEach(() => {
   vi.mocked(documents.findings).mockResolvedValue([])
-  const draft = { text: 'a', root: node('root', []), findings: [], isChecked: true, targets: [], areTargetsKnown: true, isStale: false, document: undefined }
+  const draft = { text: 'a', root: node('root', []), hash: 'h', findings: [], isChecked: true, targets: [], areTargetsKnown: true, isStale: false, document: undefined }
   useEditor.setState({ ...blank('x.yaml'), phase: 'ready', history: newHistory(draft) }, true)
 })
 
@@ -84,4 +84,52 @@ test('a text that is not checked is looked at though the look before has only ju
   useEditor.setState({ history: newHistory(unchecked) })
   void lookForFindings()
   await vi.waitFor(() => expect(presentOf(editor().history).draft.isChecked).toBe(true))
+})
+
+const MOVE: readonly Edit[] = [{ edit: 'set_positions', positions: { root: [7, 8] } }]
+
+test('a position is shown before the server has written it, and is one step of undo', async () => {
+  const server = slowServer()
+  const done = perform('Move', MOVE)
+  expect(rootOf(editor())?.position).toEqual([7, 8])
+  expect(text()).toBe('a')
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  expect(vi.mocked(documents.edit).mock.lastCall?.[3]).toEqual({ check: false, graph: 'h' })
+  server.release()
+  await done
+  expect(text()).toBe('a+')
+  expect(editor().unwritten).toEqual([])
+  undo()
+  await vi.waitFor(() => expect(text()).toBe('a'))
+  expect(rootOf(editor())?.position).toBeNull()
+})
+
+test('a position that cannot be written is as before, and the page says why', async () => {
+  vi.mocked(documents.edit).mockRejectedValue(new Error('the server is gone'))
+  const done = perform('Move', MOVE)
+  expect(rootOf(editor())?.position).toEqual([7, 8])
+  expect(await done).toBeUndefined()
+  expect(rootOf(editor())?.position).toBeNull()
+  expect(editor().notice).toMatchObject({ what: 'Move', tone: 'refused' })
+})
+
+test('a difference is applied to the graph that it is of, with the findings of the same answer', async () => {
+  const own = { ...node('root', ['x']), line: 0 }
+  const difference = { base: 'h', nodes: { root: own }, children: {}, arrows: {}, shifts: [], lines: {} }
+  vi.mocked(documents.edit).mockResolvedValueOnce({ ...answer('a+'), graph: null, hash: 'g', checked: true, difference })
+  vi.mocked(documents.findings).mockClear()
+  await perform('Duplicate', EDIT)
+  expect(draftOf(editor())).toMatchObject({ text: 'a+', hash: 'g', isChecked: true, isStale: false })
+  expect(rootOf(editor())?.outcomes).toEqual(['x'])
+  expect(documents.findings).not.toHaveBeenCalled()
+})
+
+test('where the difference is of another graph, the whole one is asked for', async () => {
+  const difference = { base: 'other', nodes: {}, children: {}, arrows: {}, shifts: [], lines: {} }
+  vi.mocked(documents.edit)
+    .mockResolvedValueOnce({ ...answer('a+'), graph: null, difference })
+    .mockResolvedValueOnce(answer('a+'))
+  await perform('Duplicate', EDIT)
+  expect(vi.mocked(documents.edit).mock.lastCall?.[3]).toEqual({ check: true, graph: null })
+  expect(text()).toBe('a+')
 })

@@ -4,7 +4,9 @@ import { documents } from '../../api/documents'
 import type { EditResultBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { sameFindings } from '../../document/editing/findings'
+import { shiftedFindings, withDifference } from '../../document/editing/graphDifference'
 import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
+import { areOfLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
 import { lookForNames } from './cellNames'
 import { findingsOf } from './checking'
@@ -35,35 +37,68 @@ export function inTurn<T>(work: () => Promise<T>): Promise<T> {
 /**
  * Apply edits to the text as it then is; undefined with the reason on the page where the server refuses.
  * Edits that say anew what is there already are made of what is there then.
+ * Positions and notes are shown at once, and again as before where the server does not write them.
  */
-export function perform(
+export async function perform(
   label: string,
   edits: readonly Edit[] | (() => readonly Edit[]),
 ): Promise<EditResultBody | undefined> {
   const { id } = editor()
-  return inTurn(async () => {
-    try {
-      // What was typed, or came from the disk, while the server was asked is edited in its turn.
-      while (editor().id === id) {
-        const before = draftOf(editor())
-        const wanted = typeof edits === 'function' ? edits() : edits
-        if (wanted.length === 0) return undefined
-        const answer = await documents.edit(id, before.text, wanted)
-        if (editor().id !== id) break
-        if (draftOf(editor()).text !== before.text) continue
-        if (answer.refused) {
-          showEditorRefusal(label, answer.refused.message, answer.refused.hint)
-          return undefined
-        }
-        setHistory(pushed(settled(editor().history), label, draftFrom(answer, answer.text, before)))
-        setEditor({ notice: undefined })
-        return answer
+  const shown = typeof edits !== 'function' && areOfLayout(edits) ? edits : undefined
+  if (shown) setEditor({ unwritten: [...editor().unwritten, shown] })
+  const done = () => {
+    if (shown) setEditor({ unwritten: editor().unwritten.filter((each) => each !== shown) })
+  }
+  return inTurn(() => performNow(id, label, edits, done)).finally(done)
+}
+
+async function performNow(
+  id: string,
+  label: string,
+  edits: readonly Edit[] | (() => readonly Edit[]),
+  done: () => void,
+): Promise<EditResultBody | undefined> {
+  try {
+    // What was typed, or came from the disk, while the server was asked is edited in its turn.
+    while (editor().id === id) {
+      const before = draftOf(editor())
+      const wanted = typeof edits === 'function' ? edits() : edits
+      if (wanted.length === 0) return undefined
+      const isLayout = areOfLayout(wanted) && before.isChecked
+      const answer = await documents.edit(id, before.text, wanted, { check: !isLayout, graph: before.hash || null })
+      if (editor().id !== id) break
+      if (draftOf(editor()).text !== before.text) continue
+      if (answer.refused) {
+        showEditorRefusal(label, answer.refused.message, answer.refused.hint)
+        return undefined
       }
-    } catch (error) {
-      if (editor().id === id) showEditorRefusal(label, ...reasonOf(error))
+      const draft = draftAfter(answer, before, isLayout)
+      if (!draft) {
+        // The graph of the page is not the one that the server knows: it is asked for whole.
+        setEditor({ history: replaced(editor().history, { ...before, hash: '' }) })
+        continue
+      }
+      done()
+      setHistory(pushed(settled(editor().history), label, draft))
+      setEditor({ notice: undefined })
+      return answer
     }
-    return undefined
-  })
+  } catch (error) {
+    if (editor().id === id) showEditorRefusal(label, ...reasonOf(error))
+  }
+  return undefined
+}
+
+/** The draft after an edit; undefined where the answer is the difference from another graph. */
+function draftAfter(answer: EditResultBody, before: Draft, isLayout: boolean): Draft | undefined {
+  const { difference } = answer
+  if (!difference) return draftFrom(answer, answer.text, before)
+  const graph = before.root && before.hash === difference.base ? withDifference(before.root, difference) : undefined
+  if (!graph) return undefined
+  const draft = draftFrom({ ...answer, graph }, answer.text, before)
+  if (!isLayout || answer.checked) return draft
+  const [findings, targets] = [shiftedFindings(before.findings, difference), shiftedFindings(before.targets, difference)]
+  return { ...draft, findings, isChecked: true, targets, areTargetsKnown: before.areTargetsKnown }
 }
 
 /** The same for a node, with edits that are made of what it is by then: for lists and mappings, which are sent as a whole. */
@@ -83,6 +118,7 @@ function reasonOf(error: unknown): [string, string] {
 }
 
 interface Read {
+  readonly hash: string
   readonly graph: Draft['root'] | null
   readonly findings: Draft['findings']
   readonly checked: boolean
@@ -95,6 +131,7 @@ export function draftFrom(answer: Read, text: string, before: Draft | undefined)
   return {
     text,
     root: answer.graph ?? before?.root,
+    hash: isStale ? (before?.hash ?? '') : answer.hash,
     findings: answer.checked ? sameFindings(before?.findings, answer.findings) : (before?.findings ?? []),
     isChecked: answer.checked,
     targets: before?.targets ?? [],

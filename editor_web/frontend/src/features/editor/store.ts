@@ -2,6 +2,8 @@
 import { create } from 'zustand'
 import type { CatalogueBody, ConflictBody } from '../../api/types'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
+import type { Edit } from '../../document/editing/edits'
+import { withLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, ROOT, type Draft, type EditNode } from '../../document/editing/model'
 import { expansionOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
@@ -39,6 +41,8 @@ export interface EditorState {
   /** The file as it is on disk, as far as this page knows. */
   readonly base: { readonly text: string; readonly hash: string }
   readonly history: History
+  /** Positions and notes that are shown already and on their way to the server. */
+  readonly unwritten: readonly (readonly Edit[])[]
   readonly catalogue: CatalogueBody | undefined
   /** Of the document's own cell by kind; undefined where it names none or they are not known yet. */
   readonly names: CatalogueBody['names'] | undefined
@@ -73,6 +77,7 @@ export interface EditorState {
 const NOTHING: Draft = {
   text: '',
   root: undefined,
+  hash: '',
   findings: [],
   isChecked: true,
   targets: [],
@@ -88,6 +93,7 @@ export function blank(id: string): EditorState {
     problem: '',
     base: { text: '', hash: '' },
     history: newHistory(NOTHING),
+    unwritten: [],
     catalogue: undefined,
     names: undefined,
     scope: ROOT,
@@ -132,8 +138,18 @@ export function draftOf(state: EditorState): Draft {
   return presentOf(state.history).draft
 }
 
+type Unwritten = EditorState['unwritten']
+
+let laidOut: { readonly root: EditNode; readonly unwritten: Unwritten; readonly made: EditNode } | undefined
+
+/** The graph as it is shown: with what is not written yet. */
 export function rootOf(state: EditorState): EditNode | undefined {
-  return draftOf(state).root
+  const { root } = draftOf(state)
+  const { unwritten } = state
+  if (!root || unwritten.length === 0) return root
+  if (laidOut?.root !== root || laidOut.unwritten !== unwritten)
+    laidOut = { root, unwritten, made: withLayout(root, unwritten.flat()) }
+  return laidOut.made
 }
 
 export function isDirty(state: EditorState): boolean {

@@ -37,7 +37,7 @@ export function declaredOutcomes(root: EditNode, outcomes: readonly string[]): (
 }
 
 export function useArrangement(pane: Size | undefined): { arranged: Arranged | undefined; problem: string } {
-  const root = useEditor((s) => draftOf(s).root)
+  const root = useEditor(rootOf)
   const outcomes = useEditor((s) => draftOf(s).document?.outcomes)
   const scope = useEditor(scopeOf)
   const opened = useEditor((s) => s.opened)

@@ -1,0 +1,325 @@
+"""Reads a changed text with the tree of the text before: only lines that differ are parsed again.
+
+The parser reads from left to right, and the lines of an entry of a block mapping end where a line begins with as
+many spaces as its own. Such lines therefore mean the same wherever they are the lines of a whole entry, and can be
+parsed alone. Whatever does not fit this rule is left to a full read.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import cast
+
+from engine.document.yaml_source import (
+    MAX_BYTES,
+    MAX_DEPTH,
+    MAX_EXPRESSION_TEXT,
+    MAX_EXPRESSIONS,
+    MAX_NODES,
+)
+from engine.editing.node_matching import is_same_value
+from engine.editing.syntax import (
+    Collection,
+    Member,
+    Scalar,
+    SourceText,
+    Syntax,
+    SyntaxTree,
+    block_start,
+    last_line,
+    read_entries,
+)
+from engine.errors import DocumentError
+
+_LOOK_AHEAD = 4
+"""Number of entries of which the next one that both texts contain is searched."""
+_MARKER = re.compile(r"^(?:---|\.\.\.|%)", re.MULTILINE)
+Plain = dict[str, object]
+
+
+class _Unlike(Exception):
+    """The texts differ in a way that only a full read understands."""
+
+
+@dataclass(frozen=True)
+class RereadTree:
+    """A tree with its data, and the collections by the id of each dict and list."""
+
+    tree: SyntaxTree
+    data: Plain
+    sources: dict[int, Collection]
+
+
+def reread(before: SyntaxTree, text: str, data: Plain, *, file: str) -> RereadTree | None:
+    """Return the tree of `text` if it says `data`; it consumes the tree `before`. None asks for a full read.
+
+    A collection whose lines are the same is the same object as before; every other one is new.
+
+    Args:
+        before: The tree of the text before.
+        text: The new text, with lines that end in a line feed.
+        data: The data of `before` after an edit: unchanged dicts and lists are the same objects.
+        file: Its name, for positions.
+    """
+    root = before.root
+    if before.origin.json or not isinstance(root, Collection) or root.flow or len(text) > MAX_BYTES:
+        return None
+    reading = _Rereading(before.origin.text, SourceText(text, json=False), file)
+    try:
+        made = reading.document(root)
+        reading.take(made, data, 0, 1)
+        reading.require_limits()
+    except (_Unlike, DocumentError):
+        return None
+    return RereadTree(SyntaxTree(reading.origin, made), cast("Plain", made.data), reading.sources)
+
+
+@dataclass
+class _Rereading:
+    old: str
+    origin: SourceText
+    file: str
+    sources: dict[int, Collection] = field(default_factory=dict[int, Collection])
+    _shifts: dict[int, list[int | None]] = field(default_factory=dict[int, "list[int | None]"])
+    """By the id of a new collection around kept members: how far each of them moved; None for a new one."""
+    _nodes: int = 0
+    _expressions: int = 0
+    _expression_text: int = 0
+
+    def document(self, root: Collection) -> Collection:
+        """Return the new root, whose kept members have their old positions until `take`."""
+        start = self._line(root.members[0]) if root.members else 0
+        if not root.members or self.old[:start] != self.origin.text[:start]:
+            raise _Unlike
+        return self._around(root, len(self.old), start, len(self.origin.text))
+
+    def _around(self, home: Collection, old_end: int, start: int, end: int) -> Collection:
+        """Return a block mapping whose lines are `start` to `end` of the new text and went to `old_end`."""
+        if home.flow or not isinstance(home.data, dict) or not home.members:
+            raise _Unlike
+        members, shifts = self._entries(home, old_end, start, end)
+        if not members:
+            raise _Unlike
+        first = members[0].at + (shifts[0] or 0)
+        begin = block_start(self.origin.text, first, home.column)
+        made = Collection(self.origin, begin, begin, False, home.column, {}, members)
+        self._shifts[id(made)] = shifts
+        return made
+
+    def _entries(self, home: Collection, old_end: int, start: int, end: int) -> tuple[list[Member], list[int | None]]:
+        olds, text = home.members, self.origin.text
+        begins = [*map(self._line, olds), old_end]
+        tail = self._equal_tail(begins, start, end)
+        stop, last = end - (old_end - begins[tail]), tail
+        made: list[Member] = []
+        shifts: list[int | None] = []
+        at, number = start, 0
+        while number < last:
+            size = begins[number + 1] - begins[number]
+            if self._is_equal(begins[number], begins[number + 1], at, stop):
+                made.append(olds[number])
+                shifts.append(at - begins[number])
+                at, number = at + size, number + 1
+                continue
+            following, to = self._next_common(olds, begins, number, last, at, stop)
+            if following == number and to == at:
+                follower, to = self._next_common(olds, begins, number + 1, last, at + 1, stop)
+                changed = self._changed(olds[number], begins[number], begins[number + 1], at, to)
+                fresh = [changed] if changed is not None else read_entries(self.origin, at, to, home.column, self.file)
+                number = follower
+            else:
+                fresh = read_entries(self.origin, at, to, home.column, self.file) if to > at else []
+                number = following
+            self._require_entries(fresh, home, at, to)
+            made += fresh
+            shifts += [None] * len(fresh)
+            at = to
+        if at < stop:
+            fresh = read_entries(self.origin, at, stop, home.column, self.file)
+            self._require_entries(fresh, home, at, stop)
+            made += fresh
+            shifts += [None] * len(fresh)
+        for number in range(tail, len(olds)):
+            made.append(olds[number])
+            shifts.append(end - old_end)
+        if text[end - 1 : end] not in ("\n", "") and end < len(text):
+            raise _Unlike
+        return made, shifts
+
+    def _equal_tail(self, begins: list[int], start: int, end: int) -> int:
+        """Return the number of the first of the last members whose lines are the same in both texts."""
+        number, shift = len(begins) - 1, end - begins[-1]
+        while number > 0:
+            begin = begins[number - 1]
+            if begin + shift < start or not self.origin.text.startswith(
+                self.old[begin : begins[number]], begin + shift
+            ):
+                break
+            # The line before the first of them must end there.
+            number -= 1
+        while number < len(begins) - 1 and not self._begins_line(begins[number] + shift):
+            number += 1
+        return number
+
+    def _begins_line(self, at: int) -> bool:
+        return at == 0 or self.origin.text[at - 1] == "\n"
+
+    def _is_equal(self, begin: int, end: int, at: int, stop: int) -> bool:
+        to = at + end - begin
+        if to > stop or not self.origin.text.startswith(self.old[begin:end], at):
+            return False
+        return self.old[end - 1] == "\n" or to == len(self.origin.text)
+
+    def _next_common(
+        self, olds: list[Member], begins: list[int], number: int, last: int, at: int, stop: int
+    ) -> tuple[int, int]:
+        """Return the next member whose key line is in both texts, and where it is; `last` and `stop` if none."""
+        found, place = last, stop
+        for each in range(number, min(last, number + _LOOK_AHEAD)):
+            line = self._key_line(olds[each], begins[each])
+            if self._begins_line(at) and self.origin.text.startswith(line, at, place):
+                return each, at
+            before = self.origin.text.find(f"\n{line}", at, place)
+            if before >= 0:
+                found, place = each, before + 1
+        return found, place
+
+    def _changed(self, was: Member, begin: int, old_end: int, at: int, to: int) -> Member | None:
+        """Return an entry with the same key and a block mapping as its value; None if it is read anew."""
+        value, key = was.value, was.key
+        if key is None or not isinstance(value, Collection) or value.flow or not isinstance(value.data, dict):
+            return None
+        try:
+            inner = self._line(value.members[0])
+            start = at + inner - begin
+            if inner <= key.end or self.origin.text[at:start] != self.old[begin:inner]:
+                return None
+            made = self._around(value, old_end, start, to)
+        except (_Unlike, DocumentError):
+            return None
+        by = at - begin
+        moved = Scalar(key.start + by, key.end + by, key.value, key.style)
+        return Member(was.at + by, was.at + by, moved, made, 0)
+
+    def _require_entries(self, fresh: list[Member], home: Collection, at: int, to: int) -> None:
+        if to > at and (not fresh or fresh[0].at != at + home.column):
+            raise _Unlike
+        if _MARKER.search(self.origin.text, at, to):
+            raise _Unlike
+
+    def _line(self, member: Member) -> int:
+        """Return the start of the line of a key, before which there are only spaces."""
+        begin = self.old.rfind("\n", 0, member.at) + 1
+        if self.old[begin : member.at].strip(" ") or member.key is None or member.key.start != member.at:
+            raise _Unlike
+        return begin
+
+    def _key_line(self, member: Member, begin: int) -> str:
+        key = cast("Scalar", member.key)
+        if self.old[key.end : key.end + 1] != ":":
+            raise _Unlike
+        return self.old[begin : key.end + 1]
+
+    # The second pass: positions, and the proof that the text says the data
+
+    def take(self, found: Collection, value: object, by: int, depth: int) -> None:
+        """Move a collection and everything inside it, and require that it says `value`."""
+        shifts = self._shifts.get(id(found))
+        if depth > MAX_DEPTH or (shifts is None and value is not found.data) or type(value) is not type(found.data):
+            raise _Unlike
+        data = found.data = value
+        if id(data) in self.sources or len(data) != len(found.members):
+            raise _Unlike
+        self.sources[id(data)] = found
+        self._nodes += 1
+        found.origin = self.origin
+        found.start += by
+        found.end += by
+        if shifts is not None:
+            self._take_entries(found, cast("Plain", data), shifts, depth)
+        elif isinstance(data, dict):
+            self._nodes += len(data)
+            for member, (key, inner) in zip(found.members, data.items(), strict=True):
+                own = cast("Scalar", member.key)
+                if own.value != key:
+                    raise _Unlike
+                self._move(member, by)
+                self._value(member.value, inner, by, depth)
+        else:
+            for member, inner in zip(found.members, data, strict=True):
+                self._move(member, by)
+                self._value(member.value, inner, by, depth)
+
+    def _take_entries(self, found: Collection, data: Plain, shifts: list[int | None], depth: int) -> None:
+        previous = found.start
+        for number, (member, shift, key) in enumerate(zip(found.members, shifts, list(data), strict=True)):
+            own = cast("Scalar", member.key)
+            if own.value != key:
+                raise _Unlike
+            self._nodes += 1
+            if shift is not None:
+                self._move(member, shift)
+                self._value(member.value, data[key], shift, depth)
+            elif isinstance(member.value, Collection):
+                if id(member.value) not in self._shifts:
+                    self._adopt(member.value, data, key)
+                self.take(member.value, data[key], 0, depth + 1)
+            else:
+                self._value(member.value, data[key], 0, depth)
+            member.start = min(previous + 1, member.at) if number else previous
+            if shift is None:
+                end = max(member.value.end, member.at + 1)
+                member.stop = last_line(self.origin.text, end, found.column)
+            previous = member.stop
+        found.end = previous
+
+    def _adopt(self, fresh: Collection, data: Plain, key: str) -> None:
+        """Put the data that was read in the place of equal data of an edit, which others may hold."""
+        if not is_equal_data(fresh.data, data[key]):
+            raise _Unlike
+        data[key] = fresh.data
+
+    def _move(self, member: Member, by: int) -> None:
+        if by:
+            member.start += by
+            member.at += by
+            member.stop += by
+            if member.key is not None:
+                member.key.start += by
+                member.key.end += by
+
+    def _value(self, found: Syntax, value: object, by: int, depth: int) -> None:
+        if isinstance(found, Collection):
+            self.take(found, value, by, depth + 1)
+            return
+        self._nodes += 1
+        was = found.value
+        if was is not value and not is_same_value(was, value):
+            raise _Unlike
+        if by:
+            found.start += by
+            found.end += by
+        if isinstance(was, str) and "${" in was:
+            self._expressions += was.count("${")
+            self._expression_text += len(was)
+
+    def require_limits(self) -> None:
+        """Leave a text beyond the limits of a document to a full read, which says so."""
+        if (
+            self._nodes > MAX_NODES
+            or self._expressions > MAX_EXPRESSIONS
+            or self._expression_text > MAX_EXPRESSION_TEXT
+        ):
+            raise _Unlike
+
+
+def is_equal_data(a: object, b: object) -> bool:
+    """Return whether two values are equal in type and order."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        one, two = cast("Plain", a), cast("Plain", b)
+        return list(one) == list(two) and all(is_equal_data(each, two[key]) for key, each in one.items())
+    if isinstance(a, list) and isinstance(b, list):
+        many, more = cast("list[object]", a), cast("list[object]", b)
+        return len(many) == len(more) and all(is_equal_data(one, other) for one, other in zip(many, more, strict=True))
+    return is_same_value(cast("object", a), b)
