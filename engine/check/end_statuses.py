@@ -45,7 +45,7 @@ def closed_statuses(node: NodeSpec) -> Statuses:
 
 
 def _decorated(decorator: DecoratorSpec, child: Statuses) -> Statuses:
-    """A decorator may also end while its child is RUNNING."""
+    """Return the ends of a decorator, which may also end while its child is RUNNING."""
     found: set[Status] = set()
     for status in (*child, "running"):
         found.update(shown for shown in decorator.statuses(status) if shown != "running")

@@ -162,7 +162,7 @@ def _leads(node: NodeSpec, count: int) -> Callable[[int, str], tuple[Target, ...
 
 
 def _decorated(decorator: DecoratorSpec, status: TreeStatus) -> tuple[Target, ...]:
-    """A decorator that is RUNNING after the end of its child runs it again."""
+    """Return where a decorator leads; one that is RUNNING after the end of its child runs it again."""
     return tuple(0 if shown == "running" else shown for shown in decorator.statuses(status))
 
 
