@@ -16,6 +16,7 @@
 The result is an `engine.document.Behavior`: check it, plan it, run it, write it with `to_yaml`.
 """
 
+from engine.authoring import tree_steps
 from engine.authoring.behavior_builder import behavior
 from engine.authoring.container_steps import Preempt, concurrency, foreach, machine, priority, tree
 from engine.authoring.expression_values import Param, expr
@@ -23,22 +24,7 @@ from engine.authoring.leaf_steps import behaviour, reference, state
 from engine.authoring.parameter_declaration import parameter
 from engine.authoring.python_file import load_python_behavior
 from engine.authoring.steps import PartKeys, Step, StepKeys, TreePart
-from engine.authoring.tree_steps import (
-    condition,
-    cooldown,
-    guard,
-    if_then_else,
-    inverter,
-    one_shot,
-    parallel,
-    remap,
-    repeat,
-    retry,
-    selector,
-    sequence,
-    timeout,
-    while_do_else,
-)
+from engine.authoring.tree_steps import *  # noqa: F403 - what it offers is listed there, once
 from engine.authoring.yaml_export import is_made_in_python, to_yaml, write_behavior
 from engine.document.node_kind import PostConditionsSpec as Post
 from engine.document.node_spec import GuardSpec as Guard
@@ -59,30 +45,17 @@ __all__ = [
     "behavior",
     "behaviour",
     "concurrency",
-    "condition",
-    "cooldown",
     "expr",
     "foreach",
-    "guard",
-    "if_then_else",
-    "inverter",
     "is_made_in_python",
     "load_python_behavior",
     "machine",
-    "one_shot",
-    "parallel",
     "parameter",
     "priority",
     "reference",
-    "remap",
-    "repeat",
-    "retry",
-    "selector",
-    "sequence",
     "state",
-    "timeout",
     "to_yaml",
     "tree",
-    "while_do_else",
     "write_behavior",
 ]
+__all__ += tree_steps.__all__

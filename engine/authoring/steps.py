@@ -8,8 +8,8 @@ from typing import TypedDict, Unpack
 
 from engine.authoring.plain_data import to_plain_data
 from engine.authoring.source_location import calling_position
-from engine.document.node_kind import PostConditionsSpec
-from engine.document.node_spec import AutonomyLevel, GuardSpec, NodeKind, RetrySpec, TimeoutSpec
+from engine.document.node_kind import AutonomyLevel, PostConditionsSpec
+from engine.document.node_spec import GuardSpec, RetrySpec, TimeoutSpec
 from engine.errors import Position
 
 
@@ -53,13 +53,13 @@ class StepKeys(PartKeys, total=False):
     every: float | str
 
 
-def new_step(kind: NodeKind, what: object, **keys: Unpack[StepKeys]) -> Step:
+def new_step(kind: str, what: object, **keys: Unpack[StepKeys]) -> Step:
     """Return a step of a kind from the value of its key."""
     place = calling_position()
     return Step(keys={kind: what, **_plain_keys(keys, place)}, place=place)
 
 
-def new_part(kind: NodeKind, what: object, **keys: Unpack[PartKeys]) -> TreePart:
+def new_part(kind: str, what: object, **keys: Unpack[PartKeys]) -> TreePart:
     """Return a composite or decorator from the value of its key."""
     place = calling_position()
     return TreePart(keys={kind: what, **_plain_keys(keys, place)}, place=place)

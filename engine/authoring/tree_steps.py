@@ -6,7 +6,24 @@ from collections.abc import Sequence
 from typing import Literal, Unpack
 
 from engine.authoring.steps import NameKeys, PartKeys, TreePart, given_keys, new_part
-from engine.document.node_spec import SLOTS, NodeKind, Status
+from engine.document.node_kind import SLOTS, Status
+
+__all__ = [
+    "condition",
+    "cooldown",
+    "guard",
+    "if_then_else",
+    "inverter",
+    "one_shot",
+    "parallel",
+    "remap",
+    "repeat",
+    "retry",
+    "selector",
+    "sequence",
+    "timeout",
+    "while_do_else",
+]
 
 
 def sequence(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
@@ -111,6 +128,6 @@ def guard(
     return new_part("guard", given_keys(child=child, when=when, to=to), **keys)
 
 
-def _group(kind: NodeKind, children: Sequence[TreePart], *, memory: bool | None, keys: PartKeys) -> TreePart:
+def _group(kind: str, children: Sequence[TreePart], *, memory: bool | None, keys: PartKeys) -> TreePart:
     what = list(children) if memory is None else {"children": list(children), "memory": memory}
     return new_part(kind, what, **keys)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from engine.document.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec, RemapSpec
+from engine.document.decorator_spec import DecoratorSpec
+from engine.document.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec
 
 Status = Literal["success", "failure", "skipped"]
 Statuses = frozenset[Status]
@@ -35,20 +36,7 @@ def end_statuses(node: NodeSpec, children: Sequence[tuple[str, Statuses]]) -> St
         return BOTH
     if node.if_then_else is not None or node.while_do_else is not None:
         return _branched(ends)
-    child = ends[0]
-    if node.inverter is not None:
-        return frozenset(_OPPOSITE[status] for status in child)
-    if node.remap is not None:
-        return _remapped(node.remap, child)
-    if node.condition is not None:
-        waited = node.condition.status
-        return (SUCCESS if waited == "running" or waited in child else NEVER) | (child & SKIPPED)
-    if node.retry is not None or node.repeat is not None or node.one_shot is not None:
-        return child
-    if node.guard is not None and node.guard.to is not None:
-        return child | closed_statuses(node)
-    # The remaining kinds can fail by themselves: timeout, guard, cooldown.
-    return child | FAILURE
+    return _decorated(node.decorator, ends[0]) if node.decorator is not None else NEVER
 
 
 def closed_statuses(node: NodeSpec) -> Statuses:
@@ -56,7 +44,12 @@ def closed_statuses(node: NodeSpec) -> Statuses:
     return frozenset(status for status in GUARD_TARGETS if node.guard is not None and node.guard.to == status)
 
 
-_OPPOSITE: dict[Status, Status] = {"success": "failure", "failure": "success", "skipped": "skipped"}
+def _decorated(decorator: DecoratorSpec, child: Statuses) -> Statuses:
+    """Return the ends of a decorator, which may also end while its child is RUNNING."""
+    found: set[Status] = set()
+    for status in (*child, "running"):
+        found.update(shown for shown in decorator.statuses(status) if shown != "running")
+    return frozenset(found)
 
 
 def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
@@ -105,9 +98,3 @@ def _counted(group: ParallelSpec, ends: Sequence[Statuses]) -> Statuses:
         succeeds = able >= needed
         fails = fails or (skipped > 0 and failing + skipped > len(ends) - needed and able + failing > 0)
     return (SUCCESS if succeeds else NEVER) | (FAILURE if fails else NEVER) | _all_skipped(ends)
-
-
-def _remapped(remap: RemapSpec, child: Statuses) -> Statuses:
-    shown = {remap.success if status == "success" else remap.failure for status in child - SKIPPED} | {remap.running}
-    ends: Statuses = frozenset(status for status in BOTH if status in shown)
-    return ends | (child & SKIPPED)

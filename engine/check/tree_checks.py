@@ -9,7 +9,8 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.check.instant_loops import InstantOutcomes
 from engine.document.expression import Template
-from engine.document.node_spec import SLOTS, TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec
+from engine.document.node_kind import SLOTS
+from engine.document.node_spec import TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec
 from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.suggestions import did_you_mean
@@ -61,9 +62,8 @@ def _check_end(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     if subject.statuses[placed.path] or not all(inside):
         return
     shown = " or ".join(sorted(inside[0]))
-    reason = "maps SUCCESS and FAILURE of its child to RUNNING"
-    if placed.node.condition is not None:
-        reason = f"waits for {placed.node.condition.status}, but its child only ends with {shown}"
+    decorator = placed.node.decorator
+    reason = decorator.why_endless(shown) if decorator is not None else "does not end with its children"
     hint = "change the mapping or the status; otherwise the tree runs until it is stopped"
     message = f"this `{placed.kind}` never ends: it {reason}"
     yield subject.finding("never-ends", message, placed.path, placed.kind, hint=hint, at_key=True)

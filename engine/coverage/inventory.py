@@ -9,7 +9,8 @@ from functools import cached_property
 from engine.coverage.coverage_item import CoverageItem, ItemKind
 from engine.document.behavior import Behavior
 from engine.document.concurrency_condition import ConcurrencyCondition
-from engine.document.node_spec import TREE_KINDS, TREE_OUTCOMES, WRAPPERS, NodeSpec
+from engine.document.node_kind import WRAPPERS, TreeStatus
+from engine.document.node_spec import TREE_KINDS, TREE_OUTCOMES, NodeSpec
 from engine.errors import Position
 from engine.runtime.plan import Catalogue, Plan, new_plan
 
@@ -167,12 +168,12 @@ def _is_part(node: NodeSpec) -> bool:
 
 
 def _statuses_of_part(node: NodeSpec) -> tuple[str, ...]:
-    """Return the final statuses of a tree node; a condition only succeeds, a remap may exchange the two."""
-    if node.condition is not None:
-        return ("success",)
-    if node.remap is not None:
-        return (node.remap.success, node.remap.failure, node.remap.running)
-    return TREE_OUTCOMES
+    """Return the statuses that a tree node may show, where its children may end with both."""
+    decorator = node.decorator
+    if decorator is None:
+        return TREE_OUTCOMES
+    below: tuple[TreeStatus, ...] = ("success", "failure", "running")
+    return tuple(shown for status in below for shown in decorator.statuses(status))
 
 
 def _text(rule: ConcurrencyCondition) -> str:

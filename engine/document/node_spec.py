@@ -3,41 +3,39 @@
 A node has exactly one kind key and optional keys that apply to every kind (`transitions`,
 `timeout`, `retry`, `on_error`, `guard`, `autonomy`, `resume`, `description`). Mappings keep the
 order of the document, the order of precedence.
+
+The class of a decorator says everything that check, editor and page know of it; `node_kinds.py` says it of the others.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Mapping
-from functools import cached_property
-from pathlib import PurePosixPath
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, cast
 
 from msgspec import Meta
 
 from engine.document.concurrency_condition import ConcurrencyCondition, ConditionEntry, read_entry
 from engine.document.decoding import StrictModel
+from engine.document.decorator_spec import MAY_FAIL, DecoratorSpec, Turns
 from engine.document.duration import Duration, seconds
 from engine.document.node_kind import (
     KINDS,
-    SLOTS,
-    TREE_KINDS,
-    WRAPPERS,
     AutonomyLevel,
     Expression,
+    FormField,
     Key,
-    NodeKind,
     NodeName,
     PostConditionsSpec,
     Reference,
     Status,
     Times,
-    Wrapper,
-    numbered,
+    TreeStatus,
+    derived_name,
 )
+from engine.document.node_shape import NodeShape, kind_keys
 
 
-class TimeoutSpec(StrictModel, frozen=True, kw_only=True):
+class TimeoutSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Preempt the node `after` a duration and continue at `to`.
 
     In a machine `to` is a sibling or an outcome of the machine; in a concurrency or foreach
@@ -45,7 +43,11 @@ class TimeoutSpec(StrictModel, frozen=True, kw_only=True):
     the root it is an outcome of the behavior. As a decorator in a tree it has a `child` and fails.
     """
 
-    after: Duration
+    icon = "clock"
+    doc = "Fails when its child takes too long."
+    turns = MAY_FAIL
+
+    after: Annotated[Duration, FormField("After", "Such as 30 s", "10 s")]
     to: str | None = None
     child: NodeSpec | None = None
 
@@ -55,15 +57,23 @@ class TimeoutSpec(StrictModel, frozen=True, kw_only=True):
         return seconds(self.after)
 
 
-class RetrySpec(StrictModel, frozen=True, kw_only=True):
+class RetrySpec(DecoratorSpec, frozen=True, kw_only=True):
     """Retry the node, up to `times` times, after these outcomes, and after errors with `errors`.
 
     The wait before the first retry is `backoff`; it doubles each time. As a decorator in a
     tree it has a `child` and retries it after FAILURE.
     """
 
-    times: Annotated[int, Meta(ge=1, le=1_000_000, description="Maximum number of retries, 1 or more")]
-    backoff: Duration = 0.0
+    icon = "refresh"
+    doc = "Executes its child again after a failure."
+    turns: ClassVar[Turns] = {"failure": ("running", "failure")}
+
+    times: Annotated[
+        int,
+        Meta(ge=1, le=1_000_000, description="Maximum number of retries, 1 or more"),
+        FormField("Times", "How often it is run again after failure", 1),
+    ]
+    backoff: Annotated[Duration, FormField("Wait first", "Such as 2 s")] = 0.0
     outcomes: tuple[str, ...] = ()
     errors: bool = True
     child: NodeSpec | None = None
@@ -74,16 +84,23 @@ class RetrySpec(StrictModel, frozen=True, kw_only=True):
         return seconds(self.backoff)
 
 
-class GuardSpec(StrictModel, frozen=True, kw_only=True):
+class GuardSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Enter the node only if the expression `when` is true, else continue at `to`.
 
     In a tree `to` is `success`, `failure` or `skipped`. As a decorator there it has a `child`, which is halted when
     `when` becomes false; without `to` it then fails.
     """
 
-    when: Expression
-    to: str | None = None
+    icon = "shield"
+    doc = "Executes its child only while an expression is true; otherwise fails or is skipped."
+
+    when: Annotated[Expression, FormField("While", "An expression, ${…}", "${true}")]
+    to: Annotated[str | None, FormField("Else", "failure, success or skipped; failure without")] = None
     child: NodeSpec | None = None
+
+    def statuses(self, child: TreeStatus) -> tuple[TreeStatus, ...]:
+        """Return that of the child, and that of a guard whose expression is false."""
+        return (child, cast("TreeStatus", self.to or "failure"))
 
 
 class MachineSpec(StrictModel, frozen=True, kw_only=True):
@@ -107,7 +124,9 @@ class ConcurrencySpec(StrictModel, frozen=True, kw_only=True):
     conditions: tuple[ConditionEntry, ...]
     otherwise: str | None = None
     userdata: dict[Key, object] = {}
-    shared: tuple[Key, ...] = ()
+    shared: Annotated[
+        tuple[Key, ...], FormField("Shared keys", "Names as a list: branches see each other write them")
+    ] = ()
 
     @property
     def rules(self) -> tuple[ConcurrencyCondition, ...]:
@@ -127,10 +146,10 @@ class ForEachSpec(StrictModel, frozen=True, kw_only=True, rename={"item": "as"})
     """
 
     child: NodeSpec
-    items: Expression | list[object] | None = None
-    times: int | float | Expression | None = None
-    item: Key = "item"
-    index: Key | None = None
+    items: Annotated[Expression | list[object] | None, FormField("Items", "A list, or ${…} that gives one")] = None
+    times: Annotated[int | float | Expression | None, FormField("Times", "Rounds, instead of items")] = None
+    item: Annotated[Key, FormField("Item is called", "Key of the item in each round, `item` without")] = "item"
+    index: Annotated[Key | None, FormField("Number is called", "Key of the number of the round")] = None
     next: tuple[str, ...] = ()
     collect: dict[Key, Key] = {}
     userdata: dict[Key, object] = {}
@@ -143,7 +162,7 @@ class CompositeSpec(StrictModel, frozen=True, kw_only=True):
     """
 
     children: Annotated[tuple[NodeSpec, ...], Meta(min_length=1, description="The children, at least one")]
-    memory: bool
+    memory: Annotated[bool, FormField("Memory", "A child that is done is not asked again")]
 
 
 class ParallelSpec(StrictModel, frozen=True, kw_only=True):
@@ -156,10 +175,19 @@ class ParallelSpec(StrictModel, frozen=True, kw_only=True):
     """
 
     children: Annotated[tuple[NodeSpec, ...], Meta(min_length=1, description="The children, at least one")]
-    policy: Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)] = "all"
-    synchronise: bool = True
-    success_count: Annotated[int, Meta(ge=1, description="Number of children that must succeed")] | None = None
-    failure_count: Annotated[int, Meta(ge=1, description="Number of children that must fail")] | None = None
+    policy: Annotated[
+        Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)],
+        FormField("Succeeds with", "`all`, `one`, or names of children as a list"),
+    ] = "all"
+    synchronise: Annotated[bool, FormField("Synchronise", "What has succeeded waits for the others")] = True
+    success_count: Annotated[
+        Annotated[int, Meta(ge=1, description="Number of children that must succeed")] | None,
+        FormField("Successes", "So many must succeed, instead of a policy"),
+    ] = None
+    failure_count: Annotated[
+        Annotated[int, Meta(ge=1, description="Number of children that must fail")] | None,
+        FormField("Failures", "So many must fail, 1 without"),
+    ] = None
 
     @property
     def counts(self) -> bool:
@@ -167,43 +195,56 @@ class ParallelSpec(StrictModel, frozen=True, kw_only=True):
         return self.success_count is not None or self.failure_count is not None
 
 
-class DecoratorSpec(StrictModel, frozen=True, kw_only=True):
+class InverterSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Turns SUCCESS of its child into FAILURE and back."""
 
+    icon = "switch"
+    doc = "Inverts success and failure of its child."
+    turns: ClassVar[Turns] = {"success": ("failure",), "failure": ("success",)}
+
     child: NodeSpec
 
 
-class OneShotSpec(StrictModel, frozen=True, kw_only=True):
+class OneShotSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Runs its child to completion, or to success, once in a run of the tree, and keeps the status."""
 
+    icon = "box"
+    doc = "Executes its child once and keeps its final status."
+
     child: NodeSpec
-    policy: Literal["completion", "success"] = "completion"
+    policy: Annotated[Literal["completion", "success"], FormField("Once", "`completion` or `success`")] = "completion"
 
 
-class RepeatSpec(StrictModel, frozen=True, kw_only=True):
+class RepeatSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Runs its child until it has succeeded `times` times in a row; fails when the child fails."""
 
+    icon = "loop"
+    doc = "Executes its child until it has succeeded a number of times in a row."
+    turns: ClassVar[Turns] = {"success": ("running", "success")}
+
     child: NodeSpec
-    times: Times
+    times: Annotated[Times, FormField("Times", "Successes in a row", 2)]
 
 
-class CooldownSpec(StrictModel, frozen=True, kw_only=True):
+class CooldownSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Fails without ticking its child until `after` has passed since the child last ended."""
 
+    icon = "clock"
+    doc = "Fails without ticking its child until a time has passed since the child ended."
+    turns = MAY_FAIL
+
     child: NodeSpec
-    after: Duration
-
-    @property
-    def after_s(self) -> float:
-        """The duration in seconds."""
-        return seconds(self.after)
+    after: Annotated[Duration, FormField("After", "Such as 30 s", "1 s")]
 
 
-class RemapSpec(StrictModel, frozen=True, kw_only=True):
+class RemapSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Maps the status of its child to another status.
 
     If a final status is mapped to `running`, the child is restarted with the period `every`.
     """
+
+    icon = "box"
+    doc = "Maps the status of its child to another status."
 
     child: NodeSpec
     success: Status = "success"
@@ -211,26 +252,38 @@ class RemapSpec(StrictModel, frozen=True, kw_only=True):
     running: Status = "running"
     every: Duration = 0.1
 
-    @property
-    def every_s(self) -> float:
-        """The period in seconds."""
-        return seconds(self.every)
+    def statuses(self, child: TreeStatus) -> tuple[TreeStatus, ...]:
+        """Return that to which the status is mapped, after an end also that shown while the child was RUNNING."""
+        if child == "skipped":
+            return (child,)
+        mapped: Mapping[TreeStatus, Status] = {"success": self.success, "failure": self.failure}
+        shown = {self.running, mapped.get(child, self.running)}
+        order: tuple[Status, ...] = ("running", "failure", "success")
+        return tuple(status for status in order if status in shown)
 
 
-class StatusConditionSpec(StrictModel, frozen=True, kw_only=True):
+class StatusConditionSpec(DecoratorSpec, frozen=True, kw_only=True):
     """SUCCESS when the child has this status, RUNNING until then.
 
     A child that has ended with another status is restarted with the period `every`.
     """
 
+    icon = "box"
+    doc = "Succeeds when its child has a given status, and is running until then."
+
     child: NodeSpec
-    status: Status
+    status: Annotated[Status, FormField(new="success")]
     every: Duration = 0.1
 
-    @property
-    def every_s(self) -> float:
-        """The period in seconds."""
-        return seconds(self.every)
+    def statuses(self, child: TreeStatus) -> tuple[TreeStatus, ...]:
+        """Return SUCCESS if the status may have been reached, and RUNNING."""
+        if child == "skipped":
+            return (child,)
+        return ("success", "running") if self.status in (child, "running") else ("running",)
+
+    def why_endless(self, ends: str) -> str:
+        """Return the status that it waits for."""
+        return f"waits for {self.status}, but its child only ends with {ends}"
 
 
 class IfThenElseSpec(
@@ -269,7 +322,7 @@ _Listed = Annotated[tuple["NodeSpec", ...], Meta(min_length=1, description="The 
 
 
 class NodeSpec(
-    StrictModel, frozen=True, kw_only=True, dict=True, rename={"parameters": "with", "inputs": "in", "outputs": "out"}
+    NodeShape, frozen=True, kw_only=True, dict=True, rename={"parameters": "with", "inputs": "in", "outputs": "out"}
 ):
     """One node: its kind, its connections in the container, and its error handling.
 
@@ -294,7 +347,7 @@ class NodeSpec(
     sequence: _Listed | CompositeSpec | None = None
     selector: _Listed | CompositeSpec | None = None
     parallel: _Listed | ParallelSpec | None = None
-    inverter: DecoratorSpec | None = None
+    inverter: InverterSpec | None = None
     one_shot: OneShotSpec | None = None
     repeat: RepeatSpec | None = None
     cooldown: CooldownSpec | None = None
@@ -320,39 +373,9 @@ class NodeSpec(
     description: str = ""
 
     @property
-    def kinds(self) -> tuple[NodeKind, ...]:
-        """All kind keys of the node; a valid node has one."""
-        plain: tuple[NodeKind, ...] = tuple(kind for kind in (*KINDS, *TREE_KINDS) if getattr(self, kind) is not None)
-        wrapping: tuple[NodeKind, ...] = tuple(key for key in WRAPPERS if self._wrapped(key) is not None)
-        return (*plain, *wrapping)
-
-    @property
-    def kind(self) -> NodeKind:
-        """The kind key of the node."""
-        if self.state is not None:
-            return "state"
-        return self.kinds[0]
-
-    @property
     def sequential(self) -> MachineSpec | None:
         """The states and the initial one of a machine or priority container."""
         return self.machine or self.priority
-
-    @property
-    def children(self) -> Mapping[str, NodeSpec]:
-        """The nodes directly inside, by the last part of their path, in document order."""
-        if self.state is not None:
-            return {}
-        container = self.machine or self.concurrency or self.priority
-        if container is not None:
-            return container.states
-        return self._inside
-
-    def child_keys(self, name: str) -> tuple[str | int, ...]:
-        """Return the keys, from this node inward, under which the child `name` is written."""
-        if self.machine is not None or self.concurrency is not None or self.priority is not None:
-            return (self.kind, "states", name)
-        return self._keys_inside[name]
 
     @property
     def userdata(self) -> Mapping[str, object]:
@@ -360,57 +383,18 @@ class NodeSpec(
         container = self.machine or self.concurrency or self.priority or self.foreach
         return container.userdata if container is not None else {}
 
-    @cached_property
-    def _inside(self) -> Mapping[str, NodeSpec]:
-        return {name: child for name, _, child in self._placed()}
-
-    @cached_property
-    def _keys_inside(self) -> Mapping[str, tuple[str | int, ...]]:
-        return {name: keys for name, keys, _ in self._placed()}
-
-    def _wrapped(self, key: Wrapper) -> NodeSpec | None:
-        wrapper: RetrySpec | TimeoutSpec | GuardSpec | None = getattr(self, key)
-        return wrapper.child if wrapper is not None else None
-
-    def _placed(self) -> list[tuple[str, tuple[str | int, ...], NodeSpec]]:
-        if self.foreach is not None:
-            return [("child", ("foreach", "child"), self.foreach.child)]
-        if self.tree is not None:
-            return [(self.tree.own_name, ("tree",), self.tree)]
-        for kind, group in (("sequence", self.sequence), ("selector", self.selector), ("parallel", self.parallel)):
-            if isinstance(group, tuple):
-                return [(n, (kind, i), c) for i, (n, c) in enumerate(zip(_names(group), group, strict=True))]
-            if group is not None:
-                named = zip(_names(group.children), group.children, strict=True)
-                return [(n, (kind, "children", i), c) for i, (n, c) in enumerate(named)]
-        branching = self.if_then_else or self.while_do_else
-        if branching is not None:
-            roles = zip(SLOTS[self.kind], (branching.condition, branching.body, branching.otherwise), strict=True)
-            filled = [(key, child) for key, child in roles if child is not None]
-            return [(n, (self.kind, k), c) for n, (k, c) in zip(_names(c for _, c in filled), filled, strict=True)]
-        single = self.inverter or self.one_shot or self.repeat or self.cooldown or self.remap or self.condition
-        if single is not None:
-            return [(single.child.own_name, (self.kind, "child"), single.child)]
-        for key in WRAPPERS:
-            child = self._wrapped(key)
-            if child is not None:
-                return [(child.own_name, (key, "child"), child)]
-        return []
-
     @property
     def own_name(self) -> str:
         """Its name inside a tree: as written, else derived from its kind."""
         if self.name is not None:
             return self.name
-        kind = self.state or self.behaviour or ""
-        kind = re.split(r"[.:]", kind)[-1] or (PurePosixPath(self.behavior).stem if self.behavior else "")
-        return re.sub(r"[^A-Za-z0-9_-]", "_", kind)[:64] or (self.kinds or ("node",))[0]
+        return derived_name(self.state or self.behaviour or "", self.behavior or "", next(iter(self.kinds), ""))
+
+
+TREE_KINDS = tuple(key for key in kind_keys(NodeSpec) if key not in KINDS)
+"""Kinds allowed only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
 
 
 def shared_keys(node: NodeSpec) -> tuple[str, ...]:
     """Return the keys that the branches of a concurrency container share; empty for other nodes."""
     return node.concurrency.shared if node.concurrency is not None else ()
-
-
-def _names(children: Iterable[NodeSpec]) -> list[str]:
-    return numbered(child.own_name for child in children)

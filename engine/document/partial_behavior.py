@@ -24,7 +24,8 @@ from engine.document.mistakes import (
     Plain,
     with_corrected_keys,
 )
-from engine.document.node_spec import KINDS, TREE_KINDS, WRAPPERS, NodeSpec
+from engine.document.node_kind import KINDS, WRAPPERS
+from engine.document.node_spec import TREE_KINDS, NodeSpec
 from engine.document.structural_rules import RuleViolation, rule_violations
 from engine.document.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError

@@ -12,16 +12,9 @@ from engine.document.concurrency_condition import AT_LEAST, PREEMPT, WHEN
 from engine.document.decoding import combine_mistakes
 from engine.document.duration import seconds
 from engine.document.mistakes import MAX_MISTAKES
-from engine.document.node_spec import (
-    GUARD_TARGETS,
-    KINDS,
-    TREE_KINDS,
-    TREE_OUTCOMES,
-    WRAPPERS,
-    ConcurrencySpec,
-    NodeSpec,
-    ParallelSpec,
-)
+from engine.document.node_kind import KINDS, WRAPPERS
+from engine.document.node_kinds import NODE_KINDS
+from engine.document.node_spec import GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, ConcurrencySpec, NodeSpec, ParallelSpec
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 
@@ -94,7 +87,8 @@ def _every(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> I
         return
     where = behavior.key_position(path, "every")
     if not in_tree or (node.behaviour is None and node.kind not in KINDS):
-        hint = "a `remap` or `condition` has its own inside it"
+        own = [f"`{kind.kind}`" for kind in NODE_KINDS.values() if kind.is_decorator and kind.has("every")]
+        hint = f"a {' or '.join(own)} has its own inside it"
         error = DocumentError("`every` goes with a check or a `behaviour` in a tree", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=("every",))
     elif seconds(node.every) < _SHORTEST_EVERY_S:

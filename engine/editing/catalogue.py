@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from engine.document.node_spec import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.node_kinds import NODE_KINDS, KindField
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.state_catalogue import Catalogue
 from engine.errors import StateError
@@ -40,12 +40,14 @@ class StateView:
 
 @dataclass(frozen=True, kw_only=True)
 class ContainerView:
-    """A kind of node that holds others."""
+    """A kind of node that holds others; `icon` is the name of its icon, `form` the fields that its form shows."""
 
     kind: str
     title: str
     doc: str
     only_in_tree: bool
+    icon: str
+    form: tuple[KindField, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,35 +60,6 @@ class BehaviorReferenceView:
     outcomes: tuple[str, ...] = ()
     success: tuple[str, ...] = ()
     parameters: tuple[KeyView, ...] = field(default=())
-
-
-_DOCS = {
-    "machine": ("State machine", "Executes one child at a time, from the initial one along the transitions."),
-    "concurrency": (
-        "Concurrency",
-        "Executes children concurrently; the first condition that is true decides the outcome.",
-    ),
-    "priority": ("Priority machine", "A state machine; while it is active, everything outside its path is paused."),
-    "tree": ("Behavior tree", "Ticks sequences, selectors and decorators; ends with success or failure."),
-    "foreach": ("For each", "Executes its child once for each item, or a number of times."),
-    "sequence": ("Sequence", "Executes children in order until one fails."),
-    "selector": ("Selector", "Executes children in order until one succeeds."),
-    "parallel": ("Parallel", "Executes children in parallel; the policy defines which successes are required."),
-    "inverter": ("Inverter", "Inverts success and failure of its child."),
-    "one_shot": ("One shot", "Executes its child once and keeps its final status."),
-    "repeat": ("Repeat", "Executes its child until it has succeeded a number of times in a row."),
-    "cooldown": ("Cooldown", "Fails without ticking its child until a time has passed since the child ended."),
-    "remap": ("Remap", "Maps the status of its child to another status."),
-    "condition": ("Condition", "Succeeds when its child has a given status, and is running until then."),
-    "if_then_else": ("If, then, else", "Executes one child, then the second if it succeeded, else the third."),
-    "while_do_else": (
-        "While, do, else",
-        "Executes the second child while the first succeeds, the third while it fails.",
-    ),
-    "retry": ("Retry", "Executes its child again after a failure."),
-    "timeout": ("Timeout", "Fails when its child takes too long."),
-    "guard": ("Guard", "Executes its child only while an expression is true; otherwise fails or is skipped."),
-}
 
 
 def state_views(catalogue: Catalogue) -> tuple[StateView, ...]:
@@ -104,11 +77,16 @@ def state_views(catalogue: Catalogue) -> tuple[StateView, ...]:
 
 def container_views() -> tuple[ContainerView, ...]:
     """Return every kind of container, those for machines first."""
-    kinds = (*KINDS, *TREE_KINDS, *WRAPPERS)
     return tuple(
-        ContainerView(kind=kind, title=_DOCS[kind][0], doc=_DOCS[kind][1], only_in_tree=kind not in KINDS)
-        for kind in kinds
-        if kind in _DOCS
+        ContainerView(
+            kind=each.kind,
+            title=each.title,
+            doc=each.doc,
+            only_in_tree=each.only_in_tree,
+            icon=each.icon,
+            form=each.form,
+        )
+        for each in NODE_KINDS.values()
     )
 
 

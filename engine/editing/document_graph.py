@@ -12,9 +12,9 @@ from typing import cast
 import msgspec
 
 from engine.document.concurrency_condition import ConcurrencyCondition
-from engine.document.node_spec import SLOTS
+from engine.document.node_kind import MACHINES, SLOTS
 from engine.editing.draft import Draft
-from engine.editing.outline import MACHINES, NodeRef, Outline, Plain
+from engine.editing.outline import NodeRef, Outline, Plain
 from engine.editing.project_context import NodeOutcomes, ProjectContext, rules, texts
 from engine.editing.syntax import Collection
 from engine.library.behavior_graph import GraphNode, GraphTransition

@@ -27,7 +27,7 @@ class AddNode(Edit, frozen=True, kw_only=True, tag="add_node"):
     """Insert a new node into a container; its name is generated if none is given.
 
     `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees
-    sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes
+    sequence, selector, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes
     as `copy` returns them are the content instead. `after` connects the open success outcomes of a
     sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the
     children.

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from engine.document.concurrency_condition import AT_LEAST, PREEMPT, WHEN
-from engine.document.node_spec import SLOTS
+from engine.document.node_kind import MACHINES, NAMED, SLOTS
 from engine.editing.draft import Draft
-from engine.editing.outline import MACHINES, NAMED, NodeRef, Outline, Plain, transition_entries
+from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
 from engine.editing.project_context import NodeOutcomes, ProjectContext
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")

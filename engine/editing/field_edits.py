@@ -4,51 +4,26 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
 from typing import cast
 
 import msgspec
 
 from engine.document.behavior import BehaviorDocument
 from engine.document.decoding import explain_validation_error
-from engine.document.node_spec import (  # fmt: skip
-    SLOTS,
-    CompositeSpec,
-    ConcurrencySpec,
-    CooldownSpec,
-    DecoratorSpec,
-    ForEachSpec,
-    GuardSpec,
-    IfThenElseSpec,
-    MachineSpec,
-    NodeSpec,
-    OneShotSpec,
-    ParallelSpec,
-    RemapSpec,
-    RepeatSpec,
-    RetrySpec,
-    StatusConditionSpec,
-    TimeoutSpec,
-    WhileDoElseSpec,
-)
+from engine.document.node_kind import GROUPS, NAMED, SLOTS
+from engine.document.node_kinds import NODE_KINDS
+from engine.document.node_spec import NodeSpec
 from engine.editing.draft import EditRefused
 from engine.editing.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
 from engine.editing.edit_session import EditSession, assign_child_roles, named_children, remove_entry
 from engine.editing.node_matching import graft
-from engine.editing.outline import CONTAINERS, GROUPS, NAMED, NodeRef, Plain
+from engine.editing.outline import NodeRef, Plain
 from engine.suggestions import did_you_mean
 
 _OF_NODES = frozenset(
     ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
      "post", "state", "behavior", "behaviour", "name")
 )  # fmt: skip
-_OF_KINDS: Mapping[str, type[msgspec.Struct]] = {
-    "machine": MachineSpec, "priority": MachineSpec, "concurrency": ConcurrencySpec, "foreach": ForEachSpec,
-    "sequence": CompositeSpec, "selector": CompositeSpec, "parallel": ParallelSpec, "inverter": DecoratorSpec,
-    "one_shot": OneShotSpec, "repeat": RepeatSpec, "cooldown": CooldownSpec, "remap": RemapSpec, "condition":
-    StatusConditionSpec, "retry": RetrySpec, "timeout": TimeoutSpec, "guard": GuardSpec, "if_then_else":
-    IfThenElseSpec, "while_do_else": WhileDoElseSpec,
-}  # fmt: skip
 _FARTHEST_PX = 1_000_000
 _INSIDE = frozenset(("states", "child", "children", *SLOTS["if_then_else"], *SLOTS["while_do_else"]))
 _OF_DOCUMENTS = ("name", "description", "cell", "parameters", "userdata", "outcomes", "success")
@@ -103,7 +78,7 @@ def set_field(session: EditSession, edit: SetField) -> None:
         _reorder(session, ref, value)
     elif edit.field == "notes":
         _note(session, ref, value)
-    elif edit.field in _OF_NODES and not (edit.field == ref.kind and ref.kind in CONTAINERS):
+    elif edit.field in _OF_NODES and not (edit.field == ref.kind and ref.kind in NODE_KINDS):
         _set_own(ref, edit.field, value)
     else:
         _set_inside(ref, edit.field, value)
@@ -190,7 +165,7 @@ def _set_own(ref: NodeRef, key: str, value: object) -> None:
 
 
 def _set_inside(ref: NodeRef, key: str, value: object) -> None:
-    model = _OF_KINDS.get(ref.kind)
+    model = NODE_KINDS[ref.kind].model if ref.kind in NODE_KINDS else None
     known = {each.encode_name for each in msgspec.structs.fields(model)} - _INSIDE if model is not None else set[str]()
     if model is None or key not in known:
         raise EditRefused(

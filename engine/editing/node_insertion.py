@@ -6,23 +6,14 @@ import re
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node_spec import GUARD_TARGETS, KINDS, SLOTS, TREE_KINDS, WRAPPERS
+from engine.document.node_kind import GROUPS, KINDS, MACHINES, NAMED, SLOTS, WRAPPERS
+from engine.document.node_kinds import NODE_KINDS
+from engine.document.node_spec import GUARD_TARGETS, TREE_KINDS
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AddNode, CanvasPoint, DuplicateNodes, PasteNodes, SetPositions, TransitionRef
 from engine.editing.edit_session import NAME, EditSession, ReferenceUpdate, insert_key, named_children
 from engine.editing.field_edits import plain_value, set_positions
-from engine.editing.outline import (
-    CONTAINERS,
-    GROUPS,
-    MACHINES,
-    NAMED,
-    NodeRef,
-    Plain,
-    kind_of,
-    own_name,
-    transition_entries,
-    tree_names,
-)
+from engine.editing.outline import NodeRef, Plain, kind_of, own_name, transition_entries, tree_names
 from engine.editing.text_rewriter import TextRewriter, WritePosition, indent_text
 from engine.editing.transition_edits import connect, unconnected_outcomes, write_initial
 from engine.editing.yaml_style import key_text
@@ -31,13 +22,6 @@ from engine.suggestions import did_you_mean
 
 _RUNNING = ("state", "behavior", "behaviour")
 _STEP_PX = 40
-_EMPTY: dict[str, object] = {
-    "machine": {"states": {}}, "priority": {"states": {}}, "concurrency": {"states": {}, "conditions": []},
-    "tree": {"sequence": []}, "foreach": {"times": 1}, "sequence": [], "selector": [], "parallel": [],
-    "inverter": {}, "one_shot": {}, "repeat": {"times": 2}, "cooldown": {"after": "1 s"}, "remap": {},
-    "condition": {"status": "success"}, "retry": {"times": 1}, "timeout": {"after": "10 s"},
-    "guard": {"when": "${true}"}, "if_then_else": {}, "while_do_else": {},
-}  # fmt: skip
 
 
 def add_node(session: EditSession, edit: AddNode) -> None:
@@ -200,13 +184,13 @@ def _new_node(edit: AddNode) -> Plain:
             raise EditRefused(f"a {edit.kind} requires `runs`", hint="set `runs` to what it executes")
         given = cast("Plain", plain_value(edit.parameters))
         return {edit.kind: edit.runs, **({"with": given} if given else {})}
-    if edit.kind not in _EMPTY:
-        raise EditRefused(f"there is no kind `{edit.kind}`", hint=did_you_mean(edit.kind, (*KINDS, *_EMPTY)))
-    return {edit.kind: plain_value(_EMPTY[edit.kind])}
+    if edit.kind not in NODE_KINDS:
+        raise EditRefused(f"there is no kind `{edit.kind}`", hint=did_you_mean(edit.kind, (*KINDS, *NODE_KINDS)))
+    return {edit.kind: plain_value(NODE_KINDS[edit.kind].new)}
 
 
 def _check_room(container: NodeRef, nodes: dict[str, Plain]) -> None:
-    if container.kind not in CONTAINERS:
+    if container.kind not in NODE_KINDS:
         raise EditRefused(f"`{container.path}` cannot contain nodes", hint="insert the node into a container")
     if container.kind in SLOTS:
         free = _free_slots(container)

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node_kind import numbered
-from engine.document.node_spec import KINDS, SLOTS, TREE_KINDS, WRAPPERS
+from engine.document.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
+from engine.document.node_spec import TREE_KINDS
 from engine.editing.draft import EditRefused
 from engine.suggestions import did_you_mean
 
 Plain = dict[str, object]
 Keys = tuple[str | int, ...]
-MACHINES = ("machine", "priority")
-NAMED = ("machine", "priority", "concurrency")
-"""Containers whose children have keys."""
-GROUPS = ("sequence", "selector", "parallel")
-"""Tree nodes with any number of children."""
-SINGLES = ("inverter", "one_shot", "repeat", "cooldown", "remap", "condition")
-"""Decorators: tree nodes with one child."""
-CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *SLOTS, *WRAPPERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,10 +136,9 @@ def own_name(node: Plain) -> str:
     given = node.get("name")
     if isinstance(given, str):
         return given
-    said = str(node.get("state") or node.get("behaviour") or "")
+    runs = str(node.get("state") or node.get("behaviour") or "")
     reference = node.get("behavior")
-    said = re.split(r"[.:]", said)[-1] or (PurePosixPath(reference).stem if isinstance(reference, str) else "")
-    return re.sub(r"[^A-Za-z0-9_-]", "_", said)[:64] or kind_of(node, in_tree=True) or "node"
+    return derived_name(runs, reference if isinstance(reference, str) else "", kind_of(node, in_tree=True))
 
 
 def tree_names(children: list[Plain]) -> list[str]:

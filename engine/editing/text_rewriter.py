@@ -12,7 +12,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import cast
 
-from engine.document.node_spec import KINDS, TREE_KINDS
+from engine.document.node_kind import KINDS
+from engine.document.node_spec import TREE_KINDS
 from engine.editing.node_matching import EntryMatch, is_same_value, match_entries
 from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
 from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text
@@ -20,7 +21,7 @@ from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_
 MAX_COLUMNS = 120
 """Maximum line length up to which a new value is written on one line."""
 _STEP = 2
-_NODES = frozenset((*KINDS, *TREE_KINDS)) - {"condition", "remap"}
+_NODES = frozenset((*KINDS, *TREE_KINDS))
 Plain = dict[str, object] | list[object]
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import cast
 
+from engine.document.node_kind import MACHINES
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AutoConnect, ClearTransition, SetInitial, SetTransition
 from engine.editing.edit_session import EditSession
-from engine.editing.outline import MACHINES, NodeRef, Plain
+from engine.editing.outline import NodeRef, Plain
 from engine.suggestions import did_you_mean
 
 

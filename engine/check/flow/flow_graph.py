@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 from engine.check.analyzed_behavior import NodeAt
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.effect import Effect
 from engine.check.graph_components import strong_components
-from engine.document.node_spec import NodeSpec, RemapSpec
+from engine.document.decorator_spec import DecoratorSpec
+from engine.document.node_kind import TreeStatus
+from engine.document.node_spec import NodeSpec
 
 Target = int | str
 """The number of a child, or the name of an outcome."""
@@ -152,24 +155,15 @@ def _leads(node: NodeSpec, count: int) -> Callable[[int, str], tuple[Target, ...
         return lambda _, status: ("success" if status == "skipped" else status,)
     if node.if_then_else is not None or node.while_do_else is not None:
         return lambda number, status: (status,) if number else (_branch(status, count),)
-    if node.inverter is not None:
-        opposite = {"success": "failure", "failure": "success"}
-        return lambda _, status: (opposite.get(status, status),)
-    if node.remap is not None:
-        return _remap(node.remap)
-    if node.condition is not None:
-        waited = node.condition.status
-        return lambda _, status: (
-            (status,) if status == "skipped" else ("success", 0) if waited in (status, "running") else (0,)
-        )
-    if node.retry is not None:
-        return lambda _, status: (0, "failure") if status == "failure" else (status,)
-    if node.repeat is not None:
-        return lambda _, status: (0, "success") if status == "success" else (status,)
-    if node.timeout is not None or node.guard is not None or node.cooldown is not None:
-        closed = node.guard.to if node.guard is not None and node.guard.to is not None else "failure"
-        return lambda _, status: (status, closed)
+    decorator = node.decorator
+    if decorator is not None:
+        return lambda _, status: _decorated(decorator, cast("TreeStatus", status))
     return lambda _, status: (status,)
+
+
+def _decorated(decorator: DecoratorSpec, status: TreeStatus) -> tuple[Target, ...]:
+    """Return where a decorator leads; one that is RUNNING after the end of its child runs it again."""
+    return tuple(0 if shown == "running" else shown for shown in decorator.statuses(status))
 
 
 def _line(onward: str, count: int) -> Callable[[int, str], tuple[Target, ...]]:
@@ -186,16 +180,3 @@ def _branch(status: str, count: int) -> Target:
     if status == "success":
         return 1
     return 2 if count > 2 else "failure"
-
-
-def _remap(remap: RemapSpec) -> Callable[[int, str], tuple[Target, ...]]:
-    shown = {"success": remap.success, "failure": remap.failure}
-
-    def lead(_: int, status: str) -> tuple[Target, ...]:
-        if status not in shown:
-            return (status,)
-        # A status mapped to RUNNING restarts the child.
-        ends = {0 if found == "running" else found for found in (shown[status], remap.running)}
-        return tuple(sorted(ends, key=str))
-
-    return lead

@@ -8,9 +8,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import cast
 
+from engine.document.node_kind import MACHINES
 from engine.editing.edit import AnyEdit
 from engine.editing.edit_session import EditSession
-from engine.editing.outline import MACHINES, NodeRef, Plain
+from engine.editing.outline import NodeRef, Plain
 from engine.library.behavior_library import FindingView
 
 _NAMES = re.compile(r"`([^`]*)`")

@@ -1,34 +1,59 @@
-"""Decorators that py_trees lacks, or implements with another clock or without a wake-up.
-
-Every `tick` yields the decorator itself last: the composite above stops iterating there, so no work may remain.
-"""
+"""Decorators that py_trees lacks, or implements with another clock or without a wake-up, and how each is built."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 
 from py_trees import decorators
 from py_trees.behaviour import Behaviour
-from py_trees.common import Status
-from py_trees.decorators import Decorator
+from py_trees.common import OneShotPolicy, Status
 
-from engine.cause_chain import cause_of
-from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.document import node_spec as nodes
+from engine.document.duration import seconds
+from engine.errors import StateError
 from engine.event import Cause
+from engine.runtime.tree.guard_decorator import Guard, guard_condition, holds_in
+from engine.runtime.tree.retry_decorator import Retry
+from engine.runtime.tree.scope_access import ScopeAccess
+from engine.runtime.tree.status_log import StatusLog
 from engine.runtime.tree.timers import TreeTimers
+from engine.runtime.tree.tree_decorator import STATUSES, TreeDecorator
 from engine.runtime.tree.tree_history import TreeNodeState
+from engine.runtime.tree.tree_node import TreeNode
 
-WHERE_NOTHING_WAKES_S = 0.1
-"""Default tick period of a node that is RUNNING while nothing below it can wake the tree."""
+_ONE_SHOT = {"completion": OneShotPolicy.ON_COMPLETION, "success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION}
 
 
-class Timeout(Decorator):
+class Inverter(decorators.Inverter, TreeDecorator):
+    """Inverter of py_trees."""
+
+    def explain(self, part: TreeNode, below: Cause | None) -> Cause | None:
+        """Return the success of its child."""
+        return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
+
+
+class OneShot(decorators.OneShot, TreeDecorator):
+    """One-shot of py_trees."""
+
+    keeps_end = True
+
+    @property
+    def ticks_child(self) -> bool:
+        """Whether it keeps no status yet."""
+        return self.final_status is None
+
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
+        """Restore the status that it keeps."""
+        kept = state.first if self.policy is OneShotPolicy.ON_COMPLETION else state.final
+        self.final_status = STATUSES[kept] if kept is not None and STATUSES[kept] in self.policy.value else None
+
+
+class Timeout(TreeDecorator):
     """Fails when its child does not end in time; a child that ends at that instant is in time."""
 
     def __init__(self, path: str, child: Behaviour, after_s: float, tree_timers: TreeTimers) -> None:
         super().__init__(path, child)
-        self.refusal = ""
-        """Reason of its own failure; empty where the child determines the status."""
         self._after_s = after_s
         self._tree_timers = tree_timers
 
@@ -49,31 +74,32 @@ class Timeout(Decorator):
         """Drop the timer."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, state: TreeNodeState, elapsed_s: float, *, reached: bool) -> None:
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
         """Resume the timer; if it had elapsed and no tick reaches this node, its tick has already followed."""
-        if state.status == "running" and (reached or elapsed_s <= self._after_s):
+        elapsed_s = now_s - state.since_s
+        if state.status == "running" and (is_reached or elapsed_s <= self._after_s):
             self._tree_timers.set(self.name, max(0.0, self._after_s - elapsed_s))
 
 
-class Cooldown(Decorator):
+class Cooldown(TreeDecorator):
     """Fails without ticking its child until a time has passed since the child last ended or was halted."""
+
+    keeps_end = True
 
     def __init__(self, path: str, child: Behaviour, after_s: float, tree_timers: TreeTimers) -> None:
         super().__init__(path, child)
-        self.refusal = ""
-        """Reason of its own failure; empty where the child determines the status."""
         self._after_s = after_s
         self._tree_timers = tree_timers
         self._child_active = False
 
     @property
-    def cooling(self) -> bool:
-        """Whether it fails without ticking its child."""
-        return self._tree_timers.pending(self.name)
+    def ticks_child(self) -> bool:
+        """Whether it is not cooling down."""
+        return not self._tree_timers.pending(self.name)
 
     def tick(self) -> Iterator[Behaviour]:
         """Tick the child, or fail while cooling down."""
-        if not self.cooling:
+        if self.ticks_child:
             self._child_active = True
             yield from super().tick()
             return
@@ -92,63 +118,16 @@ class Cooldown(Decorator):
             self._child_active = False
             self._tree_timers.set(self.name, self._after_s)
 
-    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
         """Resume the cooldown, where it has not elapsed."""
         self._child_active = state.status == "running"
-        left_s = self._after_s - elapsed_s
+        ended_s = max(state.ended_s or 0.0, state.since_s if state.first is not None else 0.0)
+        left_s = self._after_s - (now_s - ended_s)
         if not self._child_active and left_s > 0 and (state.first is not None or state.ended_s is not None):
             self._tree_timers.set(self.name, left_s)
 
 
-class Guard(Decorator):
-    """Ticks its child only while a condition holds; otherwise stops it and takes the status of its target.
-
-    Args:
-        path: Its node path.
-        child: The guarded node.
-        keys: The userdata keys and parameters that the condition reads.
-        holds: Evaluates the condition; may raise FlexcellError.
-        text: The condition as written.
-        closed: Returns the status for a condition that does not hold.
-    """
-
-    def __init__(
-        self,
-        path: str,
-        child: Behaviour,
-        *,
-        keys: frozenset[str],
-        holds: Callable[[], bool],
-        text: str,
-        closed: Callable[[Behaviour], Status],
-    ) -> None:
-        super().__init__(path, child)
-        self.refusal = ""
-        """Reason of its own failure; empty where the child determines the status."""
-        self.keys = keys
-        self.holds = holds
-        self.said: bool | None = None
-        """Value of the condition in the current or last tick; None where it was not evaluated."""
-        self._text = text
-        self._closed = closed
-
-    def tick(self) -> Iterator[Behaviour]:
-        """Evaluate the condition, then tick the child or stop it."""
-        self.said = self.holds()
-        if self.said:
-            yield from super().tick()
-            return
-        self.refusal = f"{self._text} is false"
-        self.stop(self._closed(self))
-        yield self
-
-    def update(self) -> Status:
-        """Return the status of the child."""
-        self.refusal = ""
-        return self.decorated.status
-
-
-class Repeat(decorators.Repeat):
+class Repeat(decorators.Repeat, TreeDecorator):
     """Repeat of py_trees that requests the next tick at once instead of waiting for it."""
 
     def __init__(
@@ -170,109 +149,22 @@ class Repeat(decorators.Repeat):
         """Drop the request for a tick."""
         self._tree_timers.drop(self.name)
 
+    def reads_end(self, end: Status, *, is_recorded: bool) -> bool:
+        """Return whether it has begun no other round yet."""
+        return not (is_recorded and end is Status.SUCCESS)
 
-class Retry(Decorator):
-    """Runs its child again after FAILURE, and with `errors` after errors below, waiting in between.
-
-    Args:
-        path: Its node path.
-        child: The node that is retried.
-        times: Maximum number of retries.
-        backoff_s: The first wait; it doubles each time.
-        errors: Whether an error of a leaf below counts as a failed attempt.
-        tree_timers: The timers of the tree.
-        clear: Halts a subtree whose tick was interrupted by an error.
-        tell: Called with the number of the next attempt, the wait, and the error before it, if any.
-    """
-
-    def __init__(
-        self,
-        path: str,
-        child: Behaviour,
-        *,
-        times: int,
-        backoff_s: float,
-        errors: bool,
-        tree_timers: TreeTimers,
-        clear: Callable[[Behaviour], None],
-        tell: Callable[[int, float, Cause | None], None],
-    ) -> None:
-        super().__init__(path, child)
-        self.attempt = 1
-        self._times = times
-        self._backoff_s = backoff_s
-        self._errors = errors
-        self._tree_timers = tree_timers
-        self._clear = clear
-        self._tell = tell
-
-    def initialise(self) -> None:
-        """Start the first attempt."""
-        self.attempt = 1
-
-    def tick(self) -> Iterator[Behaviour]:
-        """Tick the child, or wait for the next attempt."""
-        if self.status is not Status.RUNNING:
-            self.initialise()
-        elif self._tree_timers.pending(self.name):
-            yield self
-            return
-        try:
-            yield from self.decorated.tick()
-        except (JournalError, NotStopped):
-            raise
-        except FlexcellError as error:
-            if not self._errors or self.attempt > self._times:
-                raise
-            self._clear(self.decorated)
-            self._try_again(cause_of(error))
-            self.status = Status.RUNNING
-            yield self
-            return
-        status = self.update()
-        if status is not Status.RUNNING:
-            self.stop(status)
-        self.status = status
-        yield self
-
-    def update(self) -> Status:
-        """Retry after a failure while attempts remain."""
-        if self.decorated.status is Status.FAILURE and self.attempt <= self._times:
-            self._try_again(None)
-            return Status.RUNNING
-        return self.decorated.status
-
-    def terminate(self, new_status: Status) -> None:
-        """Drop the timer of the wait."""
-        self._tree_timers.drop(self.name)
-
-    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
-        """Resume the attempt, or the wait before it."""
-        if state.status == "running":
-            self.attempt = state.attempt
-            left_s = self._backoff_s * 2 ** (self.attempt - 2) - elapsed_s
-            if self.attempt > 1 and self.decorated.status is not Status.RUNNING and left_s > 0:
-                self._tree_timers.set(self.name, left_s)
-
-    def _try_again(self, error: Cause | None) -> None:
-        wait_s = self._backoff_s * 2 ** (self.attempt - 1)
-        self.attempt += 1
-        self._tell(self.attempt, wait_s, error)
-        if wait_s > 0:
-            self._tree_timers.set(self.name, wait_s)
-        else:
-            self._tree_timers.call_again(self.name)
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
+        """Restore the number of rounds."""
+        self.success = state.rounds
 
 
-class Remap(Decorator):
+class Remap(TreeDecorator):
     """Maps the status of its child to another; ticked periodically where it hides an end as RUNNING."""
 
     def __init__(
         self, path: str, child: Behaviour, shown: Mapping[Status, Status], every_s: float, tree_timers: TreeTimers
     ) -> None:
         super().__init__(path, child)
-        self.refusal = ""
-        """Reason of its own failure; empty where the child determines the status."""
         self.shown = shown
         self._every_s = every_s
         self._tree_timers = tree_timers
@@ -292,13 +184,17 @@ class Remap(Decorator):
         """Drop the periodic tick."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+    def reads_end(self, end: Status, *, is_recorded: bool) -> bool:
+        """Return whether it ends with its child."""
+        return self.shown[end] is not Status.RUNNING
+
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
         """Resume the periodic tick if it is needed."""
         hidden = state.status == "running" and self.decorated.status is not Status.RUNNING
         _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=hidden)
 
 
-class StatusCondition(decorators.Condition):
+class StatusCondition(decorators.Condition, TreeDecorator):
     """Condition of py_trees, ticked periodically while its child has ended with another status."""
 
     def __init__(self, path: str, child: Behaviour, status: Status, every_s: float, tree_timers: TreeTimers) -> None:
@@ -317,7 +213,11 @@ class StatusCondition(decorators.Condition):
         """Drop the periodic tick."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+    def reads_end(self, end: Status, *, is_recorded: bool) -> bool:
+        """Return whether it has waited for this end."""
+        return end is self.succeed_status
+
+    def restore(self, state: TreeNodeState, now_s: float, *, is_reached: bool) -> None:
         """Resume the periodic tick if it is needed."""
         hidden = state.status == "running" and self.decorated.status is not Status.RUNNING
         _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=hidden)
@@ -329,3 +229,46 @@ def _schedule_tick(tree_timers: TreeTimers, path: str, every_s: float, *, hidden
         tree_timers.set(path, every_s)
     else:
         tree_timers.drop(path)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DecoratorSite:
+    """What a decorator finds in the activation of its tree.
+
+    `clear` halts a subtree whose tick was interrupted by an error; `record_retry` is told the number of the next
+    attempt, the wait, and the error before it, if any.
+    """
+
+    place: ScopeAccess
+    statuses: StatusLog
+    tree_timers: TreeTimers
+    clear: Callable[[Behaviour], None]
+    record_retry: Callable[[int, float, Cause | None], None]
+
+
+def new_decorator(part: TreeNode, child: Behaviour, site: DecoratorSite) -> TreeDecorator:
+    """Return the decorator that a document specifies, around its child."""
+    path, tree_timers = part.path, site.tree_timers
+    match part.source.decorator:
+        case nodes.InverterSpec():
+            return Inverter(path, child)
+        case nodes.OneShotSpec() as spec:
+            return OneShot(path, child, _ONE_SHOT[spec.policy])
+        case nodes.RepeatSpec() as spec:
+            return Repeat(path, child, spec.times, tree_timers, site.statuses.repeat)
+        case nodes.CooldownSpec() as spec:
+            return Cooldown(path, child, seconds(spec.after), tree_timers)
+        case nodes.RemapSpec() as spec:
+            shown = {status: STATUSES[getattr(spec, word)] for word, status in STATUSES.items()}
+            return Remap(path, child, shown, seconds(spec.every), tree_timers)
+        case nodes.StatusConditionSpec() as spec:
+            return StatusCondition(path, child, STATUSES[spec.status], seconds(spec.every), tree_timers)
+        case nodes.TimeoutSpec() as spec:
+            return Timeout(path, child, spec.after_s, tree_timers)
+        case nodes.RetrySpec() as spec:
+            return Retry(path, child, spec, tree_timers=tree_timers, clear=site.clear, tell=site.record_retry)
+        case nodes.GuardSpec() as spec:
+            keys, holds, skips = guard_condition(part).names, holds_in(part, site.place), site.statuses.skips
+            return Guard(path, child, keys=keys, holds=holds, text=spec.when, to=spec.to or "failure", skips=skips)
+        case _:
+            raise StateError(f"a tree cannot hold a `{part.source.kind}`", where=part.position)

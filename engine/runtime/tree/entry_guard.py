@@ -9,8 +9,6 @@ from py_trees.common import Status
 
 from engine.runtime.tree.skipped_nodes import SkippedNodes
 
-_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE}
-
 
 class EntryGuard:
     """Wraps the ticks of one node; a closed guard gives the node the status of its target without a tick.
@@ -59,9 +57,5 @@ class EntryGuard:
             if child.status is not Status.INVALID:
                 child.stop(Status.INVALID)
         self.refusal = f"{self._text} is false" if self._to == "failure" else ""
-        part.status = self._skips.skip(part) if self._to == "skipped" else self._closed()
+        part.status = self._skips.closed(part, self._to)
         yield part
-
-    def _closed(self) -> Status:
-        self._skips.run(self._part)
-        return _STATUS[self._to]

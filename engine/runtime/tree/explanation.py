@@ -7,15 +7,14 @@ from collections.abc import Mapping
 from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.decorators import Decorator, Inverter
 
 from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.tree.branching import IfThenElse
-from engine.runtime.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
 from engine.runtime.tree.entry_guard import EntryGuard
 from engine.runtime.tree.parallel import ThresholdParallel
+from engine.runtime.tree.tree_decorator import TreeDecorator
 from engine.runtime.tree.tree_leaf import TreeLeaf
 from engine.runtime.tree.tree_node import TreeNode
 
@@ -32,13 +31,9 @@ def explain_tree_failure(
     guard = guards.get(behaviour)
     if guard is not None and guard.refusal:
         return Cause(message=guard.refusal, where=part.path, kind="Guard")
-    if isinstance(behaviour, Timeout | Cooldown | Guard | Remap) and behaviour.refusal:
-        return Cause(message=behaviour.refusal, where=part.path, kind=type(behaviour).__name__)
     if part.foreign is not None:
         feedback = f": {behaviour.feedback_message}" if behaviour.feedback_message else ""
         return Cause(message=f"{part.name} failed{feedback}", where=part.path)
-    if isinstance(behaviour, Inverter):
-        return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
     below = _failed_child(behaviour)
     because = explain_tree_failure(below, parts, guards) if below is not None else None
     if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
@@ -50,13 +45,13 @@ def explain_tree_failure(
             f"{behaviour.failed} of {len(part.children)} failed, and {behaviour.success_count} must succeed; the first"
         )
         return wrap_cause(message, because, where=part.path)
-    if isinstance(behaviour, Retry) and behaviour.attempt > 1:
-        return wrap_cause(f"failed {behaviour.attempt} times", because, where=part.path)
+    if isinstance(behaviour, TreeDecorator):
+        because = behaviour.explain(part, because)
     return because or Cause(message=f"{part.name} had failed before", where=part.path)
 
 
 def _failed_child(behaviour: Behaviour) -> Behaviour | None:
-    if isinstance(behaviour, Decorator):
+    if isinstance(behaviour, TreeDecorator):
         candidates = [behaviour.decorated]
     elif isinstance(behaviour, IfThenElse):
         candidates = [*behaviour.branches, behaviour.condition]

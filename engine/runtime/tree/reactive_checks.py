@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from py_trees import composites, decorators
+from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -26,9 +26,9 @@ from engine.runtime.nodes.observation import Observation, observe
 from engine.runtime.scheduling.timer import Timer
 from engine.runtime.tree.active_leaves import CHECK_TIMEOUT_S
 from engine.runtime.tree.branching import WhileDoElse
-from engine.runtime.tree.decorators import Cooldown
 from engine.runtime.tree.foreign_behaviour import ForeignBehaviour
 from engine.runtime.tree.tree_builder import TreeBuilder
+from engine.runtime.tree.tree_decorator import TreeDecorator
 from engine.runtime.tree.tree_leaf import TreeLeaf
 from engine.runtime.tree.tree_livelock import TreeLivelockDetector
 
@@ -170,9 +170,7 @@ class ReactiveChecks:
         """Yield the leaves of an ended node, which a tick would tick again."""
         if node.status not in _FINAL:
             return
-        if isinstance(node, decorators.OneShot) and node.final_status is not None:
-            return
-        if isinstance(node, Cooldown) and node.cooling:
+        if isinstance(node, TreeDecorator) and not node.ticks_child:
             return
         if isinstance(node, TreeLeaf) or node in self._builder.foreign:
             yield node

@@ -10,20 +10,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from py_trees import composites, decorators
+from py_trees import composites
 from py_trees.behaviour import Behaviour
-from py_trees.common import OneShotPolicy, ParallelPolicy, Status
-from py_trees.decorators import Decorator
+from py_trees.common import ParallelPolicy, Status
 
 from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.tree.branching import IfThenElse, WhileDoElse
-from engine.runtime.tree.decorators import Cooldown, Remap, Repeat, Retry, StatusCondition, Timeout
 from engine.runtime.tree.parallel import Parallel, ThresholdParallel
 from engine.runtime.tree.tree_builder import TreeBuilder
+from engine.runtime.tree.tree_decorator import STATUSES, TreeDecorator
 from engine.runtime.tree.tree_history import TreeNodeState
 from engine.runtime.tree.tree_leaf import TreeLeaf
 
-_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
 _FINAL = (Status.SUCCESS, Status.FAILURE)
 _NEVER = TreeNodeState()
 
@@ -87,15 +85,16 @@ class _Restoring:
             return False
         skips = self.builder.statuses.skips
         skipped = state.status == "skipped"
-        node.status = skips.skip(node) if skipped else _STATUS.get(state.status, Status.INVALID)
+        node.status = skips.skip(node) if skipped else STATUSES.get(state.status, Status.INVALID)
         self.builder.statuses.take(node)
         running = node.status is Status.RUNNING
         if isinstance(node, Parallel) and running:
             node.restore(self.branches)
         wakes = [self._inside(node, child) for child in node.children]
         awake = any(wakes)
-        if isinstance(node, Decorator):
-            awake = self._decorator(node, state) or awake
+        if isinstance(node, TreeDecorator):
+            node.restore(state, self.now_s, is_reached=self.unreached is None)
+            awake = self.builder.tree_timers.pending(part.path) or awake
         if running:
             skips.restore(node, (child for child in node.children if self._was_skipped(child, state)))
             unread = self._unread(node, state)
@@ -149,17 +148,10 @@ class _Restoring:
             decisive = [child for child in ended if child.status is final]
             last = node.children[-1]
             return decisive[:1] or ([last] if last in ended else [])
-        match node:
-            case Repeat() | Retry():
-                again = Status.SUCCESS if isinstance(node, Repeat) else Status.FAILURE
-                is_recorded = state.order > max(self._last(node), self._order(node.children[0]))
-                return [] if is_recorded and node.children[0].status is again else ended
-            case Remap():
-                return [child for child in ended if node.shown[child.status] is not Status.RUNNING]
-            case StatusCondition():
-                return [child for child in ended if child.status is node.succeed_status]
-            case _:
-                return ended
+        if isinstance(node, TreeDecorator):
+            is_recorded = state.order > max(self._last(node), self._order(node.decorated))
+            return [child for child in ended if node.reads_end(child.status, is_recorded=is_recorded)]
+        return ended
 
     def _unread_choice(self, node: IfThenElse, state: TreeNodeState) -> list[Behaviour]:
         """Return the unread ended children, in the order to read them: the condition, then the active branch."""
@@ -238,27 +230,6 @@ class _Restoring:
         if node not in self.echoed:
             self.echoed.add(node)
             _echo(node)
-
-    def _decorator(self, node: Behaviour, state: TreeNodeState) -> bool:
-        """Restore the state of a decorator; return whether it has set a timer."""
-        elapsed_s = self.now_s - state.since_s
-        match node:
-            case Timeout():
-                node.restore(state, elapsed_s, reached=self.unreached is None)
-            case Retry() | Remap() | StatusCondition():
-                node.restore(state, elapsed_s)
-            case Cooldown():
-                ended_s = state.since_s if state.first is not None else 0.0
-                node.restore(state, self.now_s - max(state.ended_s or 0.0, ended_s))
-            case Repeat():
-                node.success = state.rounds
-            case decorators.OneShot():
-                kept = state.first if node.policy is OneShotPolicy.ON_COMPLETION else state.final
-                node.final_status = _STATUS[kept] if kept is not None and _STATUS[kept] in node.policy.value else None
-            case _:
-                pass
-        path = self.builder.parts[node].path
-        return self.builder.tree_timers.pending(path)
 
 
 def _decided(node: composites.Parallel, ended: Sequence[Behaviour]) -> bool:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from py_trees import composites, decorators
+from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.decorators import Decorator
 
-from engine.runtime.tree.decorators import Cooldown
+from engine.runtime.tree.tree_decorator import STATUSES, TreeDecorator
 
 
 class SkippedNodes:
@@ -48,6 +47,13 @@ class SkippedNodes:
         """Return the status of a node when it is skipped."""
         return self._passing.setdefault(part, Status.SUCCESS)
 
+    def closed(self, part: Behaviour, to: str) -> Status:
+        """Return the status of a node whose guard is closed; `to` is success, failure or skipped."""
+        if to == "skipped":
+            return self.skip(part)
+        self.run(part)
+        return STATUSES[to]
+
     def run(self, part: Behaviour) -> None:
         """Mark a node as not skipped."""
         self.skipped.discard(part)
@@ -60,7 +66,7 @@ class SkippedNodes:
 
     def follow(self, part: Behaviour) -> None:
         """Track a node: a composite is skipped when all its children are, a decorator when its child is."""
-        if isinstance(part, Decorator):
+        if isinstance(part, TreeDecorator):
             self._follow_child(part)
         elif isinstance(part, composites.Composite):
             self._passed[part] = set()
@@ -99,7 +105,7 @@ class SkippedNodes:
         else:
             part.status = self.skip(part)
 
-    def _follow_child(self, part: Decorator) -> None:
+    def _follow_child(self, part: TreeDecorator) -> None:
         own_update, own_terminate = part.update, part.terminate
 
         def update() -> Status:
@@ -109,8 +115,7 @@ class SkippedNodes:
             return own_update()
 
         def terminate(new_status: Status) -> None:
-            # A skipped child starts no cooldown and is not remembered.
-            if not (part in self.skipped and isinstance(part, decorators.OneShot | Cooldown)):
+            if not (part.keeps_end and part in self.skipped):
                 own_terminate(new_status)
 
         vars(part)["update"] = update

@@ -6,21 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from py_trees import composites, decorators
+from py_trees import composites
 from py_trees.behaviour import Behaviour
-from py_trees.common import OneShotPolicy, ParallelPolicy, Status
+from py_trees.common import ParallelPolicy, Status
 
 from engine.document import node_spec as nodes
-from engine.document.expression import Template
-from engine.errors import ExpressionError, StateError
+from engine.document.node_kind import SLOTS
+from engine.errors import StateError
 from engine.event import Cause, NodeRetried
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.tree.active_leaves import ActiveLeaves
 from engine.runtime.tree.branching import IfThenElse, WhileDoElse
-from engine.runtime.tree.decorators import Cooldown, Guard, Remap, Repeat, Retry, StatusCondition, Timeout
+from engine.runtime.tree.decorators import DecoratorSite, new_decorator
 from engine.runtime.tree.entry_guard import EntryGuard
 from engine.runtime.tree.explanation import explain_tree_failure
 from engine.runtime.tree.foreign_behaviour import ForeignBehaviour
+from engine.runtime.tree.guard_decorator import Guard, guard_condition, holds_in
 from engine.runtime.tree.parallel import Parallel, ThresholdParallel, ThresholdPolicy
 from engine.runtime.tree.post_conditions import PostConditions
 from engine.runtime.tree.scope_access import ScopeAccess
@@ -28,9 +29,6 @@ from engine.runtime.tree.status_log import StatusLog
 from engine.runtime.tree.timers import TreeTimers
 from engine.runtime.tree.tree_leaf import TickPause, TreeLeaf
 from engine.runtime.tree.tree_node import TreeNode
-
-_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
-_ONE_SHOT = {"completion": OneShotPolicy.ON_COMPLETION, "success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION}
 
 
 @dataclass(kw_only=True)
@@ -92,7 +90,7 @@ class TreeBuilder:
             node = self._parallel(part, place, caught)
         elif part.source.kind in ("sequence", "selector"):
             node = self._composite(part, place, caught)
-        elif part.source.kind in nodes.SLOTS:
+        elif part.source.kind in SLOTS:
             node = self._branching(part, place, caught)
         else:
             retry = part.source.retry
@@ -101,7 +99,7 @@ class TreeBuilder:
             node = self._decorator(part, inside, place)
         self.parts[node] = part
         self.statuses.skips.place(node, passing)
-        if part.skips and node not in self.foreign and part.source.kind not in nodes.SLOTS:
+        if part.skips and node not in self.foreign and part.source.kind not in SLOTS:
             self.statuses.skips.follow(node)
         if part.source.guard is not None and part.source.kind != "guard":
             self._entry_guard(part, part.source.guard, node, place)
@@ -186,73 +184,29 @@ class TreeBuilder:
         return foreign.behaviour
 
     def _decorator(self, part: TreeNode, child: Behaviour, place: ScopeAccess) -> Behaviour:
-        path, tree_timers = part.path, self.tree_timers
-        match part.source:
-            case nodes.NodeSpec(inverter=nodes.DecoratorSpec()):
-                return decorators.Inverter(path, child)
-            case nodes.NodeSpec(one_shot=nodes.OneShotSpec() as shot):
-                return decorators.OneShot(path, child, _ONE_SHOT[shot.policy])
-            case nodes.NodeSpec(repeat=nodes.RepeatSpec() as repeat):
-                return Repeat(path, child, repeat.times, tree_timers, self.statuses.repeat)
-            case nodes.NodeSpec(cooldown=nodes.CooldownSpec() as cooldown):
-                return Cooldown(path, child, cooldown.after_s, tree_timers)
-            case nodes.NodeSpec(remap=nodes.RemapSpec() as remap):
-                shown = {_STATUS[actual]: _STATUS[getattr(remap, actual)] for actual in _STATUS}
-                return Remap(path, child, shown, remap.every_s, tree_timers)
-            case nodes.NodeSpec(condition=nodes.StatusConditionSpec() as condition):
-                return StatusCondition(path, child, _STATUS[condition.status], condition.every_s, tree_timers)
-            case nodes.NodeSpec(timeout=nodes.TimeoutSpec() as timeout):
-                return Timeout(path, child, timeout.after_s, tree_timers)
-            case nodes.NodeSpec(retry=nodes.RetrySpec() as retry):
-                return self._retry(part, retry, child)
-            case nodes.NodeSpec(guard=nodes.GuardSpec() as guard):
-                return self._guard(part, guard, child, place)
-            case _:
-                raise StateError(f"a tree cannot hold a `{part.source.kind}`", where=part.position)
-
-    def _guard(self, part: TreeNode, guard: nodes.GuardSpec, child: Behaviour, place: ScopeAccess) -> Behaviour:
-        when = part.when
-        if when is None:
-            raise StateError("the guard has no condition", where=part.position)
-        holds = partial(_holds, when, place, part.position)
-        closed = partial(self._closed, guard.to or "failure")
-        node = Guard(part.path, child, keys=when.names, holds=holds, text=guard.when, closed=closed)
-        self.guards.append(node)
+        site = DecoratorSite(
+            place=place,
+            statuses=self.statuses,
+            tree_timers=self.tree_timers,
+            clear=self.clear,
+            record_retry=partial(self._record_retry, part.path, child),
+        )
+        node = new_decorator(part, child, site)
+        if isinstance(node, Guard):
+            self.guards.append(node)
         return node
 
     def _entry_guard(self, part: TreeNode, guard: nodes.GuardSpec, node: Behaviour, place: ScopeAccess) -> None:
-        when = part.when
-        if when is None:
-            raise StateError("the guard has no condition", where=part.position)
-        holds = partial(_holds, when, place, part.position)
         entry_guard = EntryGuard(
             node,
-            keys=when.names,
-            holds=holds,
+            keys=guard_condition(part).names,
+            holds=holds_in(part, place),
             text=guard.when,
             to=guard.to or "failure",
             skips=self.statuses.skips,
         )
         self.guards.append(entry_guard)
         self.entry_guards[node] = entry_guard
-
-    def _closed(self, to: str, node: Behaviour) -> Status:
-        if to == "skipped":
-            return self.statuses.skips.skip(node)
-        self.statuses.skips.run(node)
-        return _STATUS[to]
-
-    def _retry(self, part: TreeNode, retry: nodes.RetrySpec, child: Behaviour) -> Behaviour:
-        return Retry(
-            part.path,
-            child,
-            times=retry.times,
-            backoff_s=retry.backoff_s,
-            errors=retry.errors,
-            tree_timers=self.tree_timers,
-            clear=self.clear,
-            tell=partial(self._record_retry, part.path, child),
-        )
 
     def _record_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
         self.execution.recorder.emit(
@@ -262,11 +216,3 @@ class TreeBuilder:
             wait_s=wait_s,
             cause=error or explain_tree_failure(child, self.parts, self.entry_guards),
         )
-
-
-def _holds(when: Template, place: ScopeAccess, position: str) -> bool:
-    value = when.evaluate({name: place.scope.read(name, reader=position) for name in when.names})
-    if not isinstance(value, bool):
-        message = f"the guard evaluates to {value!r}, which is not a boolean"
-        raise ExpressionError(message, where=position, hint="use a comparison")
-    return value

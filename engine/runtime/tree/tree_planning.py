@@ -12,18 +12,19 @@ from engine.document import node_spec as nodes
 from engine.document.behavior import Behavior
 from engine.document.duration import seconds
 from engine.document.expression import Template, compile_template
-from engine.document.node_kind import PostConditionsSpec
+from engine.document.node_kind import KINDS, PostConditionsSpec
 from engine.document.state_catalogue import Catalogue
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import Node
 from engine.runtime.tree.arguments import takes_name, wrong_arguments
 from engine.runtime.tree.behaviour_catalogue import find_behaviour
-from engine.runtime.tree.decorators import WHERE_NOTHING_WAKES_S
 from engine.runtime.tree.tree import Tree
 from engine.runtime.tree.tree_node import Assignment, ForeignPlan, LeafPlan, TreeNode
 from engine.suggestions import did_you_mean
 
+WHERE_NOTHING_WAKES_S = 0.1
+"""Default tick period of a node that is RUNNING while nothing below it can wake the tree."""
 PlanNode = Callable[[str, str, nodes.NodeSpec], Node]
 
 
@@ -57,7 +58,7 @@ class _Planner:
         return tuple(self._part(name, f"{inside}/{name}", child) for name, child in node.children.items())
 
     def _part(self, name: str, inside: str, node: nodes.NodeSpec) -> TreeNode:
-        is_leaf = node.kind in nodes.KINDS
+        is_leaf = node.kind in KINDS
         return TreeNode(
             path=self.base + inside.removeprefix("root"),
             name=name,

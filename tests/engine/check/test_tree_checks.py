@@ -36,6 +36,8 @@ DECIDE = "{state: gripper.CheckHeld, with: {gripper: left}}"
         ("condition: {status: running, child: <a>}", (SUCCESS,), SUCCESS),
         ("timeout: {after: 1, child: <a>}", (SUCCESS,), BOTH),
         ("cooldown: {after: 1, child: <a>}", (SUCCESS,), BOTH),
+        ("{timeout: {after: 1, child: <a>}, guard: {when: '${x}', to: success}}", (SUCCESS,), BOTH),
+        ("{cooldown: {after: 1, child: <a>}, guard: {when: '${x}', to: skipped}}", (SUCCESS,), BOTH),
         ("guard: {when: '${x}', child: <a>}", (SUCCESS,), BOTH),
         ("retry: {times: 1, child: <a>}", (FAILURE,), FAILURE),
         ("repeat: {times: 2, child: <a>}", (SUCCESS,), SUCCESS),

@@ -14,7 +14,7 @@ export interface ActivationInterval {
   readonly count: number
 }
 
-/** Insert a new node into a container; its name is generated if none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` returns them are the content instead. `after` connects the open success outcomes of a sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the children. */
+/** Insert a new node into a container; its name is generated if none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` returns them are the content instead. `after` connects the open success outcomes of a sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the children. */
 export interface AddNode {
   readonly edit: "add_node"
   readonly parent: string
@@ -356,12 +356,14 @@ export interface ConflictBody {
 export interface ConnectBody {
 }
 
-/** A kind of node that holds others. */
+/** A kind of node that holds others; `icon` is the name of its icon, `form` the fields that its form shows. */
 export interface ContainerView {
   readonly kind: string
   readonly title: string
   readonly doc: string
   readonly only_in_tree: boolean
+  readonly icon: string
+  readonly form: readonly KindField[]
 }
 
 /** State of a run as shown to an operator. */
@@ -972,6 +974,14 @@ export interface KeyWriter {
   readonly path: string
   readonly origin: "collect" | "index" | "item" | "output" | "parameter" | "post" | "userdata"
   readonly name: string
+}
+
+/** A field in the form of a node; a switch is on where the document says nothing. */
+export interface KindField {
+  readonly key: string
+  readonly label: string
+  readonly hint: string
+  readonly control: "switch" | "text"
 }
 
 /** The lease of `resource`: its run, node and goal, which may be empty, and its duration. */

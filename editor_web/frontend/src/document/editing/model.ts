@@ -54,22 +54,16 @@ export function pathsTo(path: string): readonly string[] {
   return parts.map((_, index) => parts.slice(0, index + 1).join('/'))
 }
 
-const TREE_PARTS: ReadonlySet<string> = new Set([
-  'tree',
-  'sequence',
-  'selector',
-  'parallel',
-  'inverter',
-  'one_shot',
-  'repeat',
-  'cooldown',
-  'remap',
-  'condition',
-  'if_then_else',
-  'while_do_else',
-  'retry',
-  'timeout',
-  'guard',
+/** All other kinds are trees and their parts. */
+const OUTSIDE_TREES: ReadonlySet<string> = new Set([
+  '',
+  'state',
+  'machine',
+  'concurrency',
+  'priority',
+  'foreach',
+  'behavior',
+  'behaviour',
 ])
 const COMPOSITES: ReadonlySet<string> = new Set(['sequence', 'selector', 'parallel'])
 
@@ -78,7 +72,7 @@ const MOST_CHILDREN: Readonly<Record<string, number>> = { if_then_else: 3, while
 
 /** Is its inside drawn as a tree of lines instead of a frame? */
 export function isTreePart(kind: string): boolean {
-  return TREE_PARTS.has(kind)
+  return !OUTSIDE_TREES.has(kind)
 }
 
 /** Can it have any number of children, in an order that means something? */

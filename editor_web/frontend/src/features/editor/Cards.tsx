@@ -15,13 +15,8 @@ import { isFailure, type OutgoingTransition } from '../../document/editing/model
 import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
-import { iconOf } from './kinds'
+import { NodeIcon } from './NodeIcon'
 import { useMark, useTransitionFindings } from './marks'
-
-function KindIcon({ kind, size = 16 }: { kind: string; size?: number }) {
-  const Icon = iconOf(kind)
-  return <Icon size={size} className="kind-icon" aria-hidden />
-}
 
 export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps<CardNode>) {
   const { node } = data
@@ -30,7 +25,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className="card-head">
-        <KindIcon kind={node.kind} />
+        <NodeIcon className="kind-icon" kind={node.kind} />
         {node.role && <span className="card-role">{node.role}</span>}
         <div className="card-titles">
           <span className="card-name">{node.name}</span>
@@ -55,7 +50,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className="frame-head">
-        <KindIcon kind={node.kind} />
+        <NodeIcon className="kind-icon" kind={node.kind} />
         <span className="card-name">{node.name}</span>
         <span className="frame-kind">{node.title || kindLabel(node.kind)}</span>
         {node.kind === 'behavior' && <span className="frame-foreign">read only</span>}
@@ -76,7 +71,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
   return (
     <div className={`card twig-card kind-${node.kind}${stateClasses(data, selected)}`}>
       <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
-      <KindIcon kind={node.kind} size={15} />
+      <NodeIcon className="kind-icon" kind={node.kind} size={15} />
       {node.role && <span className="card-role">{node.role}</span>}
       <span className="card-name">{node.name}</span>
       {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}

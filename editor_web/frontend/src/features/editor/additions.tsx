@@ -3,7 +3,7 @@ import { createElement } from 'react'
 import type { CatalogueBody, EntryName, StateView } from '../../api/types'
 import { isTreePart, nameFor, type EditNode } from '../../document/editing/model'
 import type { Addition } from './actions'
-import { iconOf } from './kinds'
+import { NodeIcon } from './NodeIcon'
 
 export interface Item {
   readonly id: string
@@ -93,7 +93,7 @@ export function fits(item: Item, parent: EditNode): boolean {
 }
 
 export function itemIcon(kind: string, size = 16) {
-  return createElement(iconOf(kind), { size, 'aria-hidden': true })
+  return createElement(NodeIcon, { kind, size })
 }
 
 /** The state that goes to a named entry, with the entry as its target. */
