@@ -47,12 +47,12 @@ class RunHistory:
 
     def follow(self, event: Event) -> None:
         """Apply the next event; no effect if it was applied before."""
-        changed = self.moments.follow(event)
-        if changed is None:
+        change = self.moments.follow(event)
+        if change is None:
             return
-        if changed:
-            self._spans.take(event, changed)
-        mark = marker_of(event)
+        if change.nodes:
+            self._spans.take(event, change.nodes)
+        mark = marker_of(event, change)
         if mark is not None:
             self._marks.append(mark)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -13,15 +13,14 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 
+from engine.cause_chain import describe_cause
 from engine.cli.run_report import cause_links, print_cause
 from engine.errors import DocumentError
 from engine.event import (
     Cause,
     Event,
-    GateReached,
     OperatorChanged,
     OperatorCommanded,
-    OutcomeRequested,
     RunEnded,
     StopRequested,
 )
@@ -29,8 +28,10 @@ from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import RunRecord, encode_event, list_runs
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
+from engine.runtime.history.event_text import event_text
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.plan import new_plan
 
 _LAST_EVENTS = 10
@@ -117,7 +118,7 @@ def show(
     if json:
         sys.stdout.write(msgspec.json.encode(summary).decode() + "\n")
     else:
-        _print(summary, _end(found))
+        _print(summary, _end(found), _durations_s(found))
 
 
 def _line(record: RunRecord) -> RunListEntry:
@@ -141,12 +142,12 @@ def _summary(found: RecordedRun) -> RunSummary:
         **msgspec.structs.asdict(line),
         outcome=end.outcome if end is not None else None,
         cause=cause_links(end.cause if end is not None else None),
-        active=history.active if history is not None and not history.ended else (),
+        active=history.active if history is not None and not history.state.ended else (),
         userdata=dict(history.userdata()) if history is not None else {},
         scopes={path: dict(values) for path, values in history.scopes().items() if path and values}
         if history is not None
         else {},
-        parameters=history.parameters if history is not None else found.origin.parameters,
+        parameters=history.state.parameters if history is not None else found.origin.parameters,
         operator=[
             event for event in found.effective if isinstance(event, OperatorCommanded | OperatorChanged | StopRequested)
         ],
@@ -160,7 +161,7 @@ def _end(found: RecordedRun) -> RunEnded | None:
     return last if isinstance(last, RunEnded) else None
 
 
-def _history(found: RecordedRun) -> RunStateReducer | None:
+def _history(found: RecordedRun) -> ResumableState | None:
     """Return the state of the run; the journal itself holds the behavior that it executed."""
     behavior = found.behavior()
     if behavior is None:
@@ -174,7 +175,14 @@ def _history(found: RecordedRun) -> RunStateReducer | None:
     return read_history(plan, found.id, found.events)
 
 
-def _print(summary: RunSummary, end: RunEnded | None) -> None:
+def _durations_s(found: RecordedRun) -> Mapping[int, float]:
+    """Return how long each node took, by the number of the event that ended it."""
+    reducer = RunReducer()
+    changes = ((event.seq, reducer.apply(event)) for event in found.effective)
+    return {seq: change.duration_s for seq, change in changes if change is not None and change.duration_s}
+
+
+def _print(summary: RunSummary, end: RunEnded | None, durations_s: Mapping[int, float]) -> None:
     console = Console(soft_wrap=True, highlight=False, markup=False)
     ended = f" with {summary.outcome}" if summary.outcome else ""
     engines = f", {summary.engines} engines" if summary.engines > 1 else ""
@@ -194,8 +202,8 @@ def _print(summary: RunSummary, end: RunEnded | None) -> None:
         console.print("active:")
         for path in summary.active:
             console.print(f"  {path}")
-    _print_events(console, "operator:", summary.operator)
-    _print_events(console, "last events:", summary.last)
+    _print_events(console, "operator:", summary.operator, durations_s)
+    _print_events(console, "last events:", summary.last, durations_s)
 
 
 def _print_values(console: Console, title: str, values: dict[str, object]) -> None:
@@ -205,27 +213,14 @@ def _print_values(console: Console, title: str, values: dict[str, object]) -> No
         console.print(f"  {key} = {msgspec.json.encode(value).decode()}")
 
 
-def _print_events(console: Console, title: str, events: Sequence[Event]) -> None:
+def _print_events(console: Console, title: str, events: Sequence[Event], durations_s: Mapping[int, float]) -> None:
     if events:
         console.print(title)
     for event in events:
-        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_text(event)}")
+        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_line(event, durations_s.get(event.seq, 0.0))}")
 
 
-def _event_text(event: Event) -> str:
-    """Describe an event in one line."""
-    kind = str(type(event).__struct_config__.tag or "")
-    match event:
-        case GateReached():
-            return f"gate {event.point} {event.path}: {', '.join(event.reasons)}"
-        case OutcomeRequested():
-            return f"{kind} {event.path} {event.outcome}"
-        case _:
-            fields = {name: getattr(event, name) for name in event.__struct_fields__ if name not in ("seq", "time_s")}
-            shown = [_truncated(value) for value in fields.values() if value not in (None, "", (), {})]
-            return " ".join([kind, *shown])
-
-
-def _truncated(value: object) -> str:
-    text = value if isinstance(value, str) else msgspec.json.encode(value).decode()
-    return text if len(text) <= 80 else f"{text[:79]}…"
+def _event_line(event: Event, duration_s: float) -> str:
+    path, _, text, cause = event_text(event, duration_s=duration_s)
+    why = f": {describe_cause(cause)}" if cause is not None else ""
+    return f"{path}  {text}{why}" if path else f"{text}{why}"
