@@ -29,7 +29,7 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     causes: tuple[CauseLine, ...] = ()
 
 
-def log_line(event: Event, *, duration_s: float = 0.0) -> LogLine:
+def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
     """Return the log line of an event; `duration_s` is the duration of the node that ended."""
     path, level, text, cause = event_text(event, duration_s=duration_s)
     kind = str(type(event).__struct_config__.tag or "")

@@ -10,7 +10,6 @@ from editor_web.live.event_log import LogLine, log_line
 from engine.cause_chain import links_from_root
 from engine.errors import FlexcellError
 from engine.event import Cause, Event
-from engine.runtime.history.event_text import step_text
 from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.history.run_state import NodeStep
 
@@ -128,17 +127,17 @@ def _path(event: Event) -> str:
 
 def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, since_seq: int) -> Iterator[FailureStep]:
     """Yield how the containers around the origin ended after it, outermost first."""
-    ends: dict[str, tuple[Event, str]] = {}
+    ends: dict[str, Event] = {}
     for event in events:
         step = steps.get(event.seq) if event.seq >= since_seq else None
-        if step is not None and (text := step_text(step)):
-            ends[step.path] = event, text
+        if step is not None and step.kind in ("ended", "diverted"):
+            ends[step.path] = event
     parts = path.split("/") if path else []
     for depth in range(1, len(parts) + 1):
         node = "/".join(parts[:depth])
         if node in ends:
-            event, text = ends[node]
-            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=text)
+            event = ends[node]
+            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=log_line(event).text)
 
 
 def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, seq: int) -> tuple[LogLine, ...]:

@@ -8,8 +8,6 @@ import msgspec
 
 from editor_web.live.event_log import log_line
 from engine.event import Event, GoalSent
-from engine.runtime.history.event_text import step_text
-from engine.runtime.history.run_state import RunStateChange
 
 MAX_MARKERS = 4000
 """Maximum number of markers in one response; goals are dropped first."""
@@ -47,8 +45,8 @@ class TimelineMarker(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     text: str
 
 
-def marker_of(event: Event, change: RunStateChange) -> TimelineMarker | None:
-    """Return the marker of an event, and of what it changed; None if it has none."""
+def marker_of(event: Event) -> TimelineMarker | None:
+    """Return the marker of an event; None if it has none."""
     if isinstance(event, GoalSent):
         # Goals are frequent, and their log line would contain the whole request.
         return TimelineMarker(seq=event.seq, time_s=event.time_s, kind="goal", path=event.path, text=event.address)
@@ -61,9 +59,7 @@ def marker_of(event: Event, change: RunStateChange) -> TimelineMarker | None:
         kind = by_level.get(line.level)
     if kind is None:
         return None
-    text = step_text(change.step) if tag == "exited" and change.step is not None else line.text
-    if line.causes:
-        text = f"{text}: {line.causes[0].message}"
+    text = f"{line.text}: {line.causes[0].message}" if line.causes else line.text
     return TimelineMarker(seq=event.seq, time_s=event.time_s, kind=kind, path=line.path, text=text)
 
 

@@ -52,7 +52,7 @@ class RunHistory:
             return
         if change.nodes:
             self._spans.take(event, change.nodes)
-        mark = marker_of(event, change)
+        mark = marker_of(event)
         if mark is not None:
             self._marks.append(mark)
 

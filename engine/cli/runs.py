@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -31,7 +31,6 @@ from engine.registry import load_states
 from engine.runtime.history.event_text import event_text
 from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
-from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.plan import new_plan
 
 _LAST_EVENTS = 10
@@ -118,7 +117,7 @@ def show(
     if json:
         sys.stdout.write(msgspec.json.encode(summary).decode() + "\n")
     else:
-        _print(summary, _end(found), _durations_s(found))
+        _print(summary, _end(found))
 
 
 def _line(record: RunRecord) -> RunListEntry:
@@ -175,14 +174,7 @@ def _history(found: RecordedRun) -> ResumableState | None:
     return read_history(plan, found.id, found.events)
 
 
-def _durations_s(found: RecordedRun) -> Mapping[int, float]:
-    """Return how long each node took, by the number of the event that ended it."""
-    reducer = RunReducer()
-    changes = ((event.seq, reducer.apply(event)) for event in found.effective)
-    return {seq: change.duration_s for seq, change in changes if change is not None and change.duration_s}
-
-
-def _print(summary: RunSummary, end: RunEnded | None, durations_s: Mapping[int, float]) -> None:
+def _print(summary: RunSummary, end: RunEnded | None) -> None:
     console = Console(soft_wrap=True, highlight=False, markup=False)
     ended = f" with {summary.outcome}" if summary.outcome else ""
     engines = f", {summary.engines} engines" if summary.engines > 1 else ""
@@ -202,8 +194,8 @@ def _print(summary: RunSummary, end: RunEnded | None, durations_s: Mapping[int, 
         console.print("active:")
         for path in summary.active:
             console.print(f"  {path}")
-    _print_events(console, "operator:", summary.operator, durations_s)
-    _print_events(console, "last events:", summary.last, durations_s)
+    _print_events(console, "operator:", summary.operator)
+    _print_events(console, "last events:", summary.last)
 
 
 def _print_values(console: Console, title: str, values: dict[str, object]) -> None:
@@ -213,14 +205,14 @@ def _print_values(console: Console, title: str, values: dict[str, object]) -> No
         console.print(f"  {key} = {msgspec.json.encode(value).decode()}")
 
 
-def _print_events(console: Console, title: str, events: Sequence[Event], durations_s: Mapping[int, float]) -> None:
+def _print_events(console: Console, title: str, events: Sequence[Event]) -> None:
     if events:
         console.print(title)
     for event in events:
-        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_line(event, durations_s.get(event.seq, 0.0))}")
+        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_line(event)}")
 
 
-def _event_line(event: Event, duration_s: float) -> str:
-    path, _, text, cause = event_text(event, duration_s=duration_s)
+def _event_line(event: Event) -> str:
+    path, _, text, cause = event_text(event)
     why = f": {describe_cause(cause)}" if cause is not None else ""
     return f"{path}  {text}{why}" if path else f"{text}{why}"

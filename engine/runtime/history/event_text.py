@@ -48,7 +48,6 @@ from engine.event import (
     UserdataWritten,
 )
 from engine.runtime.history.run_reducer import exit_status
-from engine.runtime.history.run_state import NodeStep
 
 
 class EventText(NamedTuple):
@@ -71,11 +70,12 @@ EVENT_TEXTS: Mapping[str, _Template] = {
     "resumed.rerun": _Template("warning", "resumed after event {after_seq}, running again {rerun}"),
     "entered": _Template("debug", "entered"),
     "entered.again": _Template("debug", "entered, visit {visit}"),
-    "exited.done": _Template("info", "ended with {outcome} after {duration}"),
-    "exited.failed": _Template("error", "ended with {outcome} after {duration}"),
-    "exited.stopped": _Template("warning", "stopped after {duration}"),
-    "exited.brief": _Template("info", "ended with {outcome}"),
-    "diverted.brief": _Template("info", "preempted by {by}"),
+    "exited.done": _Template("info", "ended with {outcome}"),
+    "exited.done.duration": _Template("info", "ended with {outcome} after {duration}"),
+    "exited.failed": _Template("error", "ended with {outcome}"),
+    "exited.failed.duration": _Template("error", "ended with {outcome} after {duration}"),
+    "exited.stopped": _Template("warning", "stopped"),
+    "exited.stopped.duration": _Template("warning", "stopped after {duration}"),
     "userdata": _Template("debug", "{key} = {value}"),
     "userdata_appended": _Template("debug", "{key} += {value}"),
     "transition": _Template("info", "{source} \u2014{outcome}\u2192 {target}"),
@@ -131,17 +131,10 @@ The level of a `log` message is that of its event.
 """
 
 
-def event_text(event: Event, *, duration_s: float = 0.0) -> EventText:
-    """Return the text of an event; `duration_s` is the duration of the node that ended."""
+def event_text(event: Event, *, duration_s: float | None = None) -> EventText:
+    """Return the text of an event; `duration_s` is the duration of the node that ended, None to leave it out."""
     text = _node_text(event, duration_s) or _request_text(event) or _control_text(event)
     return text or _run_text(event)
-
-
-def step_text(step: NodeStep) -> str:
-    """Return how a node ended or was diverted, without its duration and target; empty for other steps."""
-    if step.kind == "ended":
-        return EVENT_TEXTS["exited.brief"].text.format(outcome=step.name or "an error")
-    return EVENT_TEXTS["diverted.brief"].text.format(by=step.by) if step.kind == "diverted" else ""
 
 
 def _say(id_: str, path: str, cause: Cause | None = None, /, **values: object) -> EventText:
@@ -149,14 +142,16 @@ def _say(id_: str, path: str, cause: Cause | None = None, /, **values: object) -
     return EventText(path, template.level, template.text.format_map(values), cause)
 
 
-def _node_text(event: Event, duration_s: float) -> EventText | None:
+def _node_text(event: Event, duration_s: float | None) -> EventText | None:
     match event:
         case NodeEntered():
             return _say("entered" if event.visit == 1 else "entered.again", event.path, visit=event.visit)
         case NodeExited():
             outcome = event.outcome or "an error"
             id_ = f"exited.{exit_status(event)}"
-            return _say(id_, event.path, event.cause, outcome=outcome, duration=_seconds(duration_s))
+            if duration_s is None:
+                return _say(id_, event.path, event.cause, outcome=outcome)
+            return _say(f"{id_}.duration", event.path, event.cause, outcome=outcome, duration=_seconds(duration_s))
         case UserdataWritten():
             return _say("userdata", event.path, key=event.key, value=_short(event.value))
         case UserdataAppended():

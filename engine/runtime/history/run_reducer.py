@@ -176,9 +176,9 @@ class RunReducer(RunStatePart):
 
     def branches_preempted(self, event: BranchesPreempted) -> None:
         """Note the condition; each branch ends with an event of its own."""
-        for name in event.branches:
-            path = f"{event.path}/{name}"
-            if path not in self.state.active:
+        is_active = event.path in self.state.active
+        for path in (f"{event.path}/{name}" for name in event.branches):
+            if is_active and path not in self.state.active:
                 # It waited for its next attempt, or at the gate.
                 self._forget_inside(path)
                 self._proceed_from(path)

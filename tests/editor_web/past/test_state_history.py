@@ -36,7 +36,7 @@ root:
 
 def lived(events: list[Event], seq: int) -> LiveRun:
     """What the live view had folded after an event."""
-    live = LiveRun("r")
+    live = LiveRun("r", history=lambda: events)
     for event in events[:seq]:
         live.apply(event)
     return live
