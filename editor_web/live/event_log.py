@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import msgspec
 
 from engine.cause_chain import links_from_root
-from engine.event import Cause, Event
+from engine.event import AnyEvent, Cause, Event
 from engine.runtime.history.event_text import event_text
+
+_KINDS = {kind: str(kind.__struct_config__.tag) for kind in get_args(AnyEvent)}
 
 
 class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
@@ -31,10 +35,15 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
     """Return the log line of an event; `duration_s` is the duration of the node that ended."""
-    path, level, text, cause = event_text(event, duration_s=duration_s)
-    kind = str(type(event).__struct_config__.tag or "")
+    said = event_text(event, duration_s=duration_s)
     return LogLine(
-        seq=event.seq, time_s=event.time_s, kind=kind, level=level, path=path, text=text, causes=_lines(cause)
+        seq=event.seq,
+        time_s=event.time_s,
+        kind=_KINDS[type(event)],
+        level=said.level,
+        path=said.path,
+        text=said.text,
+        causes=_lines(said.cause) if said.cause is not None else (),
     )
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import get_args
 
 import msgspec
 
 from editor_web.live.event_log import log_line
-from engine.event import Event, GoalSent
+from engine.event import AnyEvent, Event, GoalSent
 
 MAX_MARKERS = 4000
 """Maximum number of markers in one response; goals are dropped first."""
@@ -33,6 +34,7 @@ _BY_LEVEL = {
     "stepped_back": {"error": "failure", "info": "change"},
 }
 """The same where it depends on how severe the event is; without a kind, it has no marker."""
+_MARKED = frozenset(kind for kind in get_args(AnyEvent) if kind.__struct_config__.tag in {**_ALWAYS, **_BY_LEVEL})
 
 
 class TimelineMarker(msgspec.Struct, frozen=True, kw_only=True, gc=False):
@@ -50,13 +52,10 @@ def marker_of(event: Event) -> TimelineMarker | None:
     if isinstance(event, GoalSent):
         # Goals are frequent, and their log line would contain the whole request.
         return TimelineMarker(seq=event.seq, time_s=event.time_s, kind="goal", path=event.path, text=event.address)
-    tag = str(event.__struct_config__.tag)
-    kind, by_level = _ALWAYS.get(tag), _BY_LEVEL.get(tag)
-    if kind is None and by_level is None:
+    if type(event) not in _MARKED:
         return None
     line = log_line(event)
-    if by_level is not None:
-        kind = by_level.get(line.level)
+    kind = _ALWAYS.get(line.kind) or _BY_LEVEL.get(line.kind, {}).get(line.level)
     if kind is None:
         return None
     text = f"{line.text}: {line.causes[0].message}" if line.causes else line.text

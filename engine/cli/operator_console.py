@@ -151,13 +151,14 @@ class OperatorConsole:
             self._rests.set()
         if tag not in _SAID:
             return
-        path, level, text, cause = event_text(event)
-        line = f"{path} {text}" if path else text
+        said = event_text(event)
+        path, cause = said.path, said.cause
+        line = f"{path} {said.text}" if path else said.text
         if tag == "outcome_requested":
             line = f"? {line}: answer {path} | force {path} OUTCOME | repeat {path}"
         elif cause is not None:
             line = f"{line}: {describe_cause(cause)}"
-        elif tag == "operator" and level == "warning":
+        elif tag == "operator" and said.level == "warning":
             actions = {"hold": "the run pauses", "continue": "the run continues", "stop": "the run stops"}
             line = f"the input ended, {line}: {actions[self._policy.loss_policy]}"
         elif tag == "operator":

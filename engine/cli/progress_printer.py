@@ -36,12 +36,12 @@ class ProgressPrinter:
         return step.path not in self._reducer.state.containers
 
     def _print_line(self, event: Event, change: RunStateChange) -> None:
-        path, level, text, cause = event_text(event, duration_s=change.duration_s)
-        node = f"{escape(path)}  " if path else ""
+        said = event_text(event, duration_s=change.duration_s)
+        node = f"{escape(said.path)}  " if said.path else ""
         # The causes of a node are printed once, with the result of the run.
-        why = f": {describe_cause(cause)}" if cause is not None and isinstance(event, GoalFinished) else ""
-        style = "green" if change.step is not None and level == "info" else _STYLES.get(level, "default")
-        line = f"[dim]{event.time_s:9.3f} s[/]  {node}[{style}]{escape(text + why)}[/]"
+        why = f": {describe_cause(said.cause)}" if said.cause is not None and isinstance(event, GoalFinished) else ""
+        style = "green" if change.step is not None and said.level == "info" else _STYLES.get(said.level, "default")
+        line = f"[dim]{event.time_s:9.3f} s[/]  {node}[{style}]{escape(said.text + why)}[/]"
         self._console.print(line, soft_wrap=True, highlight=False)
 
 

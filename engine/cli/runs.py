@@ -213,6 +213,6 @@ def _print_events(console: Console, title: str, events: Sequence[Event]) -> None
 
 
 def _event_line(event: Event) -> str:
-    path, _, text, cause = event_text(event)
-    why = f": {describe_cause(cause)}" if cause is not None else ""
-    return f"{path}  {text}{why}" if path else f"{text}{why}"
+    said = event_text(event)
+    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
+    return f"{said.path}  {said.text}{why}" if said.path else f"{said.text}{why}"

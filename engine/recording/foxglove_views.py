@@ -87,11 +87,12 @@ def log_line(event: Event, at_ns: int) -> FoxgloveLog | None:
     tag = event.__struct_config__.tag
     if tag not in _LOGGED:
         return None
-    path, level, text, cause = event_text(event)
-    if tag == _EXITED and cause is None:
+    said = event_text(event)
+    if tag == _EXITED and said.cause is None:
         return None
-    why = f": {describe_cause(cause)}" if cause is not None else ""
-    return FoxgloveLog(timestamp=time_of(at_ns), level=_LEVELS.get(level, 2), message=f"{text}{why}", name=path)
+    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
+    level = _LEVELS.get(said.level, 2)
+    return FoxgloveLog(timestamp=time_of(at_ns), level=level, message=f"{said.text}{why}", name=said.path)
 
 
 def _transforms(poses: FramePoses, at_ns: int) -> FoxgloveFrameTransforms:

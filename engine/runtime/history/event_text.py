@@ -50,7 +50,7 @@ from engine.event import (
 from engine.runtime.history.run_reducer import exit_status
 
 
-class EventText(NamedTuple):
+class EventText(msgspec.Struct, frozen=True, gc=False):
     """Text of an event: the node (empty for the run), debug, info, warning or error, and the cause of a failure."""
 
     path: str
@@ -131,15 +131,18 @@ The level of a `log` message is that of its event.
 """
 
 
+_FORMS = {id_: (template.level, template.text.format_map) for id_, template in EVENT_TEXTS.items()}
+
+
 def event_text(event: Event, *, duration_s: float | None = None) -> EventText:
     """Return the text of an event; `duration_s` is the duration of the node that ended, None to leave it out."""
-    text = _node_text(event, duration_s) or _request_text(event) or _control_text(event)
+    text = _node_text(event, duration_s) or _request_text(event) or _control_text(event) or _report_text(event)
     return text or _run_text(event)
 
 
 def _say(id_: str, path: str, cause: Cause | None = None, /, **values: object) -> EventText:
-    template = EVENT_TEXTS[id_]
-    return EventText(path, template.level, template.text.format_map(values), cause)
+    level, form = _FORMS[id_]
+    return EventText(path, level, form(values), cause)
 
 
 def _node_text(event: Event, duration_s: float | None) -> EventText | None:
@@ -168,8 +171,14 @@ def _node_text(event: Event, duration_s: float | None) -> EventText | None:
             return _say("retry", event.path, event.cause, attempt=event.attempt, wait=_seconds(event.wait_s))
         case StatusChanged():
             return _say("status", event.path, status=event.status)
+        case _:
+            return None
+
+
+def _report_text(event: Event) -> EventText | None:
+    match event:
         case MessageLogged():
-            return _say("log", event.path, message=event.message)._replace(level=event.level)
+            return EventText(event.path, event.level, EVENT_TEXTS["log"].text.format(message=event.message), None)
         case NodeAbandoned():
             return _say("abandoned", event.path, waited=f"{event.waited_s:g}")
         case LoopBlocked():

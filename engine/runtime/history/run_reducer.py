@@ -17,6 +17,8 @@ from engine.event import (
     GatePassed,
     GateReached,
     GoalFinished,
+    GoalSent,
+    MessageLogged,
     NodeDiverted,
     NodeEntered,
     NodeExited,
@@ -26,15 +28,19 @@ from engine.event import (
     RunResumed,
     RunStarted,
     RunSteppedBack,
+    ServiceAnswered,
+    ServiceCalled,
     StatusChanged,
     TransitionTaken,
     UndoEnded,
     UndoStarted,
+    UserdataAppended,
+    UserdataWritten,
 )
 from engine.node_path import is_inside
 from engine.runtime.control.autonomy import AutonomyLevel
 from engine.runtime.history.effective_events import effective_events
-from engine.runtime.history.run_state import NodeLive, NodeStep, PlanLive, RunState, RunStateChange
+from engine.runtime.history.run_state import UNCHANGED, NodeLive, NodeStep, PlanLive, RunState, RunStateChange
 from engine.runtime.history.run_state_part import RunStatePart
 from engine.skills.planning import PlannedMotion
 
@@ -42,6 +48,10 @@ DIVERTED_TO_OUTCOME = ("operator", "start")
 """Values of `NodeStep.by` whose target is an outcome and not a transition target."""
 # Outcomes shown as a failure if the event has no cause.
 FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
+# Frequent, and of interest to parts only.
+_CHANGES_NOTHING = frozenset(
+    {UserdataWritten, UserdataAppended, GoalSent, ServiceCalled, ServiceAnswered, MessageLogged}
+)
 _TICKED = {"running": "active", "success": "done", "failure": "failed"}
 
 
@@ -83,6 +93,9 @@ class RunReducer(RunStatePart):
             return None
         for part in self._parts:
             part.take(event)
+        if type(event) in _CHANGES_NOTHING:
+            state.seq, state.time_s = event.seq, event.time_s
+            return UNCHANGED
         self._nodes, self._step, self._run_changed = {}, None, False
         self.take(event)
         state = self.state
@@ -321,8 +334,11 @@ class RunReducer(RunStatePart):
 
     def _await_container(self, path: str, name: str) -> None:
         container, _, child = path.rpartition("/")
-        if container:
-            self.state.exits.setdefault(container, {})[child] = name
+        ended = self.state.exits.get(container)
+        if ended is not None:
+            ended[child] = name
+        elif container:
+            self.state.exits[container] = {child: name}
 
     def _proceed_from(self, path: str) -> None:
         container, _, child = path.rpartition("/")

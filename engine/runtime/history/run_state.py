@@ -79,6 +79,10 @@ class RunStateChange(msgspec.Struct, frozen=True, kw_only=True):
         return self.nodes[step.path].duration_s if step is not None and step.kind == "ended" else 0.0
 
 
+UNCHANGED = RunStateChange(nodes={}, step=None, run_changed=False)
+"""An event that changed nothing."""
+
+
 class RunState:
     """State of one run up to event `seq`; only its `RunReducer` changes it."""
 

@@ -96,67 +96,67 @@ class RunStatePart:
                 pass
 
     def node_entered(self, event: NodeEntered) -> None:
-        """A node became active."""
+        """Note that a node became active."""
 
     def node_exited(self, event: NodeExited) -> None:
-        """A node ended."""
+        """Note that a node ended."""
 
     def node_diverted(self, event: NodeDiverted) -> None:
-        """A node was left for a target, without an outcome."""
+        """Note that a node was left for a target, without an outcome."""
 
     def node_retried(self, event: NodeRetried) -> None:
-        """A node waits for its next attempt."""
+        """Note that a node waits for its next attempt."""
 
     def branches_preempted(self, event: BranchesPreempted) -> None:
-        """A condition preempts some branches."""
+        """Note that a condition preempts some branches."""
 
     def transition_taken(self, event: TransitionTaken) -> None:
-        """A container proceeds from a child."""
+        """Note that a container proceeds from a child."""
 
     def status_changed(self, event: StatusChanged) -> None:
-        """The status of a tree node changed."""
+        """Note that the status of a tree node changed."""
 
     def value_written(self, event: UserdataWritten | UserdataAppended) -> None:
-        """A key of userdata changed."""
+        """Note that a key of userdata changed."""
 
     def request_sent(self, event: GoalSent | ServiceCalled, name: str) -> None:
-        """A state sent the goal or call `name`."""
+        """Note that a state sent the goal or call `name`."""
 
     def goal_finished(self, event: GoalFinished) -> None:
-        """A goal ended."""
+        """Note that a goal ended."""
 
     def call_answered(self, event: ServiceAnswered) -> None:
-        """A call ended."""
+        """Note that a call ended."""
 
     def gate_reached(self, event: GateReached) -> None:
-        """A node waits at the gate."""
+        """Note that a node waits at the gate."""
 
     def gate_passed(self, event: GatePassed) -> None:
-        """A node continues after the gate."""
+        """Note that a node continues after the gate."""
 
     def operator_commanded(self, event: OperatorCommanded) -> None:
-        """An operator gave a command."""
+        """Note that an operator gave a command."""
 
     def supervision_changed(self) -> None:
-        """The operator came or went, or a stop was requested."""
+        """Note that the operator came or went, or a stop was requested."""
 
     def undo_started(self, event: UndoStarted) -> None:
-        """A step back begins to undo a state."""
+        """Note that a step back begins to undo a state."""
 
     def undo_ended(self, event: UndoEnded) -> None:
-        """An undo ended."""
+        """Note that an undo ended."""
 
     def run_stepped_back(self, event: RunSteppedBack) -> None:
-        """The run stepped back, or could not."""
+        """Note that the run stepped back, or could not."""
 
     def behavior_changed(self, event: BehaviorChanged) -> None:
-        """Another version of the document is executed."""
+        """Note that another version of the document is executed."""
 
     def run_started(self, event: RunStarted) -> None:
-        """The run started."""
+        """Note that the run started."""
 
     def run_resumed(self, event: RunResumed) -> None:
-        """Another engine continues the run."""
+        """Note that another engine continues the run."""
 
     def run_ended(self, event: RunEnded) -> None:
-        """The run ended."""
+        """Note that the run ended."""

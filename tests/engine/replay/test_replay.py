@@ -354,7 +354,7 @@ async def test_of_a_run_in_real_time_the_branch_that_differs_is_named(tmp_path: 
     assert report.difference is not None
     assert report.difference.path == "root/both/left"
     assert report.difference.recorded == "`work —a→ listen`"
-    assert report.difference.replayed == "`transition work: a → look`"
+    assert report.difference.replayed == "`work —a→ look`"
 
 
 def test_a_run_that_was_resumed_is_refused(tmp_path: Path) -> None:
