@@ -40,7 +40,7 @@ from engine.event import (
 from engine.node_path import is_inside
 from engine.runtime.control.autonomy import AutonomyLevel
 from engine.runtime.history.effective_events import effective_events
-from engine.runtime.history.run_state import UNCHANGED, NodeLive, NodeStep, PlanLive, RunState, RunStateChange
+from engine.runtime.history.run_state import IDLE, UNCHANGED, NodeLive, NodeStep, PlanLive, RunState, RunStateChange
 from engine.runtime.history.run_state_part import RunStatePart
 from engine.skills.planning import PlannedMotion
 
@@ -156,7 +156,7 @@ class RunReducer(RunStatePart):
     def node_exited(self, event: NodeExited) -> None:
         """End the node, and everything inside."""
         path = event.path
-        node = self.state.nodes.get(path) or NodeLive(entered_s=event.time_s)
+        node = self._started_by(path, event.time_s)
         self._nodes[path] = msgspec.structs.replace(
             node,
             status=exit_status(event),
@@ -277,7 +277,7 @@ class RunReducer(RunStatePart):
 
     def undo_ended(self, event: UndoEnded) -> None:
         """Show how the undo ended; the step back follows."""
-        node = self.state.nodes.get(event.path) or NodeLive(entered_s=event.time_s)
+        node = self._started_by(event.path, event.time_s)
         status = "stopped" if event.preempted else "failed" if event.cause is not None else "idle"
         cause = describe_cause(event.cause) if event.cause is not None else ""
         duration_s = event.time_s - node.entered_s
@@ -314,6 +314,11 @@ class RunReducer(RunStatePart):
             if node.status == "active":
                 duration_s = event.time_s - node.entered_s
                 self._nodes[path] = msgspec.structs.replace(node, status="stopped", duration_s=duration_s)
+
+    def _started_by(self, path: str, time_s: float) -> NodeLive:
+        """Return a node that ends now; one that was never entered, or whose entry was taken back, began now."""
+        node = self.state.node(path)
+        return NodeLive(entered_s=time_s) if node == IDLE else node
 
     def _note_containers(self, path: str) -> None:
         state = self.state

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from editor_web.live.live_run import LiveRun
@@ -36,6 +36,7 @@ PLAN = plan_of(
 
 
 @settings(deadline=None, max_examples=100)
+@example(steps=[("enter", "root", 0.0), ("resume", "root", 0.5), ("exit", "root", 0.0)], ended=False)
 @given(steps=STEPS, ended=st.booleans())
 def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float]], ended: bool) -> None:
     """Nodes, what is active, which exits wait for their container, and what the operator has set."""
