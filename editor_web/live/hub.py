@@ -16,12 +16,13 @@ from collections.abc import Callable
 from editor_web.live.document_watch import DocumentWatch
 from editor_web.live.event_log import LogLine
 from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot
+from editor_web.live.live_run import LOG_LINES, LiveRun, LiveRunChange
 from editor_web.live.robot_status import RobotStatusCache
-from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive, RunStateChange
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.project.session import Session
 from engine.runtime.control import ControlView
+from engine.runtime.history.run_state import NodeLive
 
 KEPT_RUNS = 50
 
@@ -49,7 +50,7 @@ class LiveClient:
         self._snapshot_due = True
         self.dirty.set()
 
-    def note(self, live: LiveRun, change: RunStateChange) -> None:
+    def note(self, live: LiveRun, change: LiveRunChange) -> None:
         """Mark changes; the hub calls it for every event; never blocks."""
         if change.run_changed:
             self._runs[live.run_id] = None
@@ -105,21 +106,21 @@ class LiveClient:
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
         if self._runs:
             self.dirty.set()
-        self._sent_seq = self._watched.seq if self._watched else 0
+        self._sent_seq = self._watched.state.seq if self._watched else 0
         return frame
 
     def _snapshot(self) -> LiveSnapshot:
         live = self._watched
         return LiveSnapshot(
             run=live.run_id if live else "",
-            seq=live.seq if live else 0,
+            seq=live.state.seq if live else 0,
             now_s=self._hub.now_s(live),
             ticking=_ticking(live),
             runs=self._hub.backend.runs(),
-            nodes=dict(live.nodes) if live else {},
+            nodes=dict(live.state.nodes) if live else {},
             log=tuple(live.log) if live else (),
             control=self._hub.control_of(live),
-            lock_reasons=dict(live.lock_reasons) if live else {},
+            lock_reasons=dict(live.state.locks) if live else {},
             robots=dict(self._hub.robots.lines),
         )
 
@@ -128,7 +129,7 @@ class LiveClient:
         return LiveDelta(
             run=live.run_id if live else "",
             after=self._sent_seq,
-            seq=live.seq if live else 0,
+            seq=live.state.seq if live else 0,
             now_s=self._hub.now_s(live),
             ticking=_ticking(live),
             runs=tuple(self._hub.backend.run(run_id) for run_id in self._runs),
@@ -136,7 +137,7 @@ class LiveClient:
             log=tuple(self._log),
             dropped=self._dropped,
             control=self._hub.control_of(live),
-            lock_reasons=dict(live.lock_reasons) if live else {},
+            lock_reasons=dict(live.state.locks) if live else {},
             robots={name: self._hub.robots.lines[name] for name in self._robots},
         )
 
@@ -190,10 +191,10 @@ class LiveHub:
     def live_run(self, run_id: str) -> LiveRun:
         """Return the reduced run, rebuilt from the journal if it is not cached."""
         if run_id not in self._runs:
-            live = LiveRun(run_id)
+            live = LiveRun(run_id, history=lambda: self._recorded(run_id))
             for event in self._recorded(run_id):
                 live.apply(event)
-            if live.seq == 0:
+            if live.state.seq == 0:
                 return live
             self._keep(live)
         return self._runs[run_id]
@@ -203,12 +204,12 @@ class LiveHub:
         if live is None:
             return 0.0
         if not _ticking(live):
-            return live.time_s
-        return live.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
+            return live.state.time_s
+        return live.state.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
 
     def control_of(self, live: LiveRun | None) -> ControlView | None:
         """Return the current control state of a run; None if it has ended or is unknown."""
-        if live is None or live.ended or live.seq == 0:
+        if live is None or live.state.ended or live.state.seq == 0:
             return None
         try:
             return self.backend.control(live.run_id).view()
@@ -219,12 +220,12 @@ class LiveHub:
     def is_settled(self, run_id: str) -> bool:
         """Tell whether the backend's status of a run agrees with the run's events."""
         live = self._runs.get(run_id)
-        return live is None or not live.ended or self.backend.run(run_id).status not in ("running", "stopping")
+        return live is None or not live.state.ended or self.backend.run(run_id).status not in ("running", "stopping")
 
     def _on_event(self, run_id: str, event: Event) -> None:
         # A run that was active before the hub opened is rebuilt first, with or without this event.
         live = self.live_run(run_id)
-        if live.seq == 0:
+        if live.state.seq == 0:
             self._keep(live)
         change = live.apply(event)
         self._seen_at_s[run_id] = self._wall_s()
@@ -252,7 +253,7 @@ class LiveHub:
 
     def _keep(self, live: LiveRun) -> None:
         self._runs[live.run_id] = live
-        ended = [run_id for run_id, kept in self._runs.items() if kept.ended]
+        ended = [run_id for run_id, kept in self._runs.items() if kept.state.ended]
         for run_id in ended[: max(0, len(self._runs) - KEPT_RUNS)]:
             if run_id != live.run_id:
                 del self._runs[run_id]
@@ -260,4 +261,4 @@ class LiveHub:
 
 
 def _ticking(live: LiveRun | None) -> bool:
-    return live is not None and live.real_time and not live.ended
+    return live is not None and live.state.real_time and not live.state.ended

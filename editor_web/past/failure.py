@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import msgspec
 
 from editor_web.live.event_log import LogLine, log_line
 from engine.cause_chain import links_from_root
 from engine.errors import FlexcellError
-from engine.event import Cause, Event, NodeDiverted, NodeEntered, NodeExited, RunEnded
+from engine.event import Cause, Event
+from engine.runtime.history.run_reducer import RunReducer
+from engine.runtime.history.run_state import NodeStep
 
 AROUND = 20
 _AROUND_KINDS = frozenset(
@@ -53,11 +55,19 @@ class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
 
 def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None:
     """Return the failure of a run; None if it did not fail or has not ended."""
-    end = events[-1] if events else None
-    if not isinstance(end, RunEnded) or not is_failed:
+    if not is_failed:
+        return None
+    reducer = RunReducer(history=lambda: events)
+    steps: dict[int, NodeStep] = {}
+    for event in events:
+        change = reducer.apply(event)
+        if change is not None and change.step is not None:
+            steps[event.seq] = change.step
+    end = reducer.state.end
+    if end is None:
         return None
     links = tuple(map(_link, links_from_root(end.cause)))
-    origin = _origin(events, end)
+    origin = _origin(events, steps, end, end.cause)
     path = _path(origin)
     first = links[0] if links else None
     return RunFailure(
@@ -67,28 +77,28 @@ def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None
         text=first.message if first is not None else log_line(end).text,
         hint=next((link.hint for link in links if link.hint), ""),
         links=links,
-        steps=tuple(_steps(events, path, origin.seq)),
-        around=_around(events, path, origin.seq),
+        steps=tuple(_steps(events, steps, path, origin.seq)),
+        around=_around(events, steps, path, origin.seq),
     )
 
 
-def _origin(events: Sequence[Event], end: RunEnded) -> Event:
+def _origin(events: Sequence[Event], steps: Mapping[int, NodeStep], end: Event, cause: Cause | None) -> Event:
     """Return the origin: the deepest and earliest event of the same cause, in the last visit of its node."""
-    if end.cause is not None:
-        root = end.cause.chain()[-1]
-        origin = _innermost(events, lambda event: _root_of(event) == root) or _innermost(
-            events, lambda event: _is_end_of_node(event) and _path(event) == root.where
+    if cause is not None:
+        root = cause.chain()[-1]
+        origin = _innermost(events, steps, lambda event: _root_of(event) == root) or _innermost(
+            events, steps, lambda event: _is_end_of_node(steps, event) and _path(event) == root.where
         )
         if origin is not None:
             return origin
-    return _innermost(events, _is_end_of_node) or end
+    return _innermost(events, steps, lambda event: _is_end_of_node(steps, event)) or end
 
 
-def _innermost(events: Sequence[Event], fits: Callable[[Event], bool]) -> Event | None:
+def _innermost(events: Sequence[Event], steps: Mapping[int, NodeStep], fits: Callable[[Event], bool]) -> Event | None:
     origin: Event | None = None
     for event in reversed(events):
         path = _path(event)
-        if origin is not None and isinstance(event, NodeEntered) and path == _path(origin):
+        if origin is not None and path == _path(origin) and _is_entry(steps, event):
             break
         inside = origin is None or path == _path(origin) or path.startswith(f"{_path(origin)}/")
         if path and inside and fits(event):
@@ -96,8 +106,14 @@ def _innermost(events: Sequence[Event], fits: Callable[[Event], bool]) -> Event 
     return origin
 
 
-def _is_end_of_node(event: Event) -> bool:
-    return isinstance(event, NodeExited) and not event.preempted
+def _is_entry(steps: Mapping[int, NodeStep], event: Event) -> bool:
+    step = steps.get(event.seq)
+    return step is not None and step.kind == "entered"
+
+
+def _is_end_of_node(steps: Mapping[int, NodeStep], event: Event) -> bool:
+    step = steps.get(event.seq)
+    return step is not None and step.kind == "ended" and not step.is_preempted
 
 
 def _root_of(event: Event) -> Cause | None:
@@ -109,31 +125,25 @@ def _path(event: Event) -> str:
     return str(getattr(event, "path", ""))
 
 
-def _steps(events: Sequence[Event], path: str, since_seq: int) -> Iterator[FailureStep]:
+def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, since_seq: int) -> Iterator[FailureStep]:
     """Yield how the containers around the origin ended after it, outermost first."""
-    ends = {
-        _path(event): event
-        for event in events
-        if event.seq >= since_seq and isinstance(event, NodeExited | NodeDiverted)
-    }
+    ends: dict[str, Event] = {}
+    for event in events:
+        step = steps.get(event.seq) if event.seq >= since_seq else None
+        if step is not None and step.kind in ("ended", "diverted"):
+            ends[step.path] = event
     parts = path.split("/") if path else []
     for depth in range(1, len(parts) + 1):
         node = "/".join(parts[:depth])
-        event = ends.get(node)
-        if event is not None:
-            text = (
-                f"ended with {event.outcome or 'an error'}"
-                if isinstance(event, NodeExited)
-                else f"preempted by {event.by}"
-            )
-            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=text)
+        if node in ends:
+            event = ends[node]
+            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=log_line(event).text)
 
 
-def _around(events: Sequence[Event], path: str, seq: int) -> tuple[LogLine, ...]:
+def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, seq: int) -> tuple[LogLine, ...]:
     """Return the last log lines of the node's last visit, including its end."""
-    begun = next(
-        (e for e in reversed(events) if e.seq <= seq and isinstance(e, NodeEntered) and e.path == path), events[0]
-    )
+    entries = (e for e in reversed(events) if e.seq <= seq and _path(e) == path and _is_entry(steps, e))
+    begun = next(entries, events[0])
     lines = [
         log_line(event, duration_s=event.time_s - begun.time_s)
         for event in events

@@ -3,52 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import get_args
 
 import msgspec
 
-from editor_web.live.event_log import log_line, status_of
-from engine.event import (
-    BehaviorChanged,
-    Event,
-    FaultInjected,
-    GateReached,
-    GoalFinished,
-    GoalSent,
-    LoopBlocked,
-    NodeAbandoned,
-    NodeDiverted,
-    NodeExited,
-    NodeRetried,
-    OperatorChanged,
-    OperatorCommanded,
-    OutcomeRequested,
-    RunEnded,
-    RunResumed,
-    RunSteppedBack,
-    StopRequested,
-)
+from editor_web.live.event_log import log_line
+from engine.event import AnyEvent, Event, GoalSent
 
 MAX_MARKERS = 4000
 """Maximum number of markers in one response; goals are dropped first."""
-_MARKED = (
-    NodeAbandoned,
-    BehaviorChanged,
-    OperatorCommanded,
-    NodeDiverted,
-    NodeExited,
-    FaultInjected,
-    GateReached,
-    GoalFinished,
-    GoalSent,
-    LoopBlocked,
-    OperatorChanged,
-    OutcomeRequested,
-    NodeRetried,
-    RunEnded,
-    RunResumed,
-    RunSteppedBack,
-    StopRequested,
-)
+_ALWAYS = {
+    "command": "command",
+    "operator": "command",
+    "stop": "command",
+    "gate": "gate",
+    "outcome_requested": "gate",
+    "behavior_changed": "change",
+    "resumed": "change",
+    "fault": "fault",
+    "retry": "warning",
+    "abandoned": "warning",
+    "loop_blocked": "warning",
+}
+"""The kind of the marker of an event, by its tag."""
+_BY_LEVEL = {
+    "exited": {"error": "failure"},
+    "goal_finished": {"warning": "warning"},
+    "diverted": {"warning": "warning"},
+    "run_ended": {"error": "failure"},
+    "stepped_back": {"error": "failure", "info": "change"},
+}
+"""The same where it depends on how severe the event is; without a kind, it has no marker."""
+_MARKED = frozenset(kind for kind in get_args(AnyEvent) if kind.__struct_config__.tag in {**_ALWAYS, **_BY_LEVEL})
 
 
 class TimelineMarker(msgspec.Struct, frozen=True, kw_only=True, gc=False):
@@ -63,16 +49,16 @@ class TimelineMarker(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 def marker_of(event: Event) -> TimelineMarker | None:
     """Return the marker of an event; None if it has none."""
-    kind = _kind(event) if isinstance(event, _MARKED) else None
-    if kind is None:
-        return None
     if isinstance(event, GoalSent):
         # Goals are frequent, and their log line would contain the whole request.
-        return TimelineMarker(seq=event.seq, time_s=event.time_s, kind=kind, path=event.path, text=event.address)
+        return TimelineMarker(seq=event.seq, time_s=event.time_s, kind="goal", path=event.path, text=event.address)
+    if type(event) not in _MARKED:
+        return None
     line = log_line(event)
-    text = f"ended with {event.outcome or 'an error'}" if isinstance(event, NodeExited) else line.text
-    if line.causes:
-        text = f"{text}: {line.causes[0].message}"
+    kind = _ALWAYS.get(line.kind) or _BY_LEVEL.get(line.kind, {}).get(line.level)
+    if kind is None:
+        return None
+    text = f"{line.text}: {line.causes[0].message}" if line.causes else line.text
     return TimelineMarker(seq=event.seq, time_s=event.time_s, kind=kind, path=line.path, text=text)
 
 
@@ -92,31 +78,3 @@ def limit_markers(
     step = len(goals) / goal_count
     kept += [goals[int(index * step)] for index in range(goal_count)]
     return tuple(sorted(kept, key=lambda mark: mark.seq)), len(every) - len(kept)
-
-
-def _kind(event: Event) -> str | None:
-    match event:
-        case NodeExited():
-            return "failure" if status_of(event) == "failed" else None
-        case GoalSent():
-            return "goal"
-        case GoalFinished():
-            return None if event.status == "succeeded" else "warning"
-        case NodeDiverted():
-            return "warning" if event.cause is not None else None
-        case RunEnded():
-            return "failure" if event.status == "errored" or event.cause is not None else None
-        case OperatorCommanded() | OperatorChanged() | StopRequested():
-            return "command"
-        case GateReached() | OutcomeRequested():
-            return "gate"
-        case RunSteppedBack():
-            return "failure" if event.cause is not None else "change"
-        case BehaviorChanged() | RunResumed():
-            return "change"
-        case FaultInjected():
-            return "fault"
-        case NodeRetried() | NodeAbandoned() | LoopBlocked():
-            return "warning"
-        case _:
-            return None

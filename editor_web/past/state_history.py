@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections import deque
 from collections.abc import Sequence
 
 import msgspec
 
-from editor_web.live.event_log import LogLine
-from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive
+from editor_web.live.event_log import LogLine, log_line
+from editor_web.live.live_run import LOG_LINES
 from engine.event import Event
+from engine.runtime.history.run_reducer import RunReducer
+from engine.runtime.history.run_state import NodeLive, RunState, RunStateChange
 
 CHECKPOINT_INTERVAL = 512
 """Initial number of events between two checkpoints."""
@@ -30,28 +33,32 @@ class RunStateHistory:
     """The state history of one run; `follow` applies further events of an active run. Not thread-safe."""
 
     def __init__(self, run_id: str) -> None:
-        self.now = LiveRun(run_id)
-        """The run after its last event."""
         self._events: list[Event] = []
         self._times_s: list[float] = []
         self._every = CHECKPOINT_INTERVAL
-        self._checkpoints: list[LiveRun] = [LiveRun(run_id)]
+        self._latest = RunReducer(run_id, history=lambda: self._events)
+        self._checkpoints: list[RunReducer] = [self._latest.copy()]
+
+    @property
+    def now(self) -> RunState:
+        """The run after its last event."""
+        return self._latest.state
 
     @property
     def last_seq(self) -> int:
         """The number of the last event."""
         return self.now.seq
 
-    def follow(self, event: Event) -> dict[str, NodeLive] | None:
-        """Apply the next event; return the changed nodes, None if it was applied before."""
-        changed = self.now.advance(event)
-        if changed is None:
+    def follow(self, event: Event) -> RunStateChange | None:
+        """Apply the next event; return what it changed, None if it was applied before."""
+        change = self._latest.apply(event)
+        if change is None:
             return None
         self._events.append(event)
         self._times_s.append(event.time_s)
         if len(self._events) % self._every == 0:
             self._keep()
-        return changed
+        return change
 
     def seq_at(self, time_s: float) -> int:
         """Return the number of the last event up to a time of the run's clock; 0 before the first."""
@@ -61,14 +68,19 @@ class RunStateHistory:
     def at(self, seq: int, *, lines: int = LOG_LINES) -> PastRunState:
         """Return the run after event `seq`, with at most `lines` lines of its log."""
         count = bisect_right(self._events, seq, key=lambda event: event.seq)
-        wanted = min(lines, LOG_LINES)
-        begin = max(0, count - wanted) // self._every
-        live = self._checkpoints[min(begin, len(self._checkpoints) - 1)].copy()
-        first = bisect_right(self._events, live.seq, key=lambda event: event.seq)
+        shown = min(lines, LOG_LINES)
+        begin = max(0, count - shown) // self._every
+        reducer = self._checkpoints[min(begin, len(self._checkpoints) - 1)].copy()
+        log: deque[LogLine] = deque(maxlen=shown)
+        first = bisect_right(self._events, reducer.state.seq, key=lambda event: event.seq)
         for event in self._events[first:count]:
-            live.apply(event)
-        log = tuple(live.log)[-wanted:] if wanted else ()
-        return PastRunState(seq=live.seq, time_s=live.time_s, nodes=live.nodes, log=log, dropped=count - len(log))
+            change = reducer.apply(event)
+            if change is not None:
+                log.append(log_line(event, duration_s=change.duration_s))
+        state = reducer.state
+        return PastRunState(
+            seq=state.seq, time_s=state.time_s, nodes=state.nodes, log=tuple(log), dropped=count - len(log)
+        )
 
     def events(self, first: int, last: int) -> Sequence[Event]:
         """Return the events from number `first` to number `last`, both included."""
@@ -77,7 +89,7 @@ class RunStateHistory:
         return self._events[start:end]
 
     def _keep(self) -> None:
-        self._checkpoints.append(self.now.copy())
+        self._checkpoints.append(self._latest.copy())
         if len(self._checkpoints) > MAX_CHECKPOINTS:
             # Keep every second checkpoint and double the interval.
             self._checkpoints = self._checkpoints[::2]

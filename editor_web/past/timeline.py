@@ -47,11 +47,11 @@ class RunHistory:
 
     def follow(self, event: Event) -> None:
         """Apply the next event; no effect if it was applied before."""
-        changed = self.moments.follow(event)
-        if changed is None:
+        change = self.moments.follow(event)
+        if change is None:
             return
-        if changed:
-            self._spans.take(event, changed)
+        if change.nodes:
+            self._spans.take(event, change.nodes)
         mark = marker_of(event)
         if mark is not None:
             self._marks.append(mark)

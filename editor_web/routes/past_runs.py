@@ -11,7 +11,7 @@ from fastapi import HTTPException, Query, Request, Response
 
 from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunsBody, past_run_body
-from editor_web.live.run_state import LOG_LINES
+from editor_web.live.live_run import LOG_LINES
 from editor_web.past import OpenRun, OpenRunCache, PastRunState, RunFailure, Timeline
 from editor_web.past.run_search import RUN_KINDS, PastRunQuery, RunKind, search_runs
 from editor_web.past.userdata_values import PastUserdata

@@ -13,16 +13,21 @@ from typing import Self, cast
 from engine.cause_chain import describe_cause
 from engine.cli.line_input import LineInput
 from engine.errors import ControlError, FlexcellError
-from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded, RunSteppedBack
+from engine.event import Event
 from engine.recording.recorded_run import version_snapshot
 from engine.runtime.control import LEVELS, Breakpoint
 from engine.runtime.control.single_step import StepMode
+from engine.runtime.history.event_text import event_text
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from engine.suggestions import did_you_mean
 
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
+_RESTING = frozenset({"gate", "pause_confirmed", "run_ended"})
+"""The tags of the events after which a run may rest."""
+_SAID = frozenset({"outcome_requested", "gate", "pause_confirmed", "stepped_back", "operator"})
+"""The tags of the events that an operator is told."""
 
 
 @dataclass(frozen=True)
@@ -141,25 +146,24 @@ class OperatorConsole:
         return held or (view.paused and view.confirmed)
 
     def _show(self, event: Event) -> None:
-        if isinstance(event, GateReached | PauseConfirmed | RunEnded):
+        tag = event.__struct_config__.tag
+        if tag in _RESTING:
             self._rests.set()
-        match event:
-            case OutcomeRequested():
-                commands = f"answer {event.path} | force {event.path} OUTCOME | repeat {event.path}"
-                self.say(f"? {event.path} requests outcome {event.outcome} (requires {event.required}): {commands}")
-            case GateReached():
-                self.say(f"{event.path} waits {_gate_text(event)}: {', '.join(event.reasons)}")
-            case PauseConfirmed():
-                moving = f", except (cannot be held): {', '.join(event.cannot)}" if event.cannot else ""
-                self.say(f"paused, everything is at rest{moving}")
-            case RunSteppedBack():
-                failed = f"the step back failed: {describe_cause(event.cause)}" if event.cause is not None else ""
-                self.say(failed or f"stepped back to before {event.path}")
-            case OperatorChanged(status="lost"):
-                actions = {"hold": "the run pauses", "continue": "the run continues", "stop": "the run stops"}
-                self.say(f"the input ended, the operator is lost: {actions[self._policy.loss_policy]}")
-            case _:
-                pass
+        if tag not in _SAID:
+            return
+        said = event_text(event)
+        path, cause = said.path, said.cause
+        line = f"{path} {said.text}" if path else said.text
+        if tag == "outcome_requested":
+            line = f"? {line}: answer {path} | force {path} OUTCOME | repeat {path}"
+        elif cause is not None:
+            line = f"{line}: {describe_cause(cause)}"
+        elif tag == "operator" and said.level == "warning":
+            actions = {"hold": "the run pauses", "continue": "the run continues", "stop": "the run stops"}
+            line = f"the input ended, {line}: {actions[self._policy.loss_policy]}"
+        elif tag == "operator":
+            return
+        self.say(line)
 
     def _on_input_end(self) -> None:
         if self.run.ended:
@@ -168,12 +172,6 @@ class OperatorConsole:
             self.run.control.detach_operator()
         else:
             self.run.control.lose_operator()
-
-
-def _gate_text(event: GateReached) -> str:
-    if event.point == "before":
-        return "before its entry"
-    return f"with its outcome {event.outcome}" if event.outcome else "after its end"
 
 
 def _standard_input() -> int | None:

@@ -6,19 +6,14 @@ from rich.console import Console
 from rich.markup import escape
 
 from engine.cause_chain import describe_cause
-from engine.event import (
-    Event,
-    FaultInjected,
-    GoalFinished,
-    MessageLogged,
-    NodeEntered,
-    NodeExited,
-    NodeRetried,
-    RunEnded,
-    StopRequested,
-)
+from engine.event import Event, GoalFinished
+from engine.runtime.history.event_text import event_text
+from engine.runtime.history.run_reducer import RunReducer
+from engine.runtime.history.run_state import RunStateChange
 
-_LEVELS = {"debug": "dim", "info": "default", "warning": "yellow", "error": "bold red"}
+_STYLES = {"debug": "dim", "info": "default", "warning": "yellow", "error": "bold red"}
+_ALWAYS = frozenset({"log", "fault", "retry", "stop", "run_ended"})
+"""The tags of the events that matter to a person; besides, states that end and goals that fail do."""
 
 
 class ProgressPrinter:
@@ -26,45 +21,31 @@ class ProgressPrinter:
 
     def __init__(self, console: Console) -> None:
         self._console = console
-        self._started_s: dict[tuple[str, int], float] = {}
+        self._reducer = RunReducer()
 
     def show(self, event: Event) -> None:
         """Print a line for an event, or nothing."""
-        match event:
-            case NodeEntered(kind="state"):
-                self._started_s[event.path, event.visit] = event.time_s
-            case NodeExited():
-                self._show_exit(event)
-            case MessageLogged():
-                self._print_line(
-                    event, f"[{_LEVELS.get(event.level, 'default')}]{escape(event.message)}[/]", event.path
-                )
-            case FaultInjected():
-                self._print_line(event, f"[magenta]{escape(f'{event.fault}: {event.detail}')}[/]", event.path)
-            case NodeRetried():
-                self._print_line(event, f"[yellow]retry, attempt {event.attempt}[/]", event.path)
-            case GoalFinished(status="aborted" | "rejected"):
-                why = f": {describe_cause(event.cause)}" if event.cause else ""
-                self._print_line(event, f"[red]{event.status}{escape(why)}[/]", event.path)
-            case StopRequested():
-                self._print_line(event, f"[yellow]stopping: {escape(event.reason)}[/]", "")
-            case RunEnded():
-                self._print_line(event, f"[bold]{event.status}[/] {escape(event.outcome or '')}", "")
-            case _:
-                pass
+        change = self._reducer.apply(event)
+        if change is not None and (_is_important(event) or self._ends_state(change)):
+            self._print_line(event, change)
 
-    def _show_exit(self, event: NodeExited) -> None:
-        started_s = self._started_s.pop((event.path, event.visit), None)
-        if started_s is None:
-            return
-        if event.preempted:
-            end = "[yellow]preempted[/]"
-        elif not event.outcome:
-            end = "[red]error[/]"
-        else:
-            end = f"[{'red' if event.cause else 'green'}]{escape(event.outcome)}[/]"
-        self._print_line(event, f"{end} [dim]after {event.time_s - started_s:.2f} s[/]", event.path)
+    def _ends_state(self, change: RunStateChange) -> bool:
+        step = change.step
+        if step is None or step.kind != "ended" or step.before.status != "active":
+            return False
+        return step.path not in self._reducer.state.containers
 
-    def _print_line(self, event: Event, text: str, path: str) -> None:
-        node = f"{escape(path)}  " if path else ""
-        self._console.print(f"[dim]{event.time_s:9.3f} s[/]  {node}{text}", soft_wrap=True, highlight=False)
+    def _print_line(self, event: Event, change: RunStateChange) -> None:
+        said = event_text(event, duration_s=change.duration_s)
+        node = f"{escape(said.path)}  " if said.path else ""
+        # The causes of a node are printed once, with the result of the run.
+        why = f": {describe_cause(said.cause)}" if said.cause is not None and isinstance(event, GoalFinished) else ""
+        style = "green" if change.step is not None and said.level == "info" else _STYLES.get(said.level, "default")
+        line = f"[dim]{event.time_s:9.3f} s[/]  {node}[{style}]{escape(said.text + why)}[/]"
+        self._console.print(line, soft_wrap=True, highlight=False)
+
+
+def _is_important(event: Event) -> bool:
+    if isinstance(event, GoalFinished):
+        return event.status in ("aborted", "rejected")
+    return event.__struct_config__.tag in _ALWAYS

@@ -13,15 +13,14 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 
+from engine.cause_chain import describe_cause
 from engine.cli.run_report import cause_links, print_cause
 from engine.errors import DocumentError
 from engine.event import (
     Cause,
     Event,
-    GateReached,
     OperatorChanged,
     OperatorCommanded,
-    OutcomeRequested,
     RunEnded,
     StopRequested,
 )
@@ -29,8 +28,9 @@ from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import RunRecord, encode_event, list_runs
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
+from engine.runtime.history.event_text import event_text
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
-from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import new_plan
 
 _LAST_EVENTS = 10
@@ -141,12 +141,12 @@ def _summary(found: RecordedRun) -> RunSummary:
         **msgspec.structs.asdict(line),
         outcome=end.outcome if end is not None else None,
         cause=cause_links(end.cause if end is not None else None),
-        active=history.active if history is not None and not history.ended else (),
+        active=history.active if history is not None and not history.state.ended else (),
         userdata=dict(history.userdata()) if history is not None else {},
         scopes={path: dict(values) for path, values in history.scopes().items() if path and values}
         if history is not None
         else {},
-        parameters=history.parameters if history is not None else found.origin.parameters,
+        parameters=history.state.parameters if history is not None else found.origin.parameters,
         operator=[
             event for event in found.effective if isinstance(event, OperatorCommanded | OperatorChanged | StopRequested)
         ],
@@ -160,7 +160,7 @@ def _end(found: RecordedRun) -> RunEnded | None:
     return last if isinstance(last, RunEnded) else None
 
 
-def _history(found: RecordedRun) -> RunStateReducer | None:
+def _history(found: RecordedRun) -> ResumableState | None:
     """Return the state of the run; the journal itself holds the behavior that it executed."""
     behavior = found.behavior()
     if behavior is None:
@@ -209,23 +209,10 @@ def _print_events(console: Console, title: str, events: Sequence[Event]) -> None
     if events:
         console.print(title)
     for event in events:
-        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_text(event)}")
+        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_event_line(event)}")
 
 
-def _event_text(event: Event) -> str:
-    """Describe an event in one line."""
-    kind = str(type(event).__struct_config__.tag or "")
-    match event:
-        case GateReached():
-            return f"gate {event.point} {event.path}: {', '.join(event.reasons)}"
-        case OutcomeRequested():
-            return f"{kind} {event.path} {event.outcome}"
-        case _:
-            fields = {name: getattr(event, name) for name in event.__struct_fields__ if name not in ("seq", "time_s")}
-            shown = [_truncated(value) for value in fields.values() if value not in (None, "", (), {})]
-            return " ".join([kind, *shown])
-
-
-def _truncated(value: object) -> str:
-    text = value if isinstance(value, str) else msgspec.json.encode(value).decode()
-    return text if len(text) <= 80 else f"{text[:79]}…"
+def _event_line(event: Event) -> str:
+    said = event_text(event)
+    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
+    return f"{said.path}  {said.text}{why}" if said.path else f"{said.text}{why}"

@@ -1,22 +1,14 @@
-"""Counts the covered items of one run from its events."""
+"""Counts the covered items of one run from the changes of its state."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from engine.coverage.coverage_item import Key
 from engine.coverage.inventory import CoverageInventory
-from engine.event import (
-    BehaviorChanged,
-    BranchesPreempted,
-    Event,
-    NodeDiverted,
-    NodeEntered,
-    NodeExited,
-    NodeRetried,
-    RunStarted,
-    StatusChanged,
-    TransitionTaken,
-)
-from engine.runtime.history.run_reducer import DIVERTED_TO_OUTCOME
+from engine.event import Event
+from engine.runtime.history.run_reducer import DIVERTED_TO_OUTCOME, RunReducer
+from engine.runtime.history.run_state import NodeStep
 
 
 class CoverageCounter:
@@ -30,81 +22,64 @@ class CoverageCounter:
     def __init__(self, inventory: CoverageInventory, counts: dict[Key, int]) -> None:
         self._inventory = inventory
         self._counts = counts
-        self._ours = True
-        self._finished: dict[str, dict[str, str]] = {}
-        self._statuses: dict[str, str] = {}
+        self._reducer = RunReducer()
 
     def take(self, event: Event) -> None:
         """Count an event; events of another version of the document do not count."""
-        match event:
-            case RunStarted() | BehaviorChanged():
-                self._ours = event.document == self._inventory.behavior.meaning
-            case _ if not self._ours:
-                pass
-            case NodeEntered():
-                self._count(("node", event.path, ""))
-                self._finished.pop(event.path, None)
-            case NodeExited(preempted=False) if event.outcome:
-                self._exited(event.path, event.outcome)
-            case TransitionTaken() if event.outcome:
-                self._count(("transition", f"{event.path}/{event.source}", event.outcome))
-            case NodeDiverted():
-                self._diverted(event)
-            case BranchesPreempted():
-                self._preempted(event)
-            case NodeRetried():
-                self._finish(event.path, None)
-            case StatusChanged():
-                self._changed(event.path, event.status)
+        change = self._reducer.apply(event)
+        if change is None or change.step is None:
+            return
+        if self._reducer.state.document in ("", self._inventory.behavior.meaning):
+            self._count_step(change.step)
+
+    def _count_step(self, step: NodeStep) -> None:
+        match step.kind:
+            case "entered":
+                self._count(("node", step.path, ""))
+            case "ended" if step.name and not step.is_preempted:
+                self._count_exit(step.path, step.name, step.children)
+            case "transition" if step.name:
+                self._count(("transition", step.path, step.name))
+            case "diverted":
+                self._count_diversion(step)
+            case "preempts":
+                rules = self._inventory.rules.get(step.path, ())
+                name = next((rule.name for rule in rules if rule.condition.said == step.name), "")
+                self._count(("condition", step.path, name))
+            case "ticked":
+                self._count_tick(step)
             case _:
                 pass
 
-    def _exited(self, path: str, outcome: str) -> None:
+    def _count_exit(self, path: str, outcome: str, children: Mapping[str, str]) -> None:
         self._count(("outcome", path, outcome))
-        self._finish(path, outcome)
         succeeding = self._inventory.succeeding.get(path)
         if succeeding is not None:
             self._count(("status", path, "success" if outcome in succeeding else "failure"))
-        finished = self._finished.get(path, {})
         for rule in self._inventory.rules.get(path, ()):
             condition = rule.condition
             if (
                 condition.decides
                 and condition.outcome == outcome
-                and condition.holds(lambda child, due: finished.get(child) == due)
+                and condition.holds(lambda child, due: children.get(child) == due)
             ):
                 self._count(("condition", path, rule.name))
                 break
 
-    def _preempted(self, event: BranchesPreempted) -> None:
-        rules = self._inventory.rules.get(event.path, ())
-        name = next((rule.name for rule in rules if rule.condition.said == event.condition), "")
-        self._count(("condition", event.path, name))
-
-    def _diverted(self, event: NodeDiverted) -> None:
-        self._finish(event.path, event.target)
-        if event.by in DIVERTED_TO_OUTCOME:
+    def _count_diversion(self, step: NodeStep) -> None:
+        if step.by in DIVERTED_TO_OUTCOME:
             return
-        self._count((event.by, event.path, ""))
+        self._count((step.by, step.path, ""))
         # The target of a behavior's root is an outcome of the behavior, that of a leaf of a tree a status.
-        self._count(("outcome" if event.path in self._inventory.roots else "status", event.path, event.target))
+        self._count(("outcome" if step.path in self._inventory.roots else "status", step.path, step.name))
 
-    def _finish(self, path: str, outcome: str | None) -> None:
-        container, _, name = path.rpartition("/")
-        if outcome is None:
-            self._finished.get(container, {}).pop(name, None)
-        elif container in self._inventory.rules:
-            self._finished.setdefault(container, {})[name] = outcome
-
-    def _changed(self, path: str, status: str) -> None:
-        if path in self._inventory.succeeding:
+    def _count_tick(self, step: NodeStep) -> None:
+        if step.path in self._inventory.succeeding:
             return  # a native leaf is entered and exited like any state
-        before = self._statuses.get(path, "invalid")
-        self._statuses[path] = status
-        if status != "invalid" and before != "running":
-            self._count(("node", path, ""))
-        if status in ("success", "failure"):
-            self._count(("status", path, status))
+        if step.name != "invalid" and step.before.status != "active":
+            self._count(("node", step.path, ""))
+        if step.name in ("success", "failure"):
+            self._count(("status", step.path, step.name))
 
     def _count(self, key: Key) -> None:
         if key in self._counts:

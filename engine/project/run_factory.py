@@ -23,8 +23,8 @@ from engine.recording.recorded_run import RecordedRun, document_snapshot, read_r
 from engine.runtime.control import LEVELS, AutonomyLevel
 from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.history.hot_change import plan_change
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import last_entered_state, read_history, resume_checkpoint, start_checkpoint
-from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.runtime.record.skill_port import SkillPort
 from engine.runtime.run import Run
@@ -261,7 +261,7 @@ def plan_resume(
         plan=plan,
         checkpoint=checkpoint,
         restores=restores,
-        autonomy=history.autonomy or begun_with,
+        autonomy=history.state.autonomy or begun_with,
         changes=changes,
     )
 
@@ -296,7 +296,7 @@ def _changes(found: RecordedRun, plan: Plan, catalogue: Catalogue, until_seq: in
     return report.changes
 
 
-def _waiting(history: RunStateReducer) -> Mapping[str, str]:
+def _waiting(history: ResumableState) -> Mapping[str, str]:
     points = history.checkpoint().points
     return {path: point.left for path, point in points.items() if point.left is not None}
 

@@ -12,13 +12,17 @@ from typing import Any
 import msgspec
 
 from engine.cause_chain import describe_cause
-from engine.event import Event, MessageLogged, NodeExited, RunEnded, StopRequested, TransitionTaken
+from engine.event import Event
 from engine.messages import FramePoses, JointState, SceneDescription
 from engine.recording.foxglove_scene import FoxgloveSceneUpdate, scene_update
 from engine.recording.foxglove_types import FoxgloveQuaternion, FoxgloveTime, FoxgloveVector3, time_of
+from engine.runtime.history.event_text import event_text
 
 _LEVELS = {"debug": 1, "info": 2, "warning": 3, "error": 4}
 ROOT_FRAME = "world"
+_EXITED = "exited"
+_LOGGED = frozenset({"log", "transition", "stop", "run_ended", _EXITED})
+"""The tags of the events with a line in the log panel; of nodes that exited, those with a cause."""
 
 
 class FoxgloveLog(msgspec.Struct, frozen=True, kw_only=True):
@@ -80,21 +84,15 @@ class FoxgloveView:
 
 def log_line(event: Event, at_ns: int) -> FoxgloveLog | None:
     """Return the log line of an event; None for most events."""
-    match event:
-        case MessageLogged():
-            level, name, text = _LEVELS.get(event.level, 2), event.path, event.message
-        case TransitionTaken():
-            level, name, text = 2, event.path, f"{event.source}: {event.outcome or 'left'} → {event.target}"
-        case NodeExited(cause=cause) if cause is not None:
-            level, name, text = 3, event.path, describe_cause(cause)
-        case StopRequested():
-            level, name, text = 3, "", f"stop: {event.reason}"
-        case RunEnded():
-            how = f"{event.status} {event.outcome or ''}".strip()
-            level, name, text = (4 if event.status == "errored" else 2), "", how
-        case _:
-            return None
-    return FoxgloveLog(timestamp=time_of(at_ns), level=level, message=text, name=name)
+    tag = event.__struct_config__.tag
+    if tag not in _LOGGED:
+        return None
+    said = event_text(event)
+    if tag == _EXITED and said.cause is None:
+        return None
+    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
+    level = _LEVELS.get(said.level, 2)
+    return FoxgloveLog(timestamp=time_of(at_ns), level=level, message=f"{said.text}{why}", name=said.path)
 
 
 def _transforms(poses: FramePoses, at_ns: int) -> FoxgloveFrameTransforms:

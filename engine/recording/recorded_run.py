@@ -12,8 +12,8 @@ from engine.errors import DocumentError, FlexcellError, JournalError
 from engine.event import AnyEvent, BehaviorChanged, Event, RunStarted
 from engine.journal import RunOrigin, RunRecord, WorldState, journal_path, open_snapshot
 from engine.recording import RecordedDocuments, collect_documents, recorded_behavior, recorded_substitutes
+from engine.runtime.history.effective_events import effective_events
 from engine.runtime.history.hot_change import VersionSnapshot
-from engine.runtime.history.resume import effective_events
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from engine.event import Event, GoalSent, ServiceCalled
 from engine.recording import RecordedEvent
-from engine.replay.event_text import plain_event
+from engine.replay.plain_event import plain_event
 from engine.replay.replay_difference import CONTEXT, ReplayDifference, event_difference
 
 TIME_TOLERANCE_S = 1.5e-6

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import islice
 
 from engine.event import Event
-from engine.replay.event_text import event_text, plain_event, value_changes
+from engine.replay.plain_event import plain_event, value_changes
+from engine.runtime.history.event_text import event_text
 
 CONTEXT = 10
 _SHOWN = 3
@@ -57,7 +58,7 @@ def event_difference(
         replayed=_said(replayed, path),
         detail=why or _detail(recorded, replayed),
         before=tuple(
-            f"{event.seq} {event.time_s:.3f} s {_path(event)} {event_text(event)}" for event in before[-CONTEXT:]
+            f"{event.seq} {event.time_s:.3f} s {_path(event)} {event_text(event).text}" for event in before[-CONTEXT:]
         ),
     )
 
@@ -66,14 +67,15 @@ def _said(event: Event | None, path: str) -> str:
     if event is None:
         return _NOTHING
     elsewhere = _path(event)
-    return f"`{event_text(event)}`" if elsewhere == path else f"`{event_text(event)}` of {elsewhere or 'the run'}"
+    text = event_text(event).text
+    return f"`{text}`" if elsewhere == path else f"`{text}` of {elsewhere or 'the run'}"
 
 
 def _detail(recorded: Event | None, replayed: Event | None) -> str:
-    """Return the differing values, if the texts of the events are equal."""
+    """Return the differing values of two events of one kind and node."""
     if recorded is None or replayed is None or type(recorded) is not type(replayed):
         return ""
-    if _path(recorded) != _path(replayed) or event_text(recorded) != event_text(replayed):
+    if _path(recorded) != _path(replayed):
         return ""
     found = value_changes(plain_event(recorded), plain_event(replayed))
     shown = ", ".join(islice(found, _SHOWN))

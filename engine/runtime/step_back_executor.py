@@ -17,8 +17,8 @@ from engine.runtime.history.step_back import PausedPosition, StepBack, plan_step
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan
+from engine.runtime.record.leaf_activation import LeafActivation
 from engine.runtime.record.node_exit import NodeExit
-from engine.runtime.record.undo_log import LeafActivation
 from engine.runtime.userdata.userdata import Scope
 
 

@@ -96,7 +96,8 @@ def test_the_failure_is_the_difference(project: Path) -> None:
     )
     tested = run_pytest(project, "--junit-xml", "r.xml")
     assert tested.code == 1
-    line = "event 7 at 60.000 s, root/choose: recorded `left with true`; replayed `left with false`"
+    line = "event 7 at 60.000 s, root/choose: recorded `ended with true`; "
+    line += 'replayed `ended with false` (outcome: "true" ≠ "false")'
     assert line in tested.out
     assert "Traceback" not in tested.out
     case = ET.parse(project / "r.xml").getroot().find("./testsuite/testcase")

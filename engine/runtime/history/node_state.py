@@ -13,13 +13,12 @@ from engine.runtime.record.tree_event import TreeEvent
 
 @dataclass
 class ActiveNodeState:
-    """A node that was entered and not exited."""
+    """Course of a node that was entered and not exited, or that waits for its next attempt."""
 
     visit: int
     inputs: Mapping[str, object]
     since_s: float
     attempt: int = 1
-    entered: bool = True
     current: str | None = None
     diagnosis: Diagnosis = field(default_factory=Diagnosis)
     preempted: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])

@@ -10,11 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from engine.errors import ControlError, DocumentError
-from engine.event import Cause, Event, NodeEntered, RunResumed
+from engine.event import Cause, Event, NodeEntered
 from engine.node_path import is_inside
 from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.history.effective_events import effective_events
 from engine.runtime.history.node_state import without_branch
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
+from engine.runtime.history.run_state_part import RunStatePart
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.substitute_work import SUBSTITUTE
@@ -45,24 +47,13 @@ class ResumeQuestion:
     outcomes: tuple[str, ...]
 
 
-def effective_events(events: Iterable[Event]) -> list[Event]:
-    """Return the events that apply: a resumed run may have restarted before its last events."""
-    kept: list[Event] = []
-    for event in events:
-        if isinstance(event, RunResumed):
-            while kept and kept[-1].seq > event.after_seq:
-                kept.pop()
-        kept.append(event)
-    return kept
-
-
-def read_history(plan: Plan, run: str, events: Iterable[Event], *, until_seq: int | None = None) -> RunStateReducer:
+def read_history(plan: Plan, run: str, events: Iterable[Event], *, until_seq: int | None = None) -> ResumableState:
     """Return the state of a run at its last event, or at `until_seq`."""
-    return RunStateReducer(plan, run=run).read(effective_events(events), until_seq=until_seq)
+    return ResumableState(plan, run=run).read(effective_events(events), until_seq=until_seq)
 
 
 def resume_checkpoint(
-    history: RunStateReducer,
+    history: ResumableState,
     plan: Plan,
     *,
     answers: Mapping[str, str],
@@ -84,8 +75,8 @@ def resume_checkpoint(
         ResumeDecisionRequired: states need a decision and have no answer.
         ControlError: an answer names an unknown state or outcome, or the run has ended.
     """
-    if history.ended:
-        raise ControlError("this run is over", where=history.run, hint="start a new one")
+    if history.state.ended:
+        raise ControlError("this run is over", where=history.state.run, hint="start a new one")
     for path in answers:
         if path not in history.active_states:
             hint = did_you_mean(path, history.active_states)
@@ -131,7 +122,7 @@ def resume_policy(node: Node, *, demanded: bool) -> str:
     return ASK if demanded and work.commands_hardware else RERUN
 
 
-def start_checkpoint(history: RunStateReducer, plan: Plan, path: str) -> Checkpoint:
+def start_checkpoint(history: ResumableState, plan: Plan, path: str) -> Checkpoint:
     """Return `history` as the checkpoint of a new run that starts with the node at `path`.
 
     Containers around it have the userdata of that event, or their initial values where they were not active. Parallel
@@ -184,12 +175,23 @@ def last_entered_state(events: Iterable[Event], seq: int) -> str:
     Raises:
         DocumentError: no state was entered before.
     """
-    path = ""
+    last = _LastState()
     for event in events:
         if event.seq > seq:
             break
-        if isinstance(event, NodeEntered) and event.kind in ("state", SUBSTITUTE):
-            path = event.path
-    if not path:
+        last.take(event)
+    if not last.path:
         raise DocumentError(f"no state was entered before event {seq}", hint="choose a later event")
-    return path
+    return last.path
+
+
+class _LastState(RunStatePart):
+    """The state that was entered last."""
+
+    def __init__(self) -> None:
+        self.path = ""
+
+    def node_entered(self, event: NodeEntered) -> None:
+        """Keep the path of a state."""
+        if event.kind in ("state", SUBSTITUTE):
+            self.path = event.path

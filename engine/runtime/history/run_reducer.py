@@ -1,415 +1,364 @@
-"""Reduces the events of a run, in order, to the state of the run.
-
-Used to resume after a crash, to start from a chosen event, and for the timeline of a debugger. It needs the plan:
-initial userdata is in the document, not in the events.
-"""
+"""Reduces the events of a run, in order, to its state; live view, past, resume, coverage and progress ask it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+import math
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import cast
 
-from engine.document.node_spec import FOREACH_OUTCOMES
-from engine.errors import DocumentError
+import msgspec
+
+from engine.cause_chain import describe_cause
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,
-    Cause,
     Event,
     GatePassed,
+    GateReached,
+    GoalFinished,
+    GoalSent,
+    MessageLogged,
     NodeDiverted,
     NodeEntered,
     NodeExited,
     NodeRetried,
     OperatorCommanded,
     RunEnded,
+    RunResumed,
     RunStarted,
     RunSteppedBack,
+    ServiceAnswered,
+    ServiceCalled,
     StatusChanged,
     TransitionTaken,
+    UndoEnded,
     UndoStarted,
     UserdataAppended,
     UserdataWritten,
 )
+from engine.node_path import is_inside
 from engine.runtime.control.autonomy import AutonomyLevel
-from engine.runtime.history.checkpoint import Checkpoint
-from engine.runtime.history.container_reason import reason_of
-from engine.runtime.history.node_state import ActiveNodeState, PendingExit, exit_of
-from engine.runtime.nodes.diagnosis import Diagnosis
-from engine.runtime.nodes.foreach import ForEach
-from engine.runtime.nodes.machine import Machine
-from engine.runtime.nodes.node import Node, NodeWork
-from engine.runtime.nodes.priority import Priority
-from engine.runtime.plan import Plan
-from engine.runtime.record.node_checkpoint import NodeCheckpoint
-from engine.runtime.record.node_exit import guard_closed_cause
-from engine.runtime.record.tree_event import tree_event_of
-from engine.runtime.userdata.append_only_lists import AppendOnlyLists
-from engine.suggestions import did_you_mean
+from engine.runtime.history.effective_events import effective_events
+from engine.runtime.history.run_state import IDLE, UNCHANGED, NodeLive, NodeStep, PlanLive, RunState, RunStateChange
+from engine.runtime.history.run_state_part import RunStatePart
+from engine.skills.planning import PlannedMotion
 
 DIVERTED_TO_OUTCOME = ("operator", "start")
-"""Values of `NodeDiverted.by` whose target is an outcome and not a transition target."""
+"""Values of `NodeStep.by` whose target is an outcome and not a transition target."""
+# Outcomes shown as a failure if the event has no cause.
+FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
+# Frequent, and of interest to parts only.
+_CHANGES_NOTHING = frozenset(
+    {UserdataWritten, UserdataAppended, GoalSent, ServiceCalled, ServiceAnswered, MessageLogged}
+)
+_TICKED = {"running": "active", "success": "done", "failure": "failed"}
 
 
-class RunStateReducer:
-    """State of one run according to its events, up to the last one taken.
+def exit_status(event: NodeExited) -> str:
+    """Return the status of an exited node: done, failed or stopped."""
+    if event.preempted:
+        return "stopped"
+    return "failed" if event.cause is not None or event.outcome in FAILURE_OUTCOMES else "done"
 
-    Nodes that a changed document no longer contains are an error only while they are active.
+
+class RunReducer(RunStatePart):
+    """Reduces the events of one run to `state`.
+
+    Args:
+        run: The id of the run.
+        parts: What a view needs besides; each takes an event before `state` does.
+        history: Returns the events of the run, for a resume that takes the last ones back; needed where they are not
+            effective events anyway.
     """
 
-    def __init__(self, plan: Plan, *, run: str) -> None:
-        self.run = run
-        self.seq = 0
-        self.time_s = 0.0
-        self.ended = False
-        self.paused = False
-        self.autonomy: AutonomyLevel | None = None
-        self.locks: set[str] = set()
-        self.undoing = ""
-        """The state that an unfinished step back began to undo last; empty while there is none."""
-        self.visits: dict[str, int] = {}
-        self.seed = 0
-        self.document = ""
-        self.parameters: dict[str, object] = {}
-        self._plan = plan
-        self._open: dict[str, ActiveNodeState] = {}
-        self._left: dict[str, PendingExit] = {}
-        self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
-        self._pending: dict[str, list[UserdataWritten | UserdataAppended]] = {}
-        self._lists = AppendOnlyLists()
+    def __init__(
+        self,
+        run: str = "",
+        *,
+        parts: Sequence[RunStatePart] = (),
+        history: Callable[[], Iterable[Event]] = tuple[Event, ...],
+    ) -> None:
+        self.state = RunState(run)
+        self._parts = tuple(parts)
+        self._history = history
+        self._nodes: dict[str, NodeLive] = {}
+        self._step: NodeStep | None = None
+        self._run_changed = False
 
-    def read(self, events: Iterable[Event], *, until_seq: int | None = None) -> RunStateReducer:
-        """Take events in order, up to and including `until_seq`; returns itself."""
-        for event in events:
-            if until_seq is not None and event.seq > until_seq:
-                break
-            self.take(event)
-        self._lists.give_away()
-        return self
+    def apply(self, event: Event) -> RunStateChange | None:
+        """Apply the next event and return what it changed; None if it was applied before."""
+        state = self.state
+        if event.seq <= state.seq:
+            return None
+        for part in self._parts:
+            part.take(event)
+        if type(event) in _CHANGES_NOTHING:
+            state.seq, state.time_s = event.seq, event.time_s
+            return UNCHANGED
+        self._nodes, self._step, self._run_changed = {}, None, False
+        self.take(event)
+        state = self.state
+        state.seq, state.time_s = event.seq, event.time_s
+        if self._nodes:
+            for path in self._nodes:
+                if path not in state.nodes:
+                    self._note_containers(path)
+            state.nodes.update(self._nodes)
+        return RunStateChange(nodes=self._nodes, step=self._step, run_changed=self._run_changed)
 
-    def take(self, event: Event) -> None:
-        """Take the next event."""
-        self.seq, self.time_s = event.seq, event.time_s
-        self._take_tree_event(event)
-        match event:
-            case RunStarted():
-                self.seed, self.document, self.parameters = event.seed, event.document, event.parameters
-                self._scopes[""].update(event.inputs)
-            case NodeEntered():
-                self._enter(event)
-            case NodeExited():
-                self._exit(event)
-            case NodeDiverted():
-                self._divert(event)
-            case BranchesPreempted():
-                self._preempt(event)
-            case NodeRetried():
-                self._retry(event)
-            case TransitionTaken():
-                self._transition(event)
-            case UserdataWritten() | UserdataAppended():
-                self._write(event)
-            case StatusChanged() if event.status != "running":
-                # A parallel has merged its branches, or was halted.
-                self._forget_branches(event.path)
-            case GatePassed() if event.point == "after" and event.path in self._left:
-                self._left[event.path] = replace(self._left[event.path], passed=True)
-            case OperatorCommanded():
-                self._command(event)
-            case UndoStarted():
-                self.visits[event.path] = event.visit
-                self.undoing = event.path
-            case RunSteppedBack():
-                self._step_back(event)
-            case BehaviorChanged():
-                self._change(event)
-            case RunEnded():
-                self.ended = True
+    def copy(self) -> RunReducer:
+        """Return an independent reducer of the same state, without the parts."""
+        copied = RunReducer(history=self._history)
+        copied.state = self.state.copy()
+        return copied
+
+    def run_started(self, event: RunStarted) -> None:
+        """Take over how the run was started."""
+        state = self.state
+        state.real_time = event.clock == "real"
+        state.seed, state.document, state.parameters = event.seed, event.document, event.parameters
+        self._run_changed = True
+
+    def run_resumed(self, event: RunResumed) -> None:
+        """Return to the event after which the run was resumed."""
+        before = self.state
+        if event.after_seq >= before.seq:
+            return
+        known = [each for each in self._history() if each.seq < event.seq]
+        if not known:
+            return
+        earlier = RunReducer(before.run)
+        for each in effective_events(known):
+            if each.seq <= event.after_seq:
+                earlier.apply(each)
+        self.state = earlier.state
+        self._nodes = {
+            path: self.state.node(path) for path, node in before.nodes.items() if self.state.node(path) != node
+        }
+
+    def node_entered(self, event: NodeEntered) -> None:
+        """Activate the node; the nodes inside are reset with their container, their visit counters are kept."""
+        state, path = self.state, event.path
+        if path in state.containers:
+            inside = f"{path}/"
+            self._nodes = {
+                inner: NodeLive(visits=node.visits)
+                for inner, node in state.nodes.items()
+                if inner.startswith(inside) and node.status != "idle"
+            }
+        self._nodes[path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
+        self._step = NodeStep(kind="entered", path=path)
+        state.active.pop(path, None)
+        state.active[path] = None
+        self._proceed_from(path)
+
+    def node_exited(self, event: NodeExited) -> None:
+        """End the node, and everything inside."""
+        path = event.path
+        node = self._started_by(path, event.time_s)
+        self._nodes[path] = msgspec.structs.replace(
+            node,
+            status=exit_status(event),
+            visits=event.visit,
+            outcome=event.outcome,
+            duration_s=event.time_s - node.entered_s,
+            cause=describe_cause(event.cause) if event.cause else "",
+        )
+        children = self._leave(path)
+        if not event.preempted:
+            self._await_container(path, event.outcome)
+        self._step = NodeStep(
+            kind="ended", path=path, name=event.outcome, is_preempted=event.preempted, children=children, before=node
+        )
+
+    def node_diverted(self, event: NodeDiverted) -> None:
+        """Leave the node for a target."""
+        path = event.path
+        node = self.state.node(path)
+        self._nodes[path] = msgspec.structs.replace(node, status="stopped", outcome=event.target)
+        self._leave(path)
+        self._await_container(path, event.target)
+        self._step = NodeStep(kind="diverted", path=path, name=event.target, by=event.by, before=node)
+
+    def node_retried(self, event: NodeRetried) -> None:
+        """Forget the end of the last attempt; the node shows it until it is entered again."""
+        self.state.active.pop(event.path, None)
+        self._proceed_from(event.path)
+        self._step = NodeStep(kind="retried", path=event.path)
+
+    def branches_preempted(self, event: BranchesPreempted) -> None:
+        """Note the condition; each branch ends with an event of its own."""
+        is_active = event.path in self.state.active
+        for path in (f"{event.path}/{name}" for name in event.branches):
+            if is_active and path not in self.state.active:
+                # It waited for its next attempt, or at the gate.
+                self._forget_inside(path)
+                self._proceed_from(path)
+        self._step = NodeStep(kind="preempts", path=event.path, name=event.condition)
+
+    def transition_taken(self, event: TransitionTaken) -> None:
+        """Note the transition that a container follows."""
+        node = self.state.node(event.path)
+        self._nodes[event.path] = msgspec.structs.replace(node, followed=f"{event.source}|{event.outcome}")
+        child = f"{event.path}/{event.source}"
+        self._proceed_from(child)
+        self._step = NodeStep(kind="transition", path=child, name=event.outcome)
+
+    def goal_finished(self, event: GoalFinished) -> None:
+        """Apply a finished goal; it changes its node only if its result is a planned path."""
+        if event.result is None or "tool_path" not in event.result:
+            return
+        try:
+            plan = msgspec.convert(event.result, PlannedMotion)
+        except msgspec.ValidationError:
+            return
+        line = PlanLive(
+            robot=plan.robot,
+            duration_s=plan.duration_s,
+            length_m=sum(math.dist(start, end) for start, end in pairwise(plan.tool_path)),
+            found_by=plan.found_by,
+            planning_s=plan.planning_s,
+        )
+        self._nodes[event.path] = msgspec.structs.replace(self.state.node(event.path), plan=line)
+
+    def status_changed(self, event: StatusChanged) -> None:
+        """Apply a tick status; composites and decorators have no visits of their own, leaves keep their outcome."""
+        path = event.path
+        node = self.state.node(path)
+        self._step = NodeStep(kind="ticked", path=path, name=event.status, before=node)
+        if (node.outcome or node.cause) and event.status != "invalid":
+            self._nodes[path] = node
+            return
+        status = _TICKED.get(event.status, "idle")
+        started = status == "active" and node.status != "active"
+        self._nodes[path] = msgspec.structs.replace(
+            node,
+            status=status,
+            visits=node.visits + started,
+            entered_s=event.time_s if started else node.entered_s,
+            duration_s=event.time_s - node.entered_s if status != "active" else node.duration_s,
+        )
+
+    def gate_reached(self, event: GateReached) -> None:
+        """Note that what the run waits for has changed."""
+        self._run_changed = True
+
+    def gate_passed(self, event: GatePassed) -> None:
+        """Note that what the run waits for has changed."""
+        self._run_changed = True
+
+    def supervision_changed(self) -> None:
+        """Note that what the run waits for has changed."""
+        self._run_changed = True
+
+    def operator_commanded(self, event: OperatorCommanded) -> None:
+        """Apply a command that lasts: pause, locks, autonomy."""
+        self._run_changed = True
+        state = self.state
+        match event.command:
+            case "pause":
+                state.paused = True
+            case "resume":
+                state.paused = False
+            case "lock":
+                state.locks[event.path] = str(event.arguments.get("reason", ""))
+            case "unlock":
+                state.locks.pop(event.path, None)
+            case "autonomy":
+                state.autonomy = cast("AutonomyLevel", event.arguments["level"])
             case _:
                 pass
 
-    @property
-    def active(self) -> tuple[str, ...]:
-        """The paths of the active nodes, in order of entry."""
-        return tuple(path for path, node in self._open.items() if node.entered)
+    def undo_started(self, event: UndoStarted) -> None:
+        """Show the node under undo as active."""
+        self.state.undoing = event.path
+        self._nodes[event.path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
 
-    @property
-    def active_states(self) -> tuple[str, ...]:
-        """The paths of the active states."""
-        return tuple(path for path in self.active if not self._node(path).work.children)
+    def undo_ended(self, event: UndoEnded) -> None:
+        """Show how the undo ended; the step back follows."""
+        node = self._started_by(event.path, event.time_s)
+        status = "stopped" if event.preempted else "failed" if event.cause is not None else "idle"
+        cause = describe_cause(event.cause) if event.cause is not None else ""
+        duration_s = event.time_s - node.entered_s
+        self._nodes[event.path] = msgspec.structs.replace(node, status=status, cause=cause, duration_s=duration_s)
 
-    def course(self, path: str) -> tuple[Cause | None, Cause | None]:
-        """Return the last failure among the children of an active container, and the reason of their course."""
-        node = self._open.get(path)
-        return (node.diagnosis.cause, node.diagnosis.reason) if node is not None else (None, None)
-
-    def userdata(self, scope: str = "") -> Mapping[str, object]:
-        """Return the values of one scope."""
-        return dict(self._scopes.get(scope, {}))
-
-    def scopes(self) -> Mapping[str, Mapping[str, object]]:
-        """Return all scopes by the path of their container."""
-        return {path: dict(values) for path, values in self._scopes.items()}
-
-    def visit(self, path: str) -> int:
-        """Return the number of the last visit of a node."""
-        return self.visits.get(path, 0)
-
-    def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
-        """Return the current state as a checkpoint; interrupted states are to be entered again.
-
-        Raises:
-            DocumentError: a node is active that the plan does not contain.
-        """
-        points: dict[str, NodeCheckpoint] = {}
-        for path, node in self._open.items():
-            points[path] = self._open_point(path, node)
-        for path, left in self._left.items():
-            self._node(path)
-            points[path] = NodeCheckpoint(
-                visit=left.visit,
-                left=left.outcome,
-                diverted=left.diverted,
-                failed=left.outcome is None and left.diverted is None,
-                cause=left.cause,
-                reason=left.reason,
-                passed=left.passed,
-                attempt=left.attempt,
-                elapsed_s=self.time_s - left.since_s,
-            )
-        return Checkpoint(
-            run=self.run,
-            seq=self.seq,
-            read_seq=self.seq,
-            time_s=self.time_s,
-            userdata=self.userdata(),
-            points=points,
-            visits=dict(self.visits),
-            parameters=self.parameters,
-            seed=self.seed,
-            epoch=epoch,
-            rerun=self.active_states,
-            undoing=self.undoing,
-        )
-
-    def _open_point(self, path: str, node: ActiveNodeState) -> NodeCheckpoint:
-        work = self._node(path).work
-        if isinstance(work, Machine | Priority) and node.current not in (None, *work.children, *work.outcomes):
-            self._node(f"{path}/{node.current}")
-        scope = f"{path}#{node.round}" if isinstance(work, ForEach) else path
-        branches = {
-            key.removeprefix(f"{path}/").removesuffix("*"): values
-            for key, values in self._scopes.items()
-            if key.startswith(f"{path}/") and key.endswith("*")
-        }
-        return NodeCheckpoint(
-            visit=node.visit,
-            entered=node.entered,
-            attempt=node.attempt,
-            elapsed_s=self.time_s - node.since_s,
-            inputs=node.inputs,
-            current=node.current,
-            cause=node.diagnosis.cause,
-            reason=node.diagnosis.reason,
-            values=dict(self._scopes.get(scope, {})),
-            branches=branches,
-            preempted=dict(node.preempted),
-            failed_clean_ups=dict(node.failed_clean_ups),
-            round=node.round,
-            done=tuple(node.done),
-        )
-
-    def _node(self, path: str) -> Node:
-        node = self._plan.nodes.get(path)
-        if node is None:
-            raise DocumentError(
-                "this node is active and the behavior does not contain it",
-                where=path,
-                hint=f"the document has changed since; {did_you_mean(path, self._plan.nodes)}",
-            )
-        return node
-
-    def _work(self, path: str) -> NodeWork | None:
-        node = self._plan.nodes.get(path)
-        return node.work if node is not None else None
-
-    def _enter(self, event: NodeEntered) -> None:
-        path = event.path
-        self.visits[path] = event.visit
-        previous = self._open.pop(path, None)
-        self._left.pop(path, None)
-        self._pending.pop(path, None)
-        is_retry = previous is not None and not previous.entered
-        self._open[path] = ActiveNodeState(
-            visit=event.visit,
-            inputs=event.inputs,
-            since_s=previous.since_s if previous is not None else event.time_s,
-            attempt=previous.attempt if previous is not None and is_retry else 1,
-        )
-        container = self._open.get(path.rpartition("/")[0])
-        if container is not None:
-            container.current = path.rpartition("/")[2]
-        work = self._work(path)
-        if isinstance(work, ForEach):
-            self._begin_round(path, work, event.inputs, 0)
-        else:
-            self._scopes[path] = dict(work.initial_values(event.inputs)) if work is not None else {}
-
-    def _begin_round(self, path: str, work: ForEach, inputs: Mapping[str, object], number: int) -> None:
-        items = work.items_of(inputs)
-        self._scopes.pop(f"{path}#{number - 1}", None)
-        if number < len(items):
-            self._scopes[f"{path}#{number}"] = work.round_values(number, items[number])
-
-    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
-        """Take a write; it applies when the node ends, as a node that is entered again writes again."""
-        own = f"{event.path}*"
-        # The merge of a branch that is still being stopped, or the write of a post-condition, applies at once.
-        merged = own in self._scopes and event.scope != own
-        post = isinstance(event, UserdataWritten) and bool(event.post)
-        if event.path in self._open and event.path != event.scope and not (merged or post):
-            self._pending.setdefault(event.path, []).append(event)
-        else:
-            self._keep(event)
-
-    def _commit_writes(self, path: str) -> None:
-        for event in self._pending.pop(path, ()):
-            self._keep(event)
-
-    def _keep(self, event: UserdataWritten | UserdataAppended) -> None:
-        values = self._scopes.setdefault(event.scope, {})
-        values[event.key] = self._lists.value_after(event, values.get(event.key))
-
-    def _exit(self, event: NodeExited) -> None:
-        path = event.path
-        self._commit_writes(path)
-        node = self._open.pop(path, None)
-        outcome = event.outcome or None
-        reason = reason_of(self._work(path), path, outcome, node, self._left)
-        self._forget_inside(path)
-        if event.preempted:
-            if (container := self._open.get(path.rpartition("/")[0])) is not None:
-                container.take_clean_up(event)
+    def run_stepped_back(self, event: RunSteppedBack) -> None:
+        """Return the undone nodes to the state before their entry."""
+        self._run_changed = True
+        state = self.state
+        state.undoing = ""
+        if event.cause is not None:
             return
-        attempt, since_s = (node.attempt, node.since_s) if node is not None else (1, event.time_s)
-        self._left[path] = PendingExit(
-            event.visit, outcome, None, event.cause, reason, attempt=attempt, since_s=since_s
-        )
+        for path, node in state.nodes.items():
+            if is_inside(event.path, path) or is_inside(event.source, path):
+                self._nodes[path] = NodeLive(visits=node.visits)
+        parent = event.path.rpartition("/")[0]
+        if parent in state.nodes:
+            # The last transition of the parent leads into an undone node.
+            self._nodes[parent] = msgspec.structs.replace(state.nodes[parent], followed="")
+        for path in (event.path, event.source):
+            self._drop(path)
 
-    def _preempt(self, event: BranchesPreempted) -> None:
-        """Take preempted branches; one that waited between two attempts, or at the gate, has ended with that."""
-        container = self._open.get(event.path)
-        if container is None:
-            return
-        container.preempted[event.condition] = event.branches
-        for path in (f"{event.path}/{name}" for name in event.branches):
-            if (node := self._open.get(path)) is None or not node.entered:
-                self._drop(path)
-
-    def _divert(self, event: NodeDiverted) -> None:
-        path = event.path
-        self._open.pop(path, None)
-        self._forget_inside(path)
-        by_outcome = event.by in DIVERTED_TO_OUTCOME
-        outcome, target = (event.target, None) if by_outcome else (None, event.target)
-        reason = guard_closed_cause(path) if event.by == "guard" else None
-        self._left[path] = PendingExit(event.visit, outcome, target, event.cause, reason)
-
-    def _retry(self, event: NodeRetried) -> None:
-        if event.path not in self._plan.nodes:
-            return  # a decorator of a tree, covered by its tree events
-        left = self._left.pop(event.path, None)
-        since_s = left.since_s if left is not None else event.time_s
-        self._open[event.path] = ActiveNodeState(
-            self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False
-        )
-
-    def _transition(self, event: TransitionTaken) -> None:
-        left = self._left.pop(f"{event.path}/{event.source}", None)
-        self._commit_writes(event.path)
-        container = self._open.get(event.path)
-        if container is None:
-            return
-        container.current = event.target
-        child = self._plan.nodes.get(f"{event.path}/{event.source}")
-        if left is not None and child is not None:
-            container.diagnosis.take(child, exit_of(left))
-        work = self._work(event.path)
-        if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
-            container.round += 1
-            self._begin_round(event.path, work, container.inputs, container.round)
-
-    def _change(self, event: BehaviorChanged) -> None:
-        self.document = event.document
-        for path in event.removed:
-            # Its writes were merged just before.
-            self._scopes.pop(f"{path}*", None)
-            above, _, name = path.rpartition("/")
-            if (container := self._open.get(above)) is not None:
-                container.forget_branch(name)
+    def behavior_changed(self, event: BehaviorChanged) -> None:
+        """Take over the version; the nodes that it restarts or removes have not begun."""
+        self.state.document = event.document
         for path in (*event.restarted, *event.removed):
             self._drop(path)
 
+    def run_ended(self, event: RunEnded) -> None:
+        """Stop what is still active."""
+        self.state.end = event
+        self._run_changed = True
+        for path, node in self.state.nodes.items():
+            if node.status == "active":
+                duration_s = event.time_s - node.entered_s
+                self._nodes[path] = msgspec.structs.replace(node, status="stopped", duration_s=duration_s)
+
+    def _started_by(self, path: str, time_s: float) -> NodeLive:
+        """Return a node that ends now; one that was never entered, or whose entry was taken back, began now."""
+        node = self.state.node(path)
+        return NodeLive(entered_s=time_s) if node == IDLE else node
+
+    def _note_containers(self, path: str) -> None:
+        state = self.state
+        parent = path.rpartition("/")[0]
+        # Never changed in place: copies share the set.
+        while parent and parent not in state.containers:
+            state.containers = state.containers | {parent}
+            parent = parent.rpartition("/")[0]
+
+    def _leave(self, path: str) -> dict[str, str]:
+        """End a node and everything inside; return how its children had ended."""
+        state = self.state
+        state.active.pop(path, None)
+        children = state.exits.get(path, {})
+        if path in state.containers:
+            self._forget_inside(path)
+        return children
+
+    def _await_container(self, path: str, name: str) -> None:
+        container, _, child = path.rpartition("/")
+        ended = self.state.exits.get(container)
+        if ended is not None:
+            ended[child] = name
+        elif container:
+            self.state.exits[container] = {child: name}
+
+    def _proceed_from(self, path: str) -> None:
+        container, _, child = path.rpartition("/")
+        if (ended := self.state.exits.get(container)) is not None:
+            ended.pop(child, None)
+
     def _drop(self, path: str) -> None:
-        """Drop the state of a node that has not begun, except its visit count."""
+        """Forget a node that has not begun, except its visits."""
+        self.state.active.pop(path, None)
         self._forget_inside(path)
-        for table in (self._open, self._left, self._pending):
-            table.pop(path, None)
-
-    def _step_back(self, event: RunSteppedBack) -> None:
-        self.undoing = ""
-        if event.cause is not None:
-            return
-        for path in (event.path, event.source):
-            self._drop(path)
-        for each in event.values:
-            values = self._scopes.setdefault(each.scope, {})
-            if each.defined:
-                values[each.key] = each.value
-            else:
-                values.pop(each.key, None)
-        container = self._open.get(event.path.rpartition("/")[0])
-        if container is not None:
-            container.current = event.path.rpartition("/")[2]
-            container.diagnosis = Diagnosis(event.went_wrong, event.reason)
-
-    def _take_tree_event(self, event: Event) -> None:
-        """Add the event to the tree around a tree node or leaf."""
-        tree_event = tree_event_of(event)
-        above = tree_event.path if tree_event is not None else ""
-        while tree_event is not None and (above := above.rpartition("/")[0]):
-            node = self._open.get(above)
-            if node is None:
-                continue
-            work = self._work(above)
-            if work is not None and work.kind == "tree":
-                node.done.append(tree_event)
-            return
-
-    def _forget_branches(self, path: str) -> None:
-        for key in [key for key in self._scopes if key.endswith("*") and key.rpartition("/")[0] == path]:
-            del self._scopes[key]
-
-    def _command(self, event: OperatorCommanded) -> None:
-        match event.command:
-            case "pause":
-                self.paused = True
-            case "resume":
-                self.paused = False
-            case "lock":
-                self.locks.add(event.path)
-            case "unlock":
-                self.locks.discard(event.path)
-            case "autonomy":
-                self.autonomy = cast("AutonomyLevel", event.arguments["level"])
-            case _:
-                pass
+        self._proceed_from(path)
 
     def _forget_inside(self, path: str) -> None:
-        """Drop the state inside a node that was exited."""
-        self._scopes.pop(path, None)
-        inside = (f"{path}/", f"{path}#")
-        for table in (self._open, self._left, self._scopes):
+        state, inside = self.state, f"{path}/"
+        state.exits.pop(path, None)
+        for table in (state.active, state.exits):
             for inner in [key for key in table if key.startswith(inside)]:
                 del table[inner]

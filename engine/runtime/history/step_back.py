@@ -14,12 +14,13 @@ from engine.errors import ControlError
 from engine.event import Cause, Event
 from engine.node_path import is_inside
 from engine.runtime.control.gate import GateWait
-from engine.runtime.history.resume import effective_events
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.effective_events import effective_events
+from engine.runtime.history.resumable_state import ResumableState
+from engine.runtime.history.undo_log import UndoLog
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan
-from engine.runtime.record.undo_log import LeafActivation, UndoLog
+from engine.runtime.record.leaf_activation import LeafActivation
 from engine.state import State, nothing_to_undo
 from engine.suggestions import did_you_mean
 
@@ -75,7 +76,7 @@ def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition
     before = [event for event in effective if event.seq <= since]
     userdata = UserdataHistory(lambda: plan)
     userdata.read(before)
-    history = RunStateReducer(plan, run="").read(before)
+    history = ResumableState(plan, run="").read(before)
     went_wrong, reason = history.course(target.rpartition("/")[0])
     return StepBack(
         cursor=cursor,

@@ -1,6 +1,6 @@
 """Userdata of a run, rebuilt from its events: every scope with its values, their last writers and times.
 
-Unlike `RunStateReducer`, which restores a run, it applies a write at once and keeps the values of exited containers.
+Unlike `ResumableState`, which restores a run, it applies a write at once and keeps the values of exited containers.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from engine.event import (
     UserdataAppended,
     UserdataWritten,
 )
+from engine.runtime.history.run_state_part import RunStatePart
 from engine.runtime.nodes.foreach import ForEach
 from engine.runtime.plan import Plan
 from engine.runtime.userdata.append_only_lists import AppendOnlyLists
@@ -47,7 +48,7 @@ class ScopeView(msgspec.Struct, frozen=True, kw_only=True):
     values: dict[str, UserdataRecord]
 
 
-class UserdataHistory:
+class UserdataHistory(RunStatePart):
     """The scopes of one run by the path of their container, up to the last event taken.
 
     The scope of the behavior has the empty path, a round of a loop `path#n`, an unmerged branch of a concurrency
@@ -69,7 +70,7 @@ class UserdataHistory:
     def read(self, events: Iterable[Event]) -> None:
         """Take the next events, in order."""
         for event in events:
-            self._take(event)
+            self.take(event)
             self.seq = event.seq
         self._lists.give_away()
 
@@ -89,29 +90,26 @@ class UserdataHistory:
         changed, self._changed = self._changed, set()
         return {path: self.scopes.get(path) for path in sorted(changed)}
 
-    def _take(self, event: Event) -> None:
-        match event:
-            case RunStarted():
-                for key, value in event.inputs.items():
-                    self._put("", key, UserdataRecord(value=value, by="", at_s=event.time_s, writes=0))
-            case NodeEntered():
-                self._enter(event)
-            case UserdataWritten() | UserdataAppended():
-                self._write(event)
-            case TransitionTaken():
-                self._next_round(event)
-            case NodeExited():
-                self._close(event.path)
-            case RunSteppedBack() if event.cause is None:
-                self._step_back(event)
-            case StatusChanged() if event.status != "running":
-                self._close(event.path)
-            case RunEnded():
-                self._close("")
-            case _:
-                pass
+    def run_started(self, event: RunStarted) -> None:
+        """Take over the inputs."""
+        for key, value in event.inputs.items():
+            self._put("", key, UserdataRecord(value=value, by="", at_s=event.time_s, writes=0))
 
-    def _enter(self, event: NodeEntered) -> None:
+    def node_exited(self, event: NodeExited) -> None:
+        """Close the scopes of a node."""
+        self._close(event.path)
+
+    def status_changed(self, event: StatusChanged) -> None:
+        """Close the scopes of a tree node that ended."""
+        if event.status != "running":
+            self._close(event.path)
+
+    def run_ended(self, event: RunEnded) -> None:
+        """Close all scopes."""
+        self._close("")
+
+    def node_entered(self, event: NodeEntered) -> None:
+        """Open the scope of a container."""
         node = self._plan().nodes.get(event.path)
         if node is None or not node.work.children:
             return
@@ -122,7 +120,8 @@ class UserdataHistory:
         else:
             self._begin(event.path, node.work.initial_values(event.inputs), event.time_s)
 
-    def _next_round(self, event: TransitionTaken) -> None:
+    def transition_taken(self, event: TransitionTaken) -> None:
+        """Open the scope of the next round of a loop."""
         node = self._plan().nodes.get(event.path)
         if node is None or not isinstance(node.work, ForEach) or event.path not in self._items:
             return
@@ -141,7 +140,8 @@ class UserdataHistory:
         entries = {key: UserdataRecord(value=value, by="", at_s=time_s, writes=0) for key, value in values.items()}
         self._set(path, ScopeView(is_open=True, since_s=time_s, values=entries))
 
-    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
+    def value_written(self, event: UserdataWritten | UserdataAppended) -> None:
+        """Put the value, with its writer."""
         known = self.scopes.get(event.scope)
         before = known.values.get(event.key) if known is not None else None
         writes = 1 + (before.writes if before is not None else 0)
@@ -150,7 +150,10 @@ class UserdataHistory:
         value = self._lists.value_after(event, before.value if before is not None else None)
         self._put(event.scope, event.key, UserdataRecord(value=value, by=event.path, at_s=event.time_s, writes=writes))
 
-    def _step_back(self, event: RunSteppedBack) -> None:
+    def run_stepped_back(self, event: RunSteppedBack) -> None:
+        """Restore the values."""
+        if event.cause is not None:
+            return
         for path in (event.path, event.source):
             self._drop(path)
             self._forget_inside(path)

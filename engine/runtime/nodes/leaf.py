@@ -20,8 +20,8 @@ from engine.runtime.nodes.error_containment import contain_errors
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.node_entry import NodeEntry
+from engine.runtime.record.leaf_activation import LeafActivation
 from engine.runtime.record.nonfinite import encode_nonfinite
-from engine.runtime.record.undo_log import LeafActivation
 from engine.runtime.userdata.userdata import Scope
 from engine.state import ActivationRecord, Context, Outcome, State
 from engine.suggestions import did_you_mean

@@ -48,7 +48,7 @@ class TreeRunner:
         path: The path of the tree.
         scope: The scope of the tree.
         execution: The execution of the run.
-        history: The events of an interrupted activation that is resumed; see `tree_event_of`.
+        history: The events of an interrupted activation that is resumed.
         branches: Values written by branches of its parallels, by the path of the branch.
     """
 

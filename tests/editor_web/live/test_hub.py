@@ -10,7 +10,7 @@ from websockets.exceptions import ConnectionClosedError
 
 from editor_web.live.hub import LiveClient, LiveHub
 from editor_web.live.live_frames import LiveDelta, LiveSnapshot
-from editor_web.live.run_state import LOG_LINES
+from editor_web.live.live_run import LOG_LINES
 from editor_web.sockets import page_socket as sockets
 from engine.event import MessageLogged, NodeEntered, NodeExited, RunEnded, RunStarted
 from tests.editor_web.conftest import Serve
@@ -116,7 +116,7 @@ async def test_the_clock_of_a_run_goes_on_between_its_events() -> None:
     assert hub.now_s(live) == pytest.approx(at_start_s + 2.5)
     backend.emit("r", RunEnded, status="finished", outcome="finished")
     wall_s[0] += 100.0
-    assert hub.now_s(live) == live.time_s
+    assert hub.now_s(live) == live.state.time_s
 
 
 async def test_the_end_of_a_run_arrives_though_the_engine_files_it_later() -> None:

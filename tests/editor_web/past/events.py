@@ -5,25 +5,36 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from engine.event import (
+    BehaviorChanged,
+    BranchesPreempted,
     Cause,
     Event,
+    GatePassed,
     GoalFinished,
     GoalSent,
     MessageLogged,
     NodeDiverted,
     NodeEntered,
     NodeExited,
+    NodeRetried,
     OperatorCommanded,
     RunEnded,
+    RunResumed,
     RunStarted,
+    RunSteppedBack,
     StatusChanged,
     TransitionTaken,
+    UndoEnded,
+    UndoStarted,
 )
 
 PATHS = ("root", "root/a", "root/b", "root/b/x", "root/b/y", "root/b/y/deep", "root/c")
+RARE = ("retry", "lock", "preempt", "undo", "undone", "back", "change", "gate", "resume")
 STEPS = st.lists(
     st.tuples(
-        st.sampled_from(("enter", "exit", "fail", "divert", "status", "follow", "goal", "done", "log", "command")),
+        st.sampled_from(
+            ("enter", "exit", "fail", "divert", "status", "follow", "goal", "done", "log", "command", *RARE)
+        ),
         st.sampled_from(PATHS),
         st.sampled_from((0.0, 0.5, 1.25)),
     ),
@@ -74,6 +85,29 @@ def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
                 )
             case "command":
                 events.append(OperatorCommanded(seq=seq, time_s=time_s, command="pause", path="", arguments={}))
+            case "retry":
+                events.append(NodeRetried(seq=seq, time_s=time_s, path=path, attempt=2, wait_s=0.5))
+            case "lock":
+                events.append(OperatorCommanded(seq=seq, time_s=time_s, command="lock", path=path, arguments={}))
+            case "preempt":
+                events.append(
+                    BranchesPreempted(seq=seq, time_s=time_s, path="root", condition="x", branches=(path[5:] or "a",))
+                )
+            case "undo":
+                events.append(UndoStarted(seq=seq, time_s=time_s, path=path, visit=visit + 1, undoes=visit))
+            case "undone":
+                events.append(UndoEnded(seq=seq, time_s=time_s, path=path, visit=visit + 1, undoes=visit))
+            case "back":
+                events.append(RunSteppedBack(seq=seq, time_s=time_s, path=path, source="root/b"))
+            case "change":
+                events.append(
+                    BehaviorChanged(seq=seq, time_s=time_s, document="e", report=(), removed=(path,) if pause_s else ())
+                )
+            case "gate":
+                events.append(GatePassed(seq=seq, time_s=time_s, path=path, visit=visit, point="after"))
+            case "resume":
+                after_seq = max(1, seq - 1 - int(pause_s * 8))
+                events.append(RunResumed(seq=seq, time_s=time_s, after_seq=after_seq, epoch=2, rerun=()))
             case _:
                 events.append(MessageLogged(seq=seq, time_s=time_s, path=path, level="info", message="said"))
     if ended:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from editor_web.live.run_state import LiveRun
+from editor_web.live.live_run import LiveRun
 from editor_web.past import state_history as subject
 from editor_web.past.state_history import RunStateHistory
 from editor_web.past.timeline import RunHistory
@@ -36,7 +36,7 @@ root:
 
 def lived(events: list[Event], seq: int) -> LiveRun:
     """What the live view had folded after an event."""
-    live = LiveRun("r")
+    live = LiveRun("r", history=lambda: events)
     for event in events[:seq]:
         live.apply(event)
     return live
@@ -54,8 +54,8 @@ def test_every_moment_is_what_the_live_view_showed(
     for event in events:
         moments.follow(event)
     live = lived(events, seq)
-    found = moments.at(seq)
-    assert (found.seq, found.time_s, found.nodes, found.log) == (seq, live.time_s, live.nodes, tuple(live.log))
+    found, state = moments.at(seq), live.state
+    assert (found.seq, found.time_s, found.nodes, found.log) == (seq, state.time_s, state.nodes, tuple(live.log))
 
 
 def test_checkpoints_that_become_too_many_are_thinned_and_still_lead_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import httpx
 import pytest
 
-from editor_web.live.run_state import LiveRun
+from editor_web.live.live_run import LiveRun
 from engine.clock import run_virtual
 from engine.recording import part_file
 from tests.editor_web.conftest import Serve
@@ -89,7 +89,7 @@ async def test_a_run_of_this_server_is_told_while_it_goes_on(serve: Serve) -> No
         for event in events[:middle]:
             lived.apply(event)
         assert {path: node["status"] for path, node in moment["nodes"].items()} == {
-            path: node.status for path, node in lived.nodes.items()
+            path: node.status for path, node in lived.state.nodes.items()
         }
         assert [line["text"] for line in moment["log"]] == [line.text for line in lived.log]
 

@@ -94,7 +94,7 @@ def gates(folder: Path) -> list[str]:
 def test_a_request_is_shown_and_answered(nested: Path) -> None:
     said = operated(nested, "wait\nanswer\n", "--autonomy", "low", "--operator-loss", "continue")
     assert said.code == 0
-    assert "? root/two requests outcome out (requires high): answer root/two | force root/two OUTCOME" in said.err
+    assert "? root/two asks for out, which requires high: answer root/two | force root/two OUTCOME" in said.err
     assert commanded(nested.parent) == ["answer root/two"]
     assert [e.status for e in events_in(nested.parent) if isinstance(e, OperatorChanged)] == ["attached", "detached"]
 
@@ -150,8 +150,8 @@ def test_steps_back_one_after_the_other(nested: Path) -> None:
         "breakpoints", "step_back root/three", "step_back root/two", "breakpoints", "resume",
     ]  # fmt: skip
     for line in (
-        "stepped back to before root/two",
-        "stepped back to before root/one",
+        "root/two stepped back before its entry",
+        "root/one stepped back before its entry",
         "root/one: the run is at its beginning",
     ):
         assert line in said.err

@@ -145,7 +145,7 @@ def test_a_signal_stops_the_run_and_closes_the_journal(behavior: Path, number: s
     assert (run.status, stops, isinstance(events[-1], RunEnded)) == (
         "stopped", [f"interrupted by {number.name}"], True,
     )  # fmt: skip
-    assert "preempted" in errors
+    assert "stopped after" in errors
 
 
 def _running(journal: Path) -> bool:

@@ -85,7 +85,7 @@ def test_a_run_is_shown_where_it_stood(behavior: Path) -> None:
     said = flexcell("runs", "show", run, cwd=folder)
     assert "  root/two/wait\n" in said.out
     assert "  value = 2\n" in said.out
-    assert "command lock root/two" in said.out
+    assert "root/two  operator: lock" in said.out
     listed = flexcell("runs", "show", run, "--events", cwd=folder).out.splitlines()
     assert [json.loads(line)["seq"] for line in listed] == list(range(1, len(events_in(folder)) + 1))
 

@@ -66,22 +66,20 @@ def test_the_same_behavior_does_the_same(tmp_path: Path) -> None:
     [
         (
             ("a: look, b: bad", "a: listen, b: bad"),
-            "event 8 at 1.000 s, root: recorded `transition work: a → look`; replayed `transition work: a → listen`",
+            "event 8 at 1.000 s, root: recorded `work —a→ look`; replayed `work —a→ listen` "
+            '(target: "look" ≠ "listen")',
         ),
         (
             ("for_s: 1", "for_s: 2"),
-            "event 3 at 0.000 s, root/work: recorded `entered (state, visit 1)`; replayed `entered (state, visit 1)` "
-            "(inputs.for_s: 1 ≠ 2)",
+            "event 3 at 0.000 s, root/work: recorded `entered`; replayed `entered` (inputs.for_s: 1 ≠ 2)",
         ),
         (
             ("state: bench.Look,", "state: bench.Look, with: {times: 2},"),
-            "event 9 at 1.000 s, root/look: recorded `entered (state, visit 1)`; replayed `entered (state, visit 1)` "
-            "(inputs.times: nothing ≠ 2)",
+            "event 9 at 1.000 s, root/look: recorded `entered`; replayed `entered` (inputs.times: nothing ≠ 2)",
         ),
         (
             ("initial: work", "initial: look"),
-            "event 3 at 0.000 s, root/work: recorded `entered (state, visit 1)`; "
-            "replayed `entered (state, visit 1)` of root/look",
+            "event 3 at 0.000 s, root/work: recorded `entered`; replayed `entered` of root/look",
         ),
         (
             ("b: listen, c: bad", "b: bad, c: bad"),
@@ -101,8 +99,8 @@ def test_the_events_before_the_difference_are_told(tmp_path: Path) -> None:
     report = changed(tmp_path, ("a: look, b: bad", "a: listen, b: bad"))
     assert report.difference is not None
     assert report.difference.before[-2:] == (
-        "6 1.000 s root/work wrote worked_s = 1.0",
-        "7 1.000 s root/work left with a",
+        "6 1.000 s root/work worked_s = 1.0",
+        "7 1.000 s root/work ended with a",
     )
     assert report.difference.explained().count("\n") == 8
 
@@ -124,7 +122,8 @@ def test_a_request_that_the_recording_does_not_know_is_the_difference(tmp_path: 
     recording = recorded(TWICE, tmp_path / "r.mcap")
     report = replay(recording, {**CATALOGUE, "bench.Look": Curious})
     assert str(report.difference) == (
-        "event 6 at 0.000 s, root/one: recorded `wrote seen = 1`; replayed `request bench/look` "
+        "event 6 at 0.000 s, root/one: recorded `seen = 1`; replayed `called bench/look: "
+        '{"delay_s":0.0,"turns":0,"how":"done"}` '
         "(the recording does not contain this request)"
     )
 
@@ -148,7 +147,7 @@ def test_of_a_recording_that_was_cut_off_what_is_there_is_compared(tmp_path: Pat
 
 def test_a_behavior_that_ends_earlier_misses_something(tmp_path: Path) -> None:
     report = changed(tmp_path, ("b: listen, c: bad", "b: good, c: bad"), ("a: listen, ", "a: good, "))
-    assert "transition look: a → listen" in str(report.difference)
+    assert "look —a→ listen" in str(report.difference)
 
 
 def test_parameters_that_a_changed_behavior_does_not_take_are_an_error(tmp_path: Path) -> None:
@@ -354,8 +353,8 @@ async def test_of_a_run_in_real_time_the_branch_that_differs_is_named(tmp_path: 
     report = await asyncio.to_thread(replay, recording, CATALOGUE, behavior=other)
     assert report.difference is not None
     assert report.difference.path == "root/both/left"
-    assert report.difference.recorded == "`transition work: a → listen`"
-    assert report.difference.replayed == "`transition work: a → look`"
+    assert report.difference.recorded == "`work —a→ listen`"
+    assert report.difference.replayed == "`work —a→ look`"
 
 
 def test_a_run_that_was_resumed_is_refused(tmp_path: Path) -> None:

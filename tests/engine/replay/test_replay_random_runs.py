@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from engine.errors import ControlError
 from engine.event import Event
 from engine.replay import replay
-from engine.replay.event_text import plain_event
+from engine.replay.plain_event import plain_event
 from engine.runtime.control import Breakpoint
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions

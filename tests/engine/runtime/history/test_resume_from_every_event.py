@@ -8,7 +8,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.event import Event, NodeEntered, NodeExited
 from engine.journal import decode_event, encode_event
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from tests.engine.run_document import ObservedRun, plan_of
@@ -130,7 +130,7 @@ async def _run(plan: Plan, checkpoint_of: list[Event] | None) -> ObservedRun:
     bus = SkillBus(new_clock())
     events: list[Event] = []
     async with bus:
-        history = RunStateReducer(plan, run="r1").read(checkpoint_of) if checkpoint_of is not None else None
+        history = ResumableState(plan, run="r1").read(checkpoint_of) if checkpoint_of is not None else None
         run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
         run.watch(events.append)
         result = await run.execute()

@@ -172,6 +172,6 @@ def test_a_run_that_starts_inside_a_branch_gives_its_container_the_whole_timeout
     """)
     whole = _whole(plan)
     history = read_history(plan, "r1", whole.events, until_seq=_events_until(whole, "root/two")[-1].seq + 1)
-    assert history.time_s == 2.0
+    assert history.state.time_s == 2.0
     points = start_checkpoint(history, plan, "root/two").points
     assert (points["root"].elapsed_s, points["root/one"].left) == (0.0, "a")

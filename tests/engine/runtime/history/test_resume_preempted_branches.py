@@ -7,8 +7,8 @@ from engine.clock import new_clock, run_virtual
 from engine.event import BranchesPreempted, Event, NodeEntered, NodeExited
 from engine.journal import decode_event, encode_event
 from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import start_checkpoint
-from engine.runtime.history.run_reducer import RunStateReducer
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from tests.engine.run_document import ObservedRun, plan_of, run_document
@@ -39,8 +39,8 @@ def _go_on(plan: Plan, checkpoint: Checkpoint, *, run: str = "r") -> ObservedRun
     return run_virtual(main())
 
 
-def _history(plan: Plan, events: list[Event], *, run: str = "r") -> RunStateReducer:
-    return RunStateReducer(plan, run=run).read([decode_event(encode_event(event)) for event in events])
+def _history(plan: Plan, events: list[Event], *, run: str = "r") -> ResumableState:
+    return ResumableState(plan, run=run).read([decode_event(encode_event(event)) for event in events])
 
 
 def _after(text: str, count: int) -> ObservedRun:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.event import NodeExited, UserdataWritten
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.userdata.userdata import Scope
 from tests.engine.run_document import ObservedRun, plan_of, run_document
 
@@ -139,7 +139,7 @@ def test_a_run_that_is_gone_on_with_has_what_was_shared() -> None:
     plan = plan_of(COUNT.replace("SHARED", "count"))
     events = _count("count").events
     for number in range(3, len(events) - 1):
-        history = RunStateReducer(plan, run="run").read(events[:number])
+        history = ResumableState(plan, run="run").read(events[:number])
         ended = {e.path for e in events[:number] if isinstance(e, NodeExited)}
         written = [e.value for e in events[:number] if isinstance(e, UserdataWritten) and e.path in ended]
         assert history.checkpoint().userdata == {"count": written[-1] if written else 0}

@@ -8,7 +8,7 @@ import tracemalloc
 import pytest
 
 from engine.event import NodeEntered, TransitionTaken, UserdataAppended, UserdataWritten
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.nodes.foreach import MAX_COLLECTED
 from tests.engine.run_document import ObservedRun, plan_of, run_document
@@ -37,7 +37,7 @@ def collecting(rounds: str) -> str:
 
 def lists(text: str, told: ObservedRun) -> list[object]:
     """What the result, the history and the book of a run say that was collected."""
-    history = RunStateReducer(plan_of(text), run="r").read(told.events)
+    history = ResumableState(plan_of(text), run="r").read(told.events)
     book = UserdataHistory(lambda: plan_of(text))
     book.read(told.events)
     return [told.result.userdata["said"], history.userdata()["said"], book.scopes[""].values["said"].value]

@@ -16,7 +16,7 @@ from engine.event import Event, NodeExited, ServiceCalled
 from engine.journal import decode_event, encode_event
 from engine.messages import Message
 from engine.runtime.history.checkpoint import Checkpoint
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.plan import Plan, new_plan
 from engine.runtime.run import Run, RunResult
 from engine.skill import Service
@@ -194,7 +194,7 @@ def test_what_changed_before_a_crash_is_met_after_it() -> None:
     whole = _told(plan)
     for count in range(1, len(whole.events)):
         known = [decode_event(encode_event(event)) for event in whole.events[:count]]
-        rest = _told(plan, checkpoint=RunStateReducer(plan, run="r").read(known).checkpoint())
+        rest = _told(plan, checkpoint=ResumableState(plan, run="r").read(known).checkpoint())
         assert rest.result.outcome == "failure", whole.events[count - 1]
         assert not [left for left in _left(rest, "more") if not left[1]], whole.events[count - 1]
 

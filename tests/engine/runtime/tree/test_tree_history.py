@@ -12,11 +12,12 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from engine.event import Event, NodeEntered, NodeExited, StatusChanged
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node_entry import NodeEntry
 from engine.runtime.plan import Plan
-from engine.runtime.record.tree_event import TreeEvent, tree_event_of
+from engine.runtime.record.tree_event import TreeEvent
 from engine.runtime.tree import Tree, TreeRunner
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome
@@ -48,7 +49,8 @@ def _cut(
 ) -> ObservedRun:
     """Run what is left of a run that was cut between two instants."""
     before = [event for event in told.events if event.time_s <= at_s]
-    marks = [mark._replace(at_s=mark.at_s - at_s) for event in before if (mark := tree_event_of(event)) is not None]
+    done = ResumableState(plan, run="r").read(before).checkpoint().points["root"].done
+    marks = [TreeEvent(path, what, since_s - at_s) for path, what, since_s in done]
     counts: dict[str, int] = {}
     opened: dict[str, float] = {}
     for event in before:

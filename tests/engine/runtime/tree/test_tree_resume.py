@@ -10,7 +10,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.event import Event, NodeEntered, NodeExited
 from engine.journal import decode_event, encode_event
-from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from tests.engine.runtime.tree.run_tree import ObservedRun, tree_plan
@@ -178,7 +178,7 @@ def _run(plan: Plan, known: list[Event] | None) -> ObservedRun:
 
     async def main() -> ObservedRun:
         async with SkillBus(new_clock()) as bus:
-            history = RunStateReducer(plan, run="r1").read(known) if known is not None else None
+            history = ResumableState(plan, run="r1").read(known) if known is not None else None
             run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
             run.watch(events.append)
             return ObservedRun(await run.execute(), tuple(events))

@@ -1,4 +1,4 @@
-"""Short text of an event, and the differences between two events."""
+"""What a replay must reproduce of an event, and the differences between two events."""
 
 from __future__ import annotations
 
@@ -9,79 +9,12 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.event import (
-    BehaviorChanged,
-    BranchesPreempted,
-    Event,
-    GoalFinished,
-    GoalSent,
-    MessageLogged,
-    MessageReceived,
-    NodeDiverted,
-    NodeEntered,
-    NodeExited,
-    OperatorCommanded,
-    RunEnded,
-    RunStarted,
-    RunSteppedBack,
-    ServiceAnswered,
-    ServiceCalled,
-    TransitionTaken,
-    UndoEnded,
-    UndoStarted,
-    UserdataAppended,
-    UserdataWritten,
-)
+from engine.event import BehaviorChanged, Event, MessageLogged, RunStarted
 from engine.journal import encode_event
 
 _LONGEST = 60
 _FILE_PLACE = re.compile(r"[^\s'\"`,;()]*\.(?:py|ya?ml|json):\d+(?::\d+)?(?:: )?")
 _MISSING = object()
-
-
-def event_text(event: Event) -> str:
-    """Return a short text without the path."""
-    match event:
-        case RunStarted():
-            return f"start of {event.behavior}"
-        case NodeEntered():
-            return f"entered ({event.kind}, visit {event.visit})"
-        case NodeExited():
-            how = event.outcome or ("preempted" if event.preempted else "error")
-            return f"left with {how}"
-        case TransitionTaken():
-            return f"transition {event.source}: {event.outcome or 'left'} → {event.target}"
-        case NodeDiverted():
-            return f"left for {event.target} by {event.by}"
-        case BranchesPreempted():
-            return event.condition
-        case GoalSent() | ServiceCalled():
-            return f"request {event.address}"
-        case GoalFinished():
-            return f"goal {event.status}"
-        case ServiceAnswered():
-            return "answer" if event.cause is None else f"no answer: {event.cause.message}"
-        case MessageReceived():
-            return f"message of {event.topic}"
-        case UserdataWritten():
-            return f"wrote {event.key} = {_short(event.value)}"
-        case UserdataAppended():
-            return f"appended {_short(event.value)} to {event.key}"
-        case MessageLogged():
-            return f"{event.level}: {event.message}"
-        case OperatorCommanded():
-            return f"command {event.command}"
-        case UndoStarted():
-            return f"undoes visit {event.undoes}"
-        case UndoEnded():
-            how = "preempted" if event.preempted else "failed" if event.cause is not None else "done"
-            return f"undo of visit {event.undoes} {how}"
-        case RunSteppedBack():
-            return f"stepped back from {event.source}" if event.cause is None else "could not step back"
-        case RunEnded():
-            return f"end of the run: {event.status} {event.outcome or ''}".rstrip()
-        case _:
-            return _tag(event)
 
 
 def plain_event(event: Event) -> dict[str, Any]:
@@ -128,10 +61,6 @@ def _without_places(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_places(each) for each in cast("list[Any]", value)]
     return value
-
-
-def _tag(event: Event) -> str:
-    return str(event.__struct_config__.tag).replace("_", " ")
 
 
 def _short(value: object) -> str:

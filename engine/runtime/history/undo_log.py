@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 import msgspec
 
@@ -27,43 +27,12 @@ from engine.event import (
     UserdataWritten,
 )
 from engine.node_path import is_inside
-from engine.state import ActivationRecord, RequestRecord
+from engine.runtime.history.run_state_part import RunStatePart
+from engine.runtime.record.leaf_activation import LeafActivation
+from engine.state import RequestRecord
 
 _LEAVES = ("state", "substitute")
 """The kinds of nodes without children, as named in events."""
-
-
-@dataclass(kw_only=True)
-class LeafActivation:
-    """One activation of a state: its entry event, inputs, requests and outputs."""
-
-    path: str
-    visit: int
-    seq: int
-    shown: dict[str, object]
-    """Parameters and inputs, as plain data."""
-    outcome: str = ""
-    requests: dict[str, RequestRecord] = field(default_factory=dict[str, RequestRecord])
-    """By the name of the goal or call."""
-    replaced: bool = False
-    """Whether a hot change has replaced its class since."""
-    written: dict[str, object] = field(default_factory=dict[str, object])
-    """The values it wrote last, by the key of its container."""
-
-    def record(self, *, inputs: Iterable[str], outputs: Mapping[str, str]) -> ActivationRecord:
-        """Return the activation as its state class expects it.
-
-        Args:
-            inputs: The input keys of the class.
-            outputs: The container keys that its output keys are written to.
-        """
-        own = {target: key for key, target in outputs.items()}
-        return ActivationRecord(
-            inputs={key: self.shown[key] for key in inputs if key in self.shown},
-            outcome=self.outcome,
-            outputs={own.get(key, key): value for key, value in self.written.items()},
-            requests=tuple(self.requests.values()),
-        )
 
 
 @dataclass(frozen=True)
@@ -74,8 +43,8 @@ class _Write:
     key: str
 
 
-class UndoLog:
-    """Built from the effective events in order: `engine.runtime.history.resume.effective_events`."""
+class UndoLog(RunStatePart):
+    """Built from the effective events in order: `engine.runtime.history.effective_events`."""
 
     def __init__(self) -> None:
         self.seq = 0
@@ -97,35 +66,39 @@ class UndoLog:
         if event.seq <= self.seq:
             return
         self.seq = event.seq
-        match event:
-            case NodeEntered():
-                self._enter(event)
-            case NodeExited():
-                if (activation := self._done.get((event.path, event.visit))) is not None and not event.preempted:
-                    activation.outcome = event.outcome
-            case TransitionTaken():
-                self._transitions.setdefault(event.path, []).append(event)
-            case UserdataWritten() | UserdataAppended():
-                self._write(event)
-            case GoalSent(goal=name) | ServiceCalled(call=name):
-                self._send(event, name)
-            case GoalFinished():
-                self._end(event.path, event.goal, event.status, event.result)
-            case ServiceAnswered():
-                self._end(event.path, event.call, "answered" if event.cause is None else "failed", event.result)
-            case UndoStarted():
-                self._undoing.add(event.path)
-            case UndoEnded():
-                self._undoing.discard(event.path)
-                if event.cause is None and not event.preempted:
-                    self._done.pop((event.path, event.undoes), None)
-            case BehaviorChanged():
-                for activation in self._done.values():
-                    activation.replaced = activation.replaced or activation.path in event.replaced
-            case RunSteppedBack() if event.cause is None:
-                self._step_back(event)
-            case _:
-                pass
+        super().take(event)
+
+    def node_exited(self, event: NodeExited) -> None:
+        """Keep the outcome of a state."""
+        if (activation := self._done.get((event.path, event.visit))) is not None and not event.preempted:
+            activation.outcome = event.outcome
+
+    def transition_taken(self, event: TransitionTaken) -> None:
+        """Keep the transition."""
+        self._transitions.setdefault(event.path, []).append(event)
+
+    def goal_finished(self, event: GoalFinished) -> None:
+        """Keep how a goal ended."""
+        self._end(event.path, event.goal, event.status, event.result)
+
+    def call_answered(self, event: ServiceAnswered) -> None:
+        """Keep how a call ended."""
+        self._end(event.path, event.call, "answered" if event.cause is None else "failed", event.result)
+
+    def undo_started(self, event: UndoStarted) -> None:
+        """Keep its requests apart from those of the activation."""
+        self._undoing.add(event.path)
+
+    def undo_ended(self, event: UndoEnded) -> None:
+        """Forget an activation that is undone."""
+        self._undoing.discard(event.path)
+        if event.cause is None and not event.preempted:
+            self._done.pop((event.path, event.undoes), None)
+
+    def behavior_changed(self, event: BehaviorChanged) -> None:
+        """Mark the activations of states whose class was replaced."""
+        for activation in self._done.values():
+            activation.replaced = activation.replaced or activation.path in event.replaced
 
     def since(self, path: str) -> int:
         """Return the event with which the run reached a node: a transition, or the entry of its container."""
@@ -174,7 +147,8 @@ class UndoLog:
         for (scope, key), writer in later.items():
             yield scope, key, writer
 
-    def _enter(self, event: NodeEntered) -> None:
+    def node_entered(self, event: NodeEntered) -> None:
+        """Begin an activation."""
         if event.kind in _LEAVES:
             activation = LeafActivation(path=event.path, visit=event.visit, seq=event.seq, shown=event.inputs)
             self._done[event.path, event.visit] = self._last[event.path] = activation
@@ -182,12 +156,14 @@ class UndoLog:
             self._entered[event.path] = event.seq
             self._transitions.pop(event.path, None)
 
-    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
+    def value_written(self, event: UserdataWritten | UserdataAppended) -> None:
+        """Keep what was written where."""
         self._writes.append(_Write(event.seq, event.path, event.scope, event.key))
         if (activation := self._last.get(event.path)) is not None and isinstance(event, UserdataWritten):
             activation.written[event.key] = event.value
 
-    def _send(self, event: GoalSent | ServiceCalled, name: str) -> None:
+    def request_sent(self, event: GoalSent | ServiceCalled, name: str) -> None:
+        """Keep a request of the activation."""
         activation = self._last.get(event.path)
         if activation is not None and event.path not in self._undoing:
             activation.requests[name] = RequestRecord(address=event.address, request=event.request)
@@ -197,7 +173,10 @@ class UndoLog:
         if activation is not None and (sent := activation.requests.get(name)) is not None:
             activation.requests[name] = msgspec.structs.replace(sent, status=status, result=result)
 
-    def _step_back(self, event: RunSteppedBack) -> None:
+    def run_stepped_back(self, event: RunSteppedBack) -> None:
+        """Forget what was undone."""
+        if event.cause is not None:
+            return
         container = event.path.rpartition("/")[0]
         if event.source != event.path and self._transitions.get(container):
             self._transitions[container].pop()

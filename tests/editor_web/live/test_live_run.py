@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from editor_web.live.event_log import CauseLine, log_line
-from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive, PlanLive
+from editor_web.live.live_run import LOG_LINES, LiveRun
 from engine.event import (
     AnyEvent,
     Cause,
@@ -25,6 +25,7 @@ from engine.event import (
     UndoEnded,
     UndoStarted,
 )
+from engine.runtime.history.run_state import NodeLive, PlanLive
 
 
 def entered(seq: int, path: str, visit: int = 1, time_s: float = 0.0) -> Event:
@@ -49,13 +50,17 @@ def folded(*events: Event) -> LiveRun:
 def test_two_branches_are_active_at_the_same_time() -> None:
     """Concurrency shown truthfully."""
     live = folded(entered(1, "root"), entered(2, "root/left"), entered(3, "root/right"))
-    assert {path for path, node in live.nodes.items() if node.status == "active"} == {"root", "root/left", "root/right"}
+    assert {path for path, node in live.state.nodes.items() if node.status == "active"} == {
+        "root",
+        "root/left",
+        "root/right",
+    }
 
 
 def test_a_visit_shorter_than_a_frame_is_counted() -> None:
     """The counter is what the page lights a blink by."""
     live = folded(entered(1, "root/a", time_s=1.0), exited(2, "root/a", time_s=1.001))
-    assert live.nodes["root/a"] == NodeLive(
+    assert live.state.nodes["root/a"] == NodeLive(
         status="done", visits=1, outcome="done", entered_s=1.0, duration_s=1.001 - 1.0
     )
 
@@ -68,13 +73,13 @@ def test_a_failure_is_told_apart_from_another_outcome() -> None:
         exited(3, "root/c", "empty"),
         NodeExited(seq=4, time_s=0.0, path="root/d", visit=1, outcome="preempted", preempted=True),
     )
-    assert {path: node.status for path, node in live.nodes.items()} == {
+    assert {path: node.status for path, node in live.state.nodes.items()} == {
         "root/a": "failed",
         "root/b": "failed",
         "root/c": "done",
         "root/d": "stopped",
     }
-    assert live.nodes["root/a"].cause == "nothing held"
+    assert live.state.nodes["root/a"].cause == "nothing held"
 
 
 def test_what_lies_inside_a_container_starts_afresh_with_it() -> None:
@@ -86,31 +91,31 @@ def test_what_lies_inside_a_container_starts_afresh_with_it() -> None:
         entered(4, "root/ab"),
         entered(5, "root/a", visit=2),
     )
-    assert live.nodes["root/a/x"] == NodeLive(visits=1)
-    assert live.nodes["root/ab"].status == "active"
+    assert live.state.nodes["root/a/x"] == NodeLive(visits=1)
+    assert live.state.nodes["root/ab"].status == "active"
 
 
 def test_the_arrow_taken_last_is_known_until_the_machine_starts_anew() -> None:
     """Highlighted in the graph."""
     arrow = TransitionTaken(seq=2, time_s=0.0, path="root", source="a", outcome="done", target="b")
     live = folded(entered(1, "root"), arrow)
-    assert live.nodes["root"].followed == "a|done"
+    assert live.state.nodes["root"].followed == "a|done"
     live.apply(entered(3, "root", visit=2))
-    assert live.nodes["root"].followed == ""
+    assert live.state.nodes["root"].followed == ""
 
 
 def test_nothing_is_left_active_after_the_end() -> None:
     """Also when the end came without exits."""
     live = folded(entered(1, "root"), entered(2, "root/a"), RunEnded(seq=3, time_s=2.0, status="errored"))
-    assert {node.status for node in live.nodes.values()} == {"stopped"}
-    assert live.ended
+    assert {node.status for node in live.state.nodes.values()} == {"stopped"}
+    assert live.state.ended
 
 
 def test_an_event_that_was_folded_already_changes_nothing() -> None:
     """A journal and the stream may overlap."""
     live = folded(entered(1, "root"), exited(2, "root"))
     assert live.apply(entered(1, "root")) is None
-    assert live.nodes["root"].status == "done"
+    assert live.state.nodes["root"].status == "done"
 
 
 def test_a_way_that_was_planned_belongs_to_the_visit_that_planned_it() -> None:
@@ -125,13 +130,13 @@ def test_a_way_that_was_planned_belongs_to_the_visit_that_planned_it() -> None:
         "planning_s": 0.01,
     }
     live = folded(entered(1, "root/plan"), arrived(2, {"joints": [1.0]}))
-    assert live.nodes["root/plan"].plan is None
+    assert live.state.nodes["root/plan"].plan is None
     live.apply(arrived(3, plan))
-    assert live.nodes["root/plan"].plan == PlanLive(
+    assert live.state.nodes["root/plan"].plan == PlanLive(
         robot="left", duration_s=2.5, length_m=1.5, found_by="fast", planning_s=0.01
     )
     live.apply(entered(4, "root/plan", visit=2))
-    assert live.nodes["root/plan"].plan is None
+    assert live.state.nodes["root/plan"].plan is None
 
 
 def test_the_log_is_bounded() -> None:
@@ -176,17 +181,17 @@ def test_parts_of_a_tree_show_their_status() -> None:
     live = LiveRun("r1")
     for seq, status in enumerate(("running", "success"), 1):
         live.apply(StatusChanged(seq=seq, time_s=float(seq), path="root/tree/sequence", status=status))
-    node = live.nodes["root/tree/sequence"]
+    node = live.state.nodes["root/tree/sequence"]
     assert (node.status, node.visits, node.duration_s) == ("done", 1, 1.0)
 
 
 def test_a_leaf_that_has_ended_stands_as_it_did_until_the_tree_reads_that() -> None:
     """A tick that has not come to it is no further visit."""
     live = folded(entered(1, "root/tree/a"), exited(2, "root/tree/a"))
-    before = live.nodes["root/tree/a"]
+    before = live.state.nodes["root/tree/a"]
     for seq, status in enumerate(("running", "success"), 3):
         live.apply(StatusChanged(seq=seq, time_s=float(seq), path="root/tree/a", status=status))
-        assert live.nodes["root/tree/a"] == before
+        assert live.state.nodes["root/tree/a"] == before
 
 
 def test_what_a_step_back_undoes_is_active_and_then_as_if_it_had_not_been_entered() -> None:
@@ -201,12 +206,12 @@ def test_what_a_step_back_undoes_is_active_and_then_as_if_it_had_not_been_entere
         TransitionTaken(seq=7, time_s=0.0, path="root", source="b", outcome="done", target="c"),
         UndoStarted(seq=8, time_s=3.0, path="root/b", visit=2, undoes=1),
     )
-    assert live.nodes["root/b"] == NodeLive(status="active", visits=2, entered_s=3.0)
+    assert live.state.nodes["root/b"] == NodeLive(status="active", visits=2, entered_s=3.0)
     live.apply(UndoEnded(seq=9, time_s=4.0, path="root/b", visit=2, undoes=1))
     live.apply(RunSteppedBack(seq=10, time_s=4.0, path="root/b", source="root/c"))
-    assert live.nodes["root/b"] == NodeLive(visits=2)
-    assert live.nodes["root"].followed == ""
-    assert live.nodes["root/a"].status == "done"
+    assert live.state.nodes["root/b"] == NodeLive(visits=2)
+    assert live.state.nodes["root"].followed == ""
+    assert live.state.nodes["root/a"].status == "done"
 
 
 def test_an_undo_that_failed_is_shown_so_with_its_reason() -> None:
@@ -217,4 +222,4 @@ def test_an_undo_that_failed_is_shown_so_with_its_reason() -> None:
         UndoEnded(seq=2, time_s=4.0, path="root/b", visit=2, undoes=1, cause=cause),
         RunSteppedBack(seq=3, time_s=4.0, path="root/c", source="root/c", cause=cause),
     )
-    assert (live.nodes["root/b"].status, live.nodes["root/b"].cause) == ("failed", "the tray is gone")
+    assert (live.state.nodes["root/b"].status, live.state.nodes["root/b"].cause) == ("failed", "the tray is gone")
