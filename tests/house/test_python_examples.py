@@ -24,7 +24,7 @@ def weighing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "weighing.py").write_text(MODULE, encoding="utf-8")
     (tmp_path / "flexcell.yaml").write_text(PROJECT_FILE, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     monkeypatch.delitem(sys.modules, "weighing", raising=False)
 
 
