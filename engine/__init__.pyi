@@ -1,4 +1,4 @@
-"""The face of the engine for type checkers; `tests/house/test_python_face.py` compares it with what is imported."""
+# The face of the engine for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
 from engine.bus import SkillBus
 from engine.cell.open_cell import OpenCell

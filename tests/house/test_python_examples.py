@@ -29,7 +29,7 @@ def weighing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _executed(example: str, names: dict[str, Any]) -> None:
-    exec(compile(example, str(Path("page.py").resolve()), "exec"), names)  # noqa: S102 - our own page
+    exec(compile(example, str(Path("page.py").resolve()), "exec"), names)
 
 
 @pytest.mark.usefixtures("weighing")

@@ -42,7 +42,7 @@ def test_a_name_is_what_its_stub_says(name: str) -> None:
 
 def test_another_name_is_refused_as_by_every_module() -> None:
     with pytest.raises(ImportError, match="cannot import name 'Porject' from 'engine'"):
-        exec("from engine import Porject")  # noqa: S102 - as a user mistypes it
+        exec("from engine import Porject")
 
 
 @pytest.mark.parametrize(
