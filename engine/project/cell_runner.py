@@ -104,7 +104,7 @@ class CellRunner:
             run_id,
             behavior=plan.name,
             document=plan.document_hash,
-            started_unix_s=time.time(),
+            started_unix_s=started_unix_s,
             origin=self._origin(request, parameters, inputs) if self._keeps_events else None,
         )
         faults = self._faults(request.faults, seed=request.seed)
