@@ -33,11 +33,7 @@ INNER_FACES = {
     "engine.runtime.run_options": "as above",
 }
 """What the wings may import from inside a room, with the reason."""
-STILL = {
-    "editor_web/http_bodies/document_bodies.py": {"engine.document.yaml_source"},
-    "robots/sim/scene/scene_builder.py": {"engine.document.cell", "engine.document.cell_perception"},
-    "robots/sim/scene/sim_scene.py": {"engine.document.cell_perception"},
-}
+STILL = {"editor_web/http_bodies/document_bodies.py": {"engine.document.yaml_source"}}
 """Files that still reach into a room whose face offers what they need, or should."""
 
 
