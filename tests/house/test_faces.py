@@ -1,4 +1,4 @@
-"""The wings take names from the faces of the engine's rooms: what a room keeps inside it may change."""
+"""States and robots take names from the faces of the engine's rooms: what a room keeps inside it may change."""
 
 from __future__ import annotations
 
@@ -9,32 +9,15 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-WINGS = ("states", "robots", "editor_web")
+WINGS = ("states", "robots")
+"""The dashboard is not among them: the bodies of its requests and answers are the structs inside the rooms."""
 SUBJECTS = ("host", "messages", "skills")
 """Rooms whose files are faces themselves, one for each subject: nobody loads all of them."""
 INNER_FACES = {
-    "engine.bus.json_bus": "access by name with JSON, for pages and commands; runs do without",
-    "engine.cell.cell_connection": "the room has no face: a cell is opened by `engine.project`",
-    "engine.cell.robot_models": "as above; what the package that knows the models offers",
-    "engine.editing.cell_references": "asked by one route",
-    "engine.editing.catalogue": "asked by one route",
-    "engine.editing.document_diff": "asked by two routes",
-    "engine.editing.fixes": "a room of its own inside editing",
-    "engine.editing.references": "asked by one route",
-    "engine.editing.target_checks": "has a process of its own",
-    "engine.project.bus_inspector": "the composition root has no face: it would load all that executes and edits",
-    "engine.project.run_request": "as above",
-    "engine.recording.indexed_recording": "reads past recordings, which runs do not",
-    "engine.runtime.control": "the face of the room inside `runtime`",
-    "engine.runtime.history.hot_change": "`runtime` has no face: each of its rooms is loaded when it is needed",
-    "engine.runtime.history.resume": "as above",
-    "engine.runtime.history.userdata_history": "as above",
-    "engine.runtime.record.nonfinite": "as above",
-    "engine.runtime.run_options": "as above",
+    "engine.cell.robot_models": "the room has no face: a cell is opened by `engine.project`",
+    "engine.runtime.record.nonfinite": "`runtime` has no face: each of its rooms is loaded when it is needed",
 }
 """What the wings may import from inside a room, with the reason."""
-STILL = {"editor_web/http_bodies/document_bodies.py": {"engine.document.yaml_source"}}
-"""Files that still reach into a room whose face offers what they need, or should."""
 
 
 def _inner_modules(path: Path) -> Iterator[str]:
@@ -58,9 +41,9 @@ def _reached() -> dict[str, set[str]]:
     return {file: modules for file, modules in found.items() if modules}
 
 
-def test_the_wings_import_from_faces() -> None:
+def test_states_and_robots_import_from_faces() -> None:
     """Export a name from the room's `__init__` with `__all__` instead of reaching for its file."""
-    assert _reached() == STILL
+    assert _reached() == {}
 
 
 @pytest.mark.parametrize("module", INNER_FACES)
