@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
-import time
 from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
@@ -16,9 +15,11 @@ from editor_web.server import dashboard
 from engine.cell.open_cell import OpenCell
 from engine.cli.inputs import read_behavior, read_cell
 from engine.journal import Journal
-from engine.project.run_factory import new_origin, new_run
+from engine.project.cell_runner import CellRunner
+from engine.project.run_recorder import open_recorder
+from engine.project.run_request import RunRequest
 from engine.project.session import Session
-from engine.recording import RecordingOptions, RunRecording, collect_documents
+from engine.recording import RecordingOptions, collect_documents
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
@@ -52,7 +53,7 @@ async def busy_cell(controller: ControllerName, *, folder: Path, browser: bool =
     order = RecordingOptions(path=folder / "run.mcap", documents=collect_documents(behavior, document))
     with Journal.open(folder) as journal:
         async with (
-            RunRecording.open(order, inline=False) as recording,
+            open_recorder(order, inline=False) as recorder,
             OpenCell(document, store_path=str(folder / "store.db")) as cell,
             Session(cell, project=_ROOT, catalogue=catalogue, journal=journal) as session,
             dashboard(session, token_file=folder / "tokens", shadows=browser) as page,
@@ -60,17 +61,18 @@ async def busy_cell(controller: ControllerName, *, folder: Path, browser: bool =
             assert isinstance(cell.world, SimWorld)
             assert isinstance(cell.world.host, ProcessHost)
             viewer = await _viewer(page.url, page.token, browser=browser)
-            run = new_run(
-                new_plan(behavior, catalogue),
-                cell=cell,
-                journal=journal,
-                parameters={"controller": controller},
-                origin=new_origin(behavior, cell=cell),
+            runner = CellRunner(cell, journal, recorder=recorder)
+            prepared = await runner.start(
+                RunRequest(
+                    plan=new_plan(behavior, catalogue),
+                    parameters={"controller": controller},
+                    documents=order.documents,
+                )
             )
-            recording.attach(run, cell.bus, started_unix_s=time.time())
+            run = prepared.run
             busy = BusyCell(cell=cell, host=cell.world.host, run=run, viewer_pid=viewer.pid, recording=order.path)
             run.watch(lambda event: setattr(busy, "events", event.seq))
-            running = asyncio.create_task(run.execute(), name="the behavior")
+            running = asyncio.create_task(prepared.execute(), name="the behavior")
             try:
                 yield busy
             finally:

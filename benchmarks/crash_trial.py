@@ -23,11 +23,14 @@ from engine.clock import run_virtual
 from engine.document.cell import Cell
 from engine.event import Event, NodeEntered, NodeExited
 from engine.journal import Journal, list_runs
-from engine.project.run_factory import ResumePlan, new_origin, new_run, plan_resume, resume_run
+from engine.project.cell_runner import CellRunner
+from engine.project.resume_plan import ResumePlan, plan_resume
+from engine.project.run_request import RunRequest
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.runtime.history.resume import ResumeDecisionRequired
 from engine.runtime.plan import new_plan
 from engine.runtime.run import RunResult
+from engine.runtime.run_options import RunOptions
 
 SEED = 3
 
@@ -115,23 +118,17 @@ def _engine(work: Callable[[], None]) -> bool:
 
 
 def _begin(subject: Subject, folder: Path, point: CrashPoint | None) -> None:
-    behavior = subject.behavior()
-    plan = new_plan(behavior, subject.catalogue())
+    plan = new_plan(subject.behavior(), subject.catalogue())
     counter = Counter(point)
 
     async def main() -> RunResult:
         with Journal.open(folder, inline=True) as journal:
             async with _cell(subject.cell(), folder) as cell:
                 subject.install(cell.bus, folder / "effects")
-                run = new_run(
-                    plan,
-                    cell=cell,
-                    journal=CrashingJournal(journal, counter),
-                    seed=SEED,
-                    origin=new_origin(behavior, cell=cell),
-                )
-                subject.operate(run, ())
-                return await run.execute()
+                runner = CellRunner(cell, CrashingJournal(journal, counter))
+                prepared = await runner.start(RunRequest(plan=plan, seed=SEED))
+                subject.operate(prepared.run, ())
+                return await prepared.execute()
 
     _write_end(folder, run_virtual(main()), counter)
 
@@ -157,15 +154,10 @@ def _go_on(subject: Subject, folder: Path, point: CrashPoint | None) -> None:
         with Journal.open(folder, inline=True) as journal:
             async with _cell(subject.cell(), folder) as cell:
                 subject.install(cell.bus, folder / "effects")
-                run = await resume_run(
-                    resumption,
-                    cell=cell,
-                    journal=CrashingJournal(journal, counter),
-                    catalogue=catalogue,
-                    answers=answers,
-                )
-                subject.operate(run, found.effective)
-                return await run.execute()
+                runner = CellRunner(cell, CrashingJournal(journal, counter))
+                prepared = await runner.resume(resumption, supervision=RunOptions())
+                subject.operate(prepared.run, found.effective)
+                return await prepared.execute()
 
     _write_end(folder, run_virtual(main()), counter)
 

@@ -1,12 +1,16 @@
-"""Writes docs/reference/ from the code: commands, states, findings. A test compares the files."""
+"""Writes docs/reference/ from the code: commands, states, findings, names for scripts. A test compares the files."""
 
 from __future__ import annotations
 
+import dataclasses
+import inspect
+import re
 from pathlib import Path
 from typing import Any
 
 from typer.main import get_command
 
+import engine
 from engine.check import CODES
 from engine.cli.main import app
 from engine.cli.states import default_text, description, type_text
@@ -18,7 +22,7 @@ FOLDER = Path(__file__).parent / "reference"
 
 def pages() -> dict[str, str]:
     """Return the text of every page by file name."""
-    return {"cli.md": _commands(), "states.md": _states(), "findings.md": _findings()}
+    return {"cli.md": _commands(), "states.md": _states(), "findings.md": _findings(), "python.md": _python()}
 
 
 def _commands() -> str:
@@ -81,6 +85,57 @@ def _findings() -> str:
         f"| [`{code}`](../findings/{code}.md) | {severity} | {meaning} |" for code, (severity, meaning) in CODES.items()
     ]
     return "\n".join(lines) + "\n"
+
+
+def _python() -> str:
+    lines = ["# The face of the engine for Python", "", "Generated from the code by `docs/make_reference.py`.", ""]
+    lines += ["`from engine import Project`; [use it from Python](../how-to/use-from-python.md) shows how.", ""]
+    for name in engine.__all__:
+        found: Any = getattr(engine, name)
+        lines += [f"## `{name}`", "", f"From `{found.__module__}`. {_summary(found)}", ""]
+        fields = _fields(found)
+        if fields:
+            lines += [f"Fields: {', '.join(f'`{each}`' for each in fields)}.", ""]
+        members = _members(found) if isinstance(found, type) else []
+        if members:
+            lines += ["| member | meaning |", "|---|---|", *members, ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _fields(kind: Any) -> tuple[str, ...]:
+    if dataclasses.is_dataclass(kind):
+        return tuple(each.name for each in dataclasses.fields(kind) if each.repr)
+    return getattr(kind, "__struct_fields__", ())
+
+
+def _members(kind: type) -> list[str]:
+    """Return a row for each public member that the class itself documents."""
+    rows: list[str] = []
+    for name, member in vars(kind).items():
+        function: Any = getattr(member, "fget", None) or getattr(member, "__func__", member)
+        if name.startswith("_") or not inspect.isfunction(function) or not function.__doc__:
+            continue
+        written = name if isinstance(member, property) else f"{name}({', '.join(_arguments(function))})"
+        rows.append(f"| `{written}` | {_summary(function)} |")
+    return rows
+
+
+def _arguments(function: Any) -> list[str]:
+    """Return the names of the arguments, `*` before those that are given by name."""
+    found: list[str] = []
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.name in ("self", "cls"):
+            continue
+        if parameter.kind is parameter.KEYWORD_ONLY and "*" not in found:
+            found.append("*")
+        found.append(f"*{parameter.name}" if parameter.kind is parameter.VAR_POSITIONAL else parameter.name)
+    return found
+
+
+def _summary(documented: Any) -> str:
+    """Return the first paragraph of a docstring in one line."""
+    paragraph = (inspect.getdoc(documented) or "").partition("\n\n")[0]
+    return re.sub(r"\s+", " ", paragraph).replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
 
-from engine.document.project import Project, find_project
+from engine.document.project_file import ProjectFile, find_project
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import RegistryError
 from engine.host.isolated_loading import LoadFailure, load_isolated
@@ -110,7 +110,7 @@ class _Loading:
         for name, state in offered.items():
             self._add(name, state, point.value)
 
-    def add_project(self, project: Project) -> None:
+    def add_project(self, project: ProjectFile) -> None:
         folder = str(project.folder)
         if folder not in sys.path:
             # At the end: a module of the project must not shadow a library that is imported later.

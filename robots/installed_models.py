@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind
-from engine.document.cell import Cell
+from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.model.mechanics.link_names import link_names
 from robots.model.registry import model_of_entry, robot_names, tool_names

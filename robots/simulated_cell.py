@@ -6,7 +6,7 @@ from functools import partial
 
 from engine.bus import SkillBus
 from engine.clock import Clock
-from engine.document.cell import Cell
+from engine.document import Cell
 from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
 from robots.arm.services.output_services import OutputServices

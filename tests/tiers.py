@@ -22,6 +22,7 @@ KINDS = {
     "robots.sim": "physics",
     # Cells name their world; these open whatever is named.
     "engine.cell.open_cell": "physics",
+    "engine.project.cell_runner": "physics",
     "engine.project.session": "physics",
 }
 FOLDERS = {
@@ -32,7 +33,12 @@ FOLDERS = {
     "tests/robots/control": "physics",
 }
 # They call what starts npm and other tools.
-FILES = {"tests/editor_web/test_frontend.py": "process", "tests/house/test_audit.py": "process"}
+FILES = {
+    "tests/editor_web/test_frontend.py": "process",
+    "tests/house/test_audit.py": "process",
+    # Its last example opens the cell of the two Pandas.
+    "tests/house/test_python_examples.py": "physics",
+}
 
 
 # In the words of Playwright.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from engine.bus.action import GoalEnd
+from engine.bus import GoalEnd
 from engine.cause_chain import describe_cause
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from editor_web.teaching.goal_failure_text import goal_failure_text
 from editor_web.teaching.teaching_messages import JogStatus, RefusedFrame, StartJog
-from engine.bus.action import GoalStatus
+from engine.bus import GoalStatus
 from engine.bus.json_bus import JsonBus
 from engine.errors import FlexcellError
 

@@ -8,7 +8,7 @@ from collections import deque
 from msgspec.structs import replace
 
 from editor_web.telemetry.data_frames import BusMetricsFrame, LeaseMetrics, TopicMetrics
-from engine.bus.lease import Lease
+from engine.bus import Lease
 from engine.project.bus_inspector import BusInspector, GoalInfo, TopicStatistics
 
 WINDOW_S = 4.0

@@ -158,6 +158,7 @@ class OpenCell:
 
     async def _open(self) -> None:
         if self.document is None:
+            self._stack.push_async_callback(self._close_bus)
             return
         await self._open_store(self.document)
         if self.relay is not None:

@@ -19,7 +19,6 @@ from engine.bus import GoalStatus
 from engine.bus.json_bus import JsonBus, LocalJsonBus
 from engine.bus.remote_bus import RemoteJsonBus
 from engine.cause_chain import describe_cause
-from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_json
 from engine.document.cell import load_cell
@@ -191,7 +190,10 @@ async def _bus(cell: Path | None, server: Path) -> AsyncGenerator[JsonBus]:
         async with RemoteJsonBus.connect(server) as remote:
             yield remote
     else:
-        async with OpenCell(load_cell(cell)) as opened:
+        # Imported here: a command to a server needs nothing that executes runs.
+        from engine.project.cell_runner import open_cell
+
+        async with open_cell(load_cell(cell)) as opened:
             yield LocalJsonBus(opened.bus)
 
 

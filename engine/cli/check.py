@@ -29,7 +29,7 @@ from engine.cli.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import SECTIONS, load_entries
-from engine.document.project import PROJECT_FILE, load_project
+from engine.document.project_file import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import Catalogue
 from engine.document.text_recovery import load_recovering

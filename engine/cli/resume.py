@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -11,27 +11,24 @@ from typing import Annotated, Literal
 import typer
 
 from engine.authoring.python_file import load_python_behavior
-from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_plan, reload_plan
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.output_file import prepare, write
-from engine.cli.run_execution import ExecutionResult, RunSetup, execute_run
+from engine.cli.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.cli.run_report import print_json, print_result
 from engine.document.cell import Cell, load_cell
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import ControlError
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.journal import Journal, NullJournal, encode_event_log
-from engine.project.run_factory import ResumePlan, plan_resume, require_simulation, resume_run
+from engine.journal import encode_event_log
+from engine.project.cell_runner import CellRunner, CellSetup
+from engine.project.resume_plan import ResumePlan, plan_resume
+from engine.project.run_request import require_simulation
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.runtime.history.resume import RERUN, ResumeDecisionRequired
-from engine.runtime.plan import Catalogue
-from engine.runtime.record.skill_port import SkillPort
-from engine.runtime.run import Run
-from engine.runtime.run_options import RunOptions
 
 
 def resume(
@@ -112,14 +109,18 @@ def resume(
     if not quiet and not json:
         _print_resumption(resumption)
     supervision = options.supervision(file, autonomy=resumption.autonomy)
+    virtual = (clock or found.origin.clock) == "virtual"
     setup = RunSetup(
-        make=partial(_make, resumption, catalogue, answers, supervision),
-        cell=cell_spec,
-        seed=found.origin.seed,
-        journal=journal,
-        store=found.origin.store,
+        opened=CellSetup(
+            cell=cell_spec,
+            seed=found.origin.seed,
+            store=found.origin.store,
+            relay=new_relay(cell_spec, virtual=virtual),
+            journal=journal if journal != NO_JOURNAL else None,
+        ),
+        start=partial(CellRunner.resume, resumption=resumption, supervision=supervision),
         timeout_s=timeout,
-        virtual=(clock or found.origin.clock) == "virtual",
+        virtual=virtual,
         quiet=quiet or json,
         supervision=supervision,
         reload=partial(reload_plan, file, catalogue, cell=cell_spec, substitutes=found.substitutes)
@@ -137,30 +138,6 @@ def resume(
             write(events, encoded)
 
     raise typer.Exit(execute_run(setup, report=report))
-
-
-async def _make(
-    resumption: ResumePlan,
-    catalogue: Catalogue,
-    answers: Mapping[str, str],
-    supervision: RunOptions,
-    cell: OpenCell,
-    journal: Journal | NullJournal,
-    skills: SkillPort | None,
-) -> Run:
-    if isinstance(journal, NullJournal):
-        raise ControlError(
-            "a run can only be resumed in its journal", where=resumption.found.id, hint="give --journal DIR"
-        )
-    return await resume_run(
-        resumption,
-        cell=cell,
-        journal=journal,
-        catalogue=catalogue,
-        answers=answers,
-        supervision=supervision,
-        skills=skills,
-    )
 
 
 def _recorded_file(found: RecordedRun) -> Path:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -17,7 +16,7 @@ from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, reload_plan
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.output_file import prepare, write
-from engine.cli.run_execution import ExecutionResult, MakeRun, RunSetup, execute_run
+from engine.cli.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.cli.run_junit import write_run_junit
 from engine.cli.run_report import print_json, print_result
 from engine.coverage import CoverageCollector
@@ -27,30 +26,13 @@ from engine.document.faults import load_faults
 from engine.document.substitutes import load_substitutes
 from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.journal import Journal, NullJournal, encode_event_log
-from engine.project.run_factory import checkpoint_at, new_origin, new_run, require_simulation
+from engine.journal import encode_event_log
+from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun
+from engine.project.run_request import RunRequest, RunStart, require_simulation, start_at
 from engine.recording import DEFAULT_RATE_HZ, RecordingOptions, collect_documents
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
-from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.plan import Catalogue, Plan, new_plan
-from engine.runtime.record.skill_port import SkillPort
-from engine.runtime.run import Run
-from engine.runtime.run_options import RunOptions
-
-
-@dataclass(frozen=True, kw_only=True)
-class _RunPosition:
-    """The event of a recorded run at which this run starts."""
-
-    recorded: RecordedRun
-    seq: int
-    checkpoint: Checkpoint
-
-    @property
-    def restores(self) -> bool:
-        """Whether the state of the simulated world is known at that event."""
-        return self.recorded.knows_world_at(self.seq)
 
 
 def run(
@@ -158,45 +140,47 @@ def run(
     require_simulation(plan, cell_spec, allowed=substitute_on_robots)
     parameters = read_parameters(parameter or [], behavior.parameters)
     if start is not None:
-        known = {name: value for name, value in start.checkpoint.parameters.items() if name in plan.parameters}
-        parameters = {**known, **parameters}
+        parameters = start.parameters(plan, parameters)
         seed = start.recorded.origin.seed if seed is None else seed
         if cell_spec is not None:
             refuse_errors(check_given(behavior, catalogue, cell_spec, parameters))
-    inputs = read_inputs(input_ or [])
+    request = RunRequest(
+        plan=plan,
+        parameters=parameters,
+        inputs=read_inputs(input_ or []),
+        seed=seed or 0,
+        supervision=supervision,
+        faults=load_faults(faults) if faults is not None else None,
+        start=start,
+        restore_world=start is not None and start.knows_world,
+        documents=collect_documents(behavior, cell_spec) if record is not None else None,
+        source=behavior_source(file),
+    )
     covered = CoverageCollector(whole, catalogue) if coverage is not None else None
     if covered is not None and coverage is not None:
         covered.require_same(coverage)
+    virtual = clock == "virtual"
     setup = RunSetup(
-        make=_maker(
-            behavior,
-            plan,
-            source=behavior_source(file),
-            parameters=parameters,
-            inputs=inputs,
+        opened=CellSetup(
+            cell=cell_spec,
             seed=seed,
-            supervision=supervision,
-            start=start,
-            catalogue=catalogue,
+            store=store,
+            relay=new_relay(cell_spec, virtual=virtual),
+            journal=journal if journal != NO_JOURNAL else None,
+            recording=RecordingOptions(
+                path=record,
+                documents=request.documents,
+                rate_hz=record_rate,
+                topics=tuple(record_topic or ("*",)),
+            )
+            if record is not None and request.documents is not None
+            else None,
         ),
-        cell=cell_spec,
-        seed=seed,
-        journal=journal,
-        store=store,
+        start=partial(_start, request, catalogue),
         timeout_s=timeout,
-        virtual=clock == "virtual",
+        virtual=virtual,
         quiet=quiet or json,
         supervision=supervision,
-        inputs=inputs,
-        recording=RecordingOptions(
-            path=record,
-            documents=collect_documents(behavior, cell_spec),
-            rate_hz=record_rate,
-            topics=tuple(record_topic or ("*",)),
-        )
-        if record is not None
-        else None,
-        faults=load_faults(faults) if faults is not None else None,
         watchers=(covered.follow(),) if covered is not None else (),
         reload=partial(reload_plan, file, catalogue, cell=cell_spec, substitutes=behavior.substitutes)
         if operator
@@ -219,42 +203,15 @@ def run(
     raise typer.Exit(execute_run(setup, report=report))
 
 
-def _maker(
-    behavior: Behavior,
-    plan: Plan,
-    *,
-    source: str | None,
-    parameters: dict[str, object],
-    inputs: dict[str, object],
-    seed: int | None,
-    supervision: RunOptions,
-    start: _RunPosition | None,
-    catalogue: Catalogue,
-) -> MakeRun:
-    async def make(cell: OpenCell, journal: Journal | NullJournal, skills: SkillPort | None) -> Run:
-        await _warn_missing_entries(behavior, catalogue, cell)
-        if start is not None and start.restores and start.recorded.world is not None:
-            await cell.restore(start.recorded.world.data)
-        return new_run(
-            plan,
-            cell=cell,
-            journal=journal,
-            parameters=parameters,
-            inputs=inputs,
-            seed=seed or 0,
-            origin=new_origin(behavior, cell=cell, supervision=supervision, source=source),
-            supervision=supervision,
-            skills=skills,
-            checkpoint=start.checkpoint if start is not None else None,
-        )
-
-    return make
+async def _start(request: RunRequest, catalogue: Catalogue, runner: CellRunner) -> PreparedRun:
+    await _warn_missing_entries(request.plan, catalogue, runner.cell)
+    return await runner.start(request)
 
 
-async def _warn_missing_entries(behavior: Behavior, catalogue: Catalogue, cell: OpenCell) -> None:
+async def _warn_missing_entries(plan: Plan, catalogue: Catalogue, cell: OpenCell) -> None:
     """Warn of named entries missing in the store; the behavior may still write them before it reads them."""
-    if cell.store is not None:
-        for finding in check_stored(behavior, catalogue, [(key.kind, key.name) for key in await cell.store.list()]):
+    if cell.store is not None and plan.source is not None:
+        for finding in check_stored(plan.source, catalogue, [(key.kind, key.name) for key in await cell.store.list()]):
             sys.stderr.write(f"{finding}\n")
 
 
@@ -269,12 +226,12 @@ def _read_recorded(text: str | None, at: str | None, journal: str) -> tuple[Reco
     return read_run(journal, run_id), int(number)
 
 
-def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> _RunPosition | None:
+def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> RunStart | None:
     if recorded is None:
         return None
     earlier, seq = recorded
-    start = _RunPosition(recorded=earlier, seq=seq, checkpoint=checkpoint_at(earlier, plan, seq=seq, path=at))
-    if earlier.world is not None and not start.restores:
+    start = start_at(earlier, plan, seq=seq, path=at)
+    if earlier.world is not None and not start.knows_world:
         known = earlier.world.seq
         sys.stderr.write(f"flexcell: the cell is not restored: its world is known at event {known} only\n")
     elif earlier.world is None and earlier.origin.cell is not None:

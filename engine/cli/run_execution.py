@@ -1,63 +1,53 @@
-"""Executes one run for the command line: clock, cell, journal, recording, signals and shutdown."""
+"""Executes one run for the command line: its clock, signals, terminal and shutdown."""
 
 from __future__ import annotations
 
 import asyncio
 import os
 import sys
-import time
 from collections.abc import Awaitable, Callable, Coroutine
-from contextlib import AbstractAsyncContextManager, ExitStack, nullcontext
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
 
 from rich.console import Console
 
-from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.cli.interrupt_handling import InterruptHandler
 from engine.cli.operator_console import OperatorConsole
 from engine.cli.progress_printer import ProgressPrinter
 from engine.clock import VirtualLoop, VirtualTimeDeadlock, run_virtual
 from engine.document.cell import Cell
-from engine.document.faults import Faults
 from engine.errors import FlexcellError
 from engine.event import Event
-from engine.faults import FaultPort
 from engine.host.garbage_collection import freeze_loaded_objects
 from engine.host.thread_switch_interval import short_switch_interval
-from engine.journal import Journal, NullJournal
-from engine.recording import RecordingOptions, RunRecording
+from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun, open_cell_runner
 from engine.runtime.plan import Plan
 from engine.runtime.record.recorder import Watcher
-from engine.runtime.record.skill_port import BusPort, SkillPort
 from engine.runtime.run import Run, RunResult
 from engine.runtime.run_options import RunOptions
 from engine.runtime.watchdog import LoopWatchdog
 from engine.stop import StopNotice, StopRelay
 
 T = TypeVar("T")
-MakeRun = Callable[[OpenCell, Journal | NullJournal, SkillPort | None], Awaitable[Run]]
-"""Creates the run, new or resumed, in an open cell and journal; if it raises, no run was started."""
+NO_JOURNAL = "none"
+"""The value of `--journal` with which no event is kept."""
+StartRun = Callable[[CellRunner], Awaitable[PreparedRun]]
+"""Starts the run, new or resumed, in its open cell; if it raises, no run was started."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunSetup:
-    """Everything that a run needs, read and checked before it starts."""
+    """How the command line executes a run: what is opened for it, what starts it, what watches it."""
 
-    make: MakeRun
-    cell: Cell | None
-    seed: int | None
-    journal: str
-    store: str | None
+    opened: CellSetup
+    start: StartRun
     timeout_s: float | None
     virtual: bool
     quiet: bool
     supervision: RunOptions = field(default_factory=RunOptions)
-    inputs: dict[str, object] = field(default_factory=dict[str, object])
-    recording: RecordingOptions | None = None
-    faults: Faults | None = None
     watchers: tuple[Watcher, ...] = ()
     reload: Callable[[], Plan] | None = None
     """With an operator on the terminal: reloads the behavior for a hot change."""
@@ -129,21 +119,12 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
     over = asyncio.Event()
     with ExitStack() as stack:
         interruption = stack.enter_context(InterruptHandler(_print_message))
-        journal = _journal(setup, stack)
-        async with (
-            _recording(setup) as recording,
-            _relay(setup) as relay,
-            OpenCell(setup.cell, seed=setup.seed, store_path=setup.store, relay=relay) as cell,
-        ):
+        async with open_cell_runner(setup.opened) as runner:
+            relay = setup.opened.relay
             if relay is not None:
                 stack.enter_context(relay.watched_signals())
-            started_unix_s = time.time()
-            faults = _faults(setup, cell)
-            run = await setup.make(cell, journal, faults)
-            if recording is not None:
-                recording.attach(
-                    run, cell.bus, started_unix_s=started_unix_s, inputs=setup.inputs, supervision=setup.supervision
-                )
+            prepared = await setup.start(runner)
+            run = prepared.run
             for watcher in (log.append, *setup.watchers):
                 run.watch(watcher)
             if not setup.quiet:
@@ -159,29 +140,24 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
             # A collection that scanned what is loaded would block the loop while arms move.
             freeze_loaded_objects(collect=not setup.virtual)
             with short_switch_interval(), LoopWatchdog():
-                result = await _execute_within(setup.timeout_s, run)
+                result = await _execute_within(setup.timeout_s, prepared)
             over.set()
-    if faults is not None and setup.quiet:
+    if prepared.faults is not None and setup.quiet:
         # The progress output shows these lines already.
-        for line in faults.unapplied():
+        for line in prepared.faults.unapplied():
             _print_message(line)
     return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason))
 
 
-async def _execute_within(timeout_s: float | None, execution: Run) -> RunResult:
+async def _execute_within(timeout_s: float | None, prepared: PreparedRun) -> RunResult:
     if timeout_s is None:
-        return await execution.execute()
+        return await prepared.execute()
     loop = asyncio.get_running_loop()
-    timer = loop.call_later(timeout_s, execution.stop, f"timeout: the run took longer than {timeout_s:g} s")
+    timer = loop.call_later(timeout_s, prepared.run.stop, f"timeout: the run took longer than {timeout_s:g} s")
     try:
-        return await execution.execute()
+        return await prepared.execute()
     finally:
         timer.cancel()
-
-
-def _relay(setup: RunSetup) -> AbstractAsyncContextManager[StopRelay | None]:
-    """Return the relay that stops the robots if a signal arrives while the event loop is blocked."""
-    return StopRelay() if setup.cell is not None and not setup.virtual else nullcontext()
 
 
 async def _stop_run(run: Run, over: asyncio.Event, notice: StopNotice) -> None:
@@ -203,22 +179,9 @@ def _deadlock(run: Run, error: VirtualTimeDeadlock) -> VirtualTimeDeadlock:
     return VirtualTimeDeadlock(error.message, where=run.plan.root.path, hint=f"waiting forever: {names}")
 
 
-def _faults(setup: RunSetup, cell: OpenCell) -> FaultPort | None:
-    if setup.faults is None:
-        return None
-    return FaultPort(BusPort(cell.bus), setup.faults, clock=cell.bus.clock, seed=setup.seed or 0)
-
-
-def _recording(setup: RunSetup) -> AbstractAsyncContextManager[RunRecording | None]:
-    if setup.recording is None:
-        return nullcontext()
-    return RunRecording.open(setup.recording, inline=setup.virtual)
-
-
-def _journal(setup: RunSetup, stack: ExitStack) -> Journal | NullJournal:
-    if setup.journal == "none":
-        return NullJournal()
-    return stack.enter_context(Journal.open(setup.journal, inline=setup.virtual))
+def new_relay(cell: Cell | None, *, virtual: bool) -> StopRelay | None:
+    """Return the relay that stops the robots if a signal arrives while the event loop is blocked."""
+    return StopRelay() if cell is not None and not virtual else None
 
 
 def _print_message(line: str) -> None:

@@ -16,13 +16,12 @@ from typing import Annotated, Any
 
 import typer
 
-from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
 from engine.document.state_catalogue import Catalogue
 from engine.host.garbage_collection import freeze_loaded_objects
 from engine.host.thread_switch_interval import short_switch_interval
-from engine.journal import Journal
+from engine.project.cell_runner import open_cell
 from engine.project.server_state_folder import ServerStateFolder, lock_server_state_folder
 from engine.project.session import Session
 from engine.project.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
@@ -134,10 +133,10 @@ async def _serve(
 
     if cell is not None:
         sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first start compiles its code, which takes longer.\n")
-    with Journal.open(state) as journal, short_switch_interval(), ExitStack() as watched:
+    relay = StopRelay(host=host, port=stop_port)
+    with folder.open_journal() as journal, short_switch_interval(), ExitStack() as watched:
         async with (
-            StopRelay(host=host, port=stop_port) as relay,
-            OpenCell(cell, seed=seed, relay=relay) as opened,
+            open_cell(cell, seed=seed, relay=relay) as opened,
             HelpingHand(
                 opened.bus, robots=guidable_robots(opened.bus), folder=state / "captures", file=state / "triggers.yaml"
             ),

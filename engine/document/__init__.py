@@ -5,9 +5,17 @@ An invalid document raises `DocumentError` with file, line and column. Entries a
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.cell import Cell, CellDocument, Fixture, Jitter, PartSpec, RobotSpec, load_cell
-from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
+from engine.document.cell import Cell, CellDocument, Fixture, Jitter, MujocoWorld, PartSpec, RobotSpec, load_cell
+from engine.document.cell_perception import (
+    DepthCamera,
+    DetectionRate,
+    ObjectDetector,
+    OccupancyMap,
+    Person,
+    arm_reach_m,
+)
 from engine.document.concurrency_condition import ConcurrencyCondition
+from engine.document.decoding import StrictModel, decode_document
 from engine.document.expression import Template, compile_template
 from engine.document.loader import (
     BehaviorSurvey,
@@ -26,10 +34,10 @@ from engine.document.node_spec import (
     RetrySpec,
     TimeoutSpec,
 )
-from engine.document.parameter_spec import ParameterSpec, bind_parameters
+from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
-from engine.document.yaml_source import DocumentSource, load_source, parse_source
+from engine.document.yaml_source import DataPath, DocumentSource, load_source, parse_source
 from engine.document.yaml_writer import write_yaml
 
 __all__ = [
@@ -41,7 +49,9 @@ __all__ = [
     "CircularReference",
     "ConcurrencyCondition",
     "ConcurrencySpec",
+    "DataPath",
     "DepthCamera",
+    "DetectionRate",
     "DocumentSource",
     "Fixture",
     "ForEachSpec",
@@ -49,7 +59,9 @@ __all__ = [
     "Jitter",
     "KeySignature",
     "MachineSpec",
+    "MujocoWorld",
     "NodeSpec",
+    "ObjectDetector",
     "OccupancyMap",
     "ParameterSpec",
     "PartSpec",
@@ -58,10 +70,14 @@ __all__ = [
     "RetrySpec",
     "RobotSpec",
     "StateSignature",
+    "StrictModel",
     "Template",
     "TimeoutSpec",
+    "any_value",
+    "arm_reach_m",
     "bind_parameters",
     "compile_template",
+    "decode_document",
     "load_behavior",
     "load_cell",
     "load_source",

@@ -13,7 +13,7 @@ from engine.document.cell import CellDocument
 from engine.document.entries_document import EntriesDocument
 from engine.document.faults import FaultsDocument
 from engine.document.parameter_spec import any_value
-from engine.document.project import ProjectDocument
+from engine.document.project_file import ProjectDocument
 from engine.document.substitutes import SubstitutesDocument
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType, ModuleType
 
-from engine.document.project import PROJECT_FILE
+from engine.document.project_file import PROJECT_FILE
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.state import State
 from engine.suggestions import did_you_mean

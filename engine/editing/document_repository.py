@@ -93,7 +93,8 @@ class DocumentRepository:
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
         self._desk = DraftCache()
-        self._library = Library(self._project, catalogue)
+        self.library = Library(self._project, catalogue)
+        """The behaviors among them, read as the last saved files say."""
 
     @property
     def project(self) -> Path:
@@ -102,8 +103,7 @@ class DocumentRepository:
 
     def referable(self) -> tuple[BehaviorReferenceView, ...]:
         """Return the behaviors of the project that others may reference, sorted by id."""
-        with self._writing:
-            return behavior_reference_views(self._library)
+        return behavior_reference_views(self.library)
 
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names of the open cell by kind, as the check knows them; none without a cell."""

@@ -69,7 +69,10 @@ class _Read:
 
 
 class Library:
-    """The behaviors under `project`; ids are paths relative to it with forward slashes."""
+    """The behaviors under `project`, read again when a file changes; ids are paths relative to it with `/`.
+
+    Thread-safe: threads that need the same changed file at once may each read it, and one result is kept.
+    """
 
     def __init__(self, project: Path, catalogue: Catalogue) -> None:
         self.catalogue = catalogue

@@ -1,6 +1,8 @@
 """Typed messages of the bus: geometry, robots, sensing and learned motion.
 
 SI units, quaternions x y z w, angles in radians. Imports nothing else of the engine.
+Files of other subjects (shapes, sensing, demonstrations, primitives, pose algebra) are faces of their own, loaded by
+those who use them.
 """
 
 from engine.messages.geometry import FramePoses, FrameTransform, Message, PartPoses, Pose, Quaternion, Vector3, Wrench

@@ -1,1 +1,5 @@
-"""The composition root: sessions, and the one place that starts, resumes and replaces runs."""
+"""The composition root: the one place that opens a cell and makes runs in it, and sessions of several runs.
+
+`cell_runner` composes: a `RunRequest` becomes a run with its cell, bus, journal, recording and faults. The command
+line, the dashboard, the pytest plugin, scripts and notebooks all start their runs there.
+"""

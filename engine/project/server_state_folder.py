@@ -13,6 +13,7 @@ import msgspec
 from engine.bus.remote_bus import ServerRecord, server_file
 from engine.errors import BusError, FlexcellError
 from engine.host.private_files import make_private_folder, open_private
+from engine.journal import Journal
 from engine.stop import StopEndpoint
 
 LOCK_FILE = "lock"
@@ -23,6 +24,10 @@ class ServerStateFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+
+    def open_journal(self) -> Journal:
+        """Open the journal of the server's runs; raises JournalError if that is not possible."""
+        return Journal.open(self.path)
 
     def announce(self, *, url: str, token: str, stop: StopEndpoint | None = None) -> None:
         """Write the addresses of the server and of STOP, readable by the owner only."""

@@ -19,31 +19,23 @@ from engine.document.substitutes import Substitutes
 from engine.editing import DocumentRepository
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
-from engine.faults import FaultPort
 from engine.journal import Journal, RunRecord, list_runs
-from engine.library.behavior_library import BehaviorView, Library
+from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
-from engine.project.run_factory import (
-    RunPosition,
-    checkpoint_at,
-    new_origin,
-    new_run,
-    plan_resume,
-    require_names,
-    require_simulation,
-    resume_run,
-)
+from engine.project.cell_runner import CellRunner, PreparedRun
+from engine.project.resume_plan import plan_resume
+from engine.project.run_request import RunPosition, RunRequest, require_names, require_simulation, start_at
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
-from engine.project.session_recordings import RunStartRecord, SessionRecordings
+from engine.project.session_recordings import SessionRecordings
 from engine.project.session_run import RunView, SessionRun
 from engine.project.session_stops import SessionStops
+from engine.recording import RecordedDocuments
 from engine.recording.recorded_run import read_run, version_snapshot
 from engine.runtime.control import Breakpoint, Control, load_breakpoints, save_breakpoints
 from engine.runtime.history.hot_change import ChangeReport
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.plan import Catalogue, Plan, new_plan
-from engine.runtime.record.skill_port import BusPort
 from engine.runtime.run_options import RunOptions
 from engine.suggestions import did_you_mean
 
@@ -64,12 +56,13 @@ class Session:
         recordings: SessionRecordings | None = None,
     ) -> None:
         self.cell = cell
-        self._library = Library(project, catalogue)
         self._entries = StoredEntries(cell)
         self.documents = DocumentRepository(project, catalogue, stored=self._entries.of_cell, cell=cell.document)
+        self._library = self.documents.library
         self.archive = Archive(project, catalogue, journal.path)
         self._journal = journal
         self._recordings = recordings
+        self._runner = CellRunner(cell, journal, recorder=recordings)
         self._runs: dict[str, SessionRun] = {}
         self._callbacks: tuple[EventCallback, ...] = ()
         self._operators = OperatorRoster()
@@ -157,35 +150,26 @@ class Session:
         watched = supervision or RunOptions()
         if breakpoints:
             watched = replace(watched, breakpoints=load_breakpoints(behavior.file))
-        checkpoint = None
+        start = None
         if begin is not None:
-            found = read_run(self._journal.path, begin.run)
-            checkpoint = checkpoint_at(found, plan, seq=begin.seq, path=begin.path)
-            known = {name: value for name, value in checkpoint.parameters.items() if name in plan.parameters}
-            parameters = {**known, **parameters}
+            start = start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
+            parameters = start.parameters(plan, parameters)
         if self.cell.document is not None:
             catalogue = self._library.catalogue
             await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
-        # Before the run, whose clock starts here.
-        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
-        await self._stops.over()
-        run = new_run(
-            plan,
-            cell=self.cell,
-            journal=self._journal,
+        request = RunRequest(
+            plan=plan,
             parameters=parameters,
-            inputs=inputs,
+            inputs=inputs or {},
             seed=seed,
-            origin=new_origin(behavior, cell=self.cell, supervision=watched),
             supervision=watched,
-            skills=FaultPort(BusPort(self.cell.bus), faults, clock=self.cell.bus.clock, seed=seed) if faults else None,
-            checkpoint=checkpoint,
+            faults=faults,
+            start=start,
+            documents=await self._recorded_documents(behavior),
         )
-        self._add(
-            SessionRun(behavior_id, run, self.cell.bus.clock.now_s()),
-            RunStartRecord(documents=documents, inputs=inputs, supervision=watched),
-        )
-        return run.id
+        await self._stops.over()
+        prepared = await self._runner.start(request)
+        return self._add(behavior_id, prepared)
 
     def interrupted(self) -> tuple[RunRecord, ...]:
         """Return the runs of the journal whose process died, oldest first."""
@@ -209,7 +193,7 @@ class Session:
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id, found.substitutes)
         require_simulation(plan, self.cell.document)
         # Before the decision whether the world is restored: another run may start in between.
-        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
+        documents = await self._recorded_documents(behavior)
         await self._stops.over()
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
@@ -221,19 +205,8 @@ class Session:
             restore=alone and found.origin.seed == self.cell.seed,
         )
         watched = RunOptions(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator)
-        run = await resume_run(
-            resumption,
-            cell=self.cell,
-            journal=self._journal,
-            catalogue=catalogue,
-            answers=answers,
-            supervision=watched,
-        )
-        self._add(
-            SessionRun(behavior_id, run, self.cell.bus.clock.now_s(), events=found.events),
-            RunStartRecord(documents=documents, inputs=found.origin.inputs, supervision=watched),
-        )
-        return run_id
+        prepared = await self._runner.resume(resumption, supervision=watched, documents=documents)
+        return self._add(behavior_id, prepared, events=found.events)
 
     def control(self, run_id: str) -> Control:
         """Return the control interface of an active run.
@@ -380,24 +353,23 @@ class Session:
             callback(found.latest)
         return found.subscribe(callback).close
 
-    async def _execute(self, started: SessionRun, start: RunStartRecord) -> None:
-        if self._recordings is None:
-            started.result = await started.run.execute()
-            return
-        async with self._recordings.around(started.run, start, cell=self.cell):
-            started.result = await started.run.execute()
+    async def _recorded_documents(self, behavior: Behavior) -> RecordedDocuments | None:
+        """Prepare a recording before its run exists, whose clock starts then; None if it is not recorded."""
+        return await self._recordings.prepare(behavior, cell=self.cell) if self._recordings is not None else None
 
     def _tell(self, run_id: str, event: Event) -> None:
         self._runs[run_id].events.append(event)
         for callback in self._callbacks:
             callback(run_id, event)
 
-    def _add(self, started: SessionRun, start: RunStartRecord) -> None:
-        run = started.run
+    def _add(self, behavior_id: str, prepared: PreparedRun, *, events: Iterable[Event] = ()) -> str:
+        run = prepared.run
+        started = SessionRun(behavior_id, prepared, self.cell.bus.clock.now_s(), events=events)
         self._runs[run.id] = started
         run.watch(lambda event: self._tell(run.id, event))
-        started.task = asyncio.create_task(self._execute(started, start), name=f"session run {run.id}")
+        started.task = asyncio.create_task(started.execute(), name=f"session run {run.id}")
         self._forget_oldest()
+        return run.id
 
     def _cell_file(self) -> str | None:
         return str(self.cell.document.file.resolve()) if self.cell.document is not None else None

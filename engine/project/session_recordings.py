@@ -7,21 +7,20 @@ import fcntl
 import logging
 import os
 import re
-import time
-from collections.abc import AsyncGenerator, Generator, Iterable, Mapping
-from contextlib import asynccontextmanager, suppress
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Iterable
+from contextlib import suppress
 from pathlib import Path
 
+from engine.bus import SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.behavior import Behavior
 from engine.errors import RecordingError
 from engine.host.private_files import make_private_folder
+from engine.project.run_recorder import RunStartRecord
 from engine.recording import RecordedDocuments, RecordingOptions, RunRecording, collect_documents, part_file
 from engine.recording.finalization import PART, finalize_recording
 from engine.recording.finalization_process import finalize_in_subprocess
 from engine.runtime.run import Run
-from engine.runtime.run_options import RunOptions
 
 RECORDINGS = "recordings"
 """Subfolder of the journal's folder."""
@@ -36,15 +35,6 @@ _LEFT_OUT = ("*/depth",)
 _OVERHEARD = ("cell/occupancy",)
 
 _log = logging.getLogger("flexcell.recording")
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunStartRecord:
-    """How a run is started, for its replay; without `documents` it is not recorded."""
-
-    documents: RecordedDocuments | None = None
-    inputs: Mapping[str, object] | None = None
-    supervision: RunOptions | None = None
 
 
 class SessionRecordings:
@@ -76,31 +66,27 @@ class SessionRecordings:
             _log.warning("a run of %s is not recorded: %s", behavior.file, error)
             return None
 
-    @asynccontextmanager
-    async def around(self, run: Run, start: RunStartRecord, *, cell: OpenCell) -> AsyncGenerator[None]:
-        """Record a run that is executed in the block; recording errors are logged as warnings."""
-        if start.documents is None:
-            yield
-            return
-        virtual = cell.bus.clock.virtual
+    def record(self, run: Run, bus: SkillBus, start: RunStartRecord) -> Callable[[], None]:
+        """Record a run until the returned function is called; recording errors are logged as warnings."""
+        virtual = bus.clock.virtual
         try:
             recording, path = self._open(run.id, start.documents, virtual=virtual)
             recording.attach(
-                run, cell.bus, started_unix_s=time.time(), inputs=start.inputs, supervision=start.supervision
+                run, bus, started_unix_s=start.started_unix_s, inputs=start.inputs, supervision=start.supervision
             )
         except (RecordingError, OSError, TypeError, ValueError) as error:
             _log.warning("run %s is not recorded: %s", run.id, error)
-            yield
-            return
-        try:
-            yield
-        finally:
+            return lambda: None
+
+        def end() -> None:
             recording.detach()
             finishing = asyncio.create_task(
                 self._finish(recording, path, virtual=virtual), name=f"recording of {run.id}"
             )
             self._finishing.add(finishing)
             finishing.add_done_callback(self._finishing.discard)
+
+        return end
 
     async def finished(self) -> None:
         """Wait until all recordings are finalized."""

@@ -10,7 +10,8 @@ import msgspec
 
 from engine.cause_chain import describe_cause
 from engine.event import Event
-from engine.runtime.run import Run, RunResult
+from engine.project.cell_runner import PreparedRun
+from engine.runtime.run import RunResult
 
 
 class RunView(msgspec.Struct, frozen=True, kw_only=True):
@@ -35,20 +36,27 @@ class SessionRun:
 
     Args:
         behavior_id: The behavior that it executes.
-        run: The run.
+        prepared: The run.
         started_s: The time of the cell's clock at its start.
         events: The events before this session, if the run was resumed.
     """
 
-    def __init__(self, behavior_id: str, run: Run, started_s: float, *, events: Iterable[Event] = ()) -> None:
+    def __init__(
+        self, behavior_id: str, prepared: PreparedRun, started_s: float, *, events: Iterable[Event] = ()
+    ) -> None:
         self.behavior_id = behavior_id
-        self.run = run
+        self.run = prepared.run
+        self._prepared = prepared
         self.started_s = started_s
         self.started_at_s = time.time()
         self.events: list[Event] = list(events)
         self.stopping = False
         self.result: RunResult | None = None
         self.task: asyncio.Task[None] | None = None
+
+    async def execute(self) -> None:
+        """Execute the run to its end and keep its result."""
+        self.result = await self._prepared.execute()
 
     def stop(self, reason: str) -> None:
         """Request the run to stop and return immediately; has no effect on a run that has ended."""

@@ -11,6 +11,7 @@ from engine.skills.gripper import GripperSetting
 from engine.store.contract import ChangeListener, EntryChange, EntryKey, Store, Value
 from engine.store.entry_kinds import RECORD, STANDARD_KINDS, EntryKind, Joints, decode_entry, verified_value
 from engine.store.entry_services import publish_changes, register_store
+from engine.store.limits import verify_name
 from engine.store.migration import Migration, migrate
 from engine.store.sqlite.sqlite_store import SqliteStore
 from engine.store.store_factory import open_store
@@ -40,4 +41,5 @@ __all__ = [
     "publish_changes",
     "register_store",
     "verified_value",
+    "verify_name",
 ]

@@ -3,39 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AsyncExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
 from engine.bus import SkillBus
-from engine.cell.open_cell import OpenCell
 from engine.check import check_behavior, require_no_errors
-from engine.clock import new_clock, run_virtual
-from engine.document import Behavior, load_behavior
-from engine.document.cell import Cell, load_cell
+from engine.document import load_behavior
+from engine.document.cell import load_cell
 from engine.document.faults import load_faults
-from engine.event import Event
-from engine.faults import FaultPort
-from engine.project.run_factory import require_simulation
-from engine.runtime.plan import Catalogue, new_plan
+from engine.project.cell_runner import CellSetup
+from engine.project.headless_run import CompletedRun, plan_in_cell, run_headless
+from engine.project.run_request import RunRequest
+from engine.runtime.plan import Catalogue
 from engine.runtime.record.recorder import Watcher
-from engine.runtime.record.skill_port import BusPort
-from engine.runtime.run import Run, RunResult
 from engine.testing.substitution import StandInFor, with_substitutes
-
-
-@dataclass(frozen=True, kw_only=True)
-class CompletedRun:
-    """An ended run: its result and all its events."""
-
-    result: RunResult
-    events: tuple[Event, ...]
-
-    @property
-    def outcome(self) -> str | None:
-        """Its outcome; None if it was stopped or ended with an error."""
-        return self.result.outcome
 
 
 class BehaviorRunner(Protocol):
@@ -97,35 +78,14 @@ def run_behavior(
     require_no_errors(check_behavior(behavior, catalogue, cell=given))
     if substitutes is not None:
         behavior = with_substitutes(behavior, substitutes)
-    plan = new_plan(behavior, catalogue)
-    place = (given or _own_cell(behavior)) if prepare is None else None
-    require_simulation(plan, place)
-    document = load_faults(Path(faults)) if faults is not None else None
-    events: list[Event] = []
-
-    async def main() -> RunResult:
-        async with AsyncExitStack() as stack:
-            if prepare is not None:
-                bus = await stack.enter_async_context(SkillBus(new_clock()))
-                prepare(bus)
-            else:
-                opened = OpenCell(place, seed=seed, store_path=str(store))
-                bus = (await stack.enter_async_context(opened)).bus
-            run = Run(
-                plan,
-                run=behavior.name,
-                bus=bus,
-                parameters=parameters,
-                inputs=inputs,
-                seed=seed or 0,
-                skills=FaultPort(BusPort(bus), document, clock=bus.clock, seed=seed or 0) if document else None,
-            )
-            for watcher in (events.append, *watchers):
-                run.watch(watcher)
-            return await run.execute()
-
-    return CompletedRun(result=run_virtual(main()), events=tuple(events))
-
-
-def _own_cell(behavior: Behavior) -> Cell | None:
-    return load_cell(behavior.cell_file) if behavior.cell_file is not None else None
+    setup = CellSetup(cell=given, seed=seed, store=str(store), prepare=prepare)
+    plan, setup = plan_in_cell(behavior, catalogue, setup)
+    request = RunRequest(
+        plan=plan,
+        parameters=parameters or {},
+        inputs=inputs or {},
+        seed=seed or 0,
+        faults=load_faults(Path(faults)) if faults is not None else None,
+        run_id=behavior.name,
+    )
+    return run_headless(setup, request, watchers=watchers)

@@ -17,7 +17,7 @@ from engine.messages.primitives import CartDmp
 from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnedCartDmp, LearnedJointDmp, LearnJointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
-from engine.store.entry_kinds import decode_entry
+from engine.store import decode_entry
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.trajectory_goal import follow_joints, follow_tool

@@ -10,7 +10,7 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.errors import FlexcellError, GoalRejected, SkillFailed
 from engine.skills.entries import WriteEntry
 from engine.skills.guiding import FinishGuiding, FinishGuidingResult, GuideArm, GuideFeedback, GuideResult
-from engine.store.limits import verify_name
+from engine.store import verify_name
 from robots.arm.demonstration import MOST_SAMPLES, DemonstrationRecorder
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.stream_deadline import StreamDeadline

@@ -7,7 +7,7 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from engine.document.cell import RobotSpec
+from engine.document import RobotSpec
 from engine.errors import CellError
 from engine.suggestions import did_you_mean
 from robots.model.folder.composition import compose

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document.cell import CellDocument, Fixture, RobotSpec
-from engine.document.cell_perception import Person
+from engine.document import CellDocument, Fixture, Person, RobotSpec
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose

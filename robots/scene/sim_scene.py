@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document.cell_perception import arm_reach_m
+from engine.document import arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel

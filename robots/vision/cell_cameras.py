@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.document.cell import CellDocument
+from engine.document import CellDocument
 from engine.errors import CellError
 from engine.suggestions import did_you_mean
 from robots.scene.sim_scene import SimScene

@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 
 import msgspec
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
+from engine.bus import SkillBus, Topic
 from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
 from engine.robot import DeviceStatus
 from robots.planning.scene.planning_scene import PlanningScene

@@ -7,7 +7,7 @@ import math
 import msgspec
 import numpy as np
 
-from engine.document.cell_perception import OccupancyMap
+from engine.document import OccupancyMap
 from engine.errors import CellError
 from engine.messages import Vector3
 from engine.messages.sensing import OccupancyGrid

@@ -10,8 +10,7 @@ from typing import Protocol, Self
 
 import msgspec
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
+from engine.bus import SkillBus, Topic
 from engine.clock import Clock
 from engine.errors import FlexcellError, RobotError, SkillFailed
 from engine.messages.sensing import OccupancyGrid

@@ -15,7 +15,7 @@ from engine.messages import Pose, Quaternion, Vector3
 from engine.messages.pose_algebra import rotate_vector, translate_pose
 from engine.skills.entries import ReadEntry
 from engine.state import Context
-from engine.store.entry_kinds import Joints, decode_entry
+from engine.store import Joints, decode_entry
 
 RobotName = Annotated[
     str, Meta(min_length=1, description="The arm that moves", extra_json_schema={"cell_name": "robot"})

@@ -14,7 +14,7 @@ from engine.skills.entries import ReadEntry
 from engine.skills.motion import Speed
 from engine.skills.planning import MotionTarget
 from engine.state import Context
-from engine.store.entry_kinds import decode_entry
+from engine.store import decode_entry
 
 TimeScale = Annotated[
     float, Meta(gt=0, le=100, description="Duration of the motion as a multiple of the primitive's duration tau")

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.document.placement import Placement
+from engine.document import Placement
 from engine.messages.shapes import Obstacle
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State

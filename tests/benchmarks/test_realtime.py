@@ -24,7 +24,8 @@ from engine.clock import run_virtual
 from engine.document.cell import load_cell
 from engine.journal import NullJournal
 from engine.messages import JointState
-from engine.project.run_factory import new_run
+from engine.project.cell_runner import CellRunner
+from engine.project.run_request import RunRequest
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
 from robots.scene.scene_builder import build_scene
@@ -51,7 +52,8 @@ def test_the_behavior_has_no_findings_and_moves_both_arms_until_it_is_stopped(tm
         async with OpenCell(read_cell(None, behavior), store_path=str(tmp_path / "store.db")) as cell:
             before = [_joints(cell.bus, arm) for arm in ("left", "right")]
             parameters = {"controller": "cartesian_impedance"}
-            run = new_run(new_plan(behavior, catalogue), cell=cell, journal=NullJournal(), parameters=parameters)
+            request = RunRequest(plan=new_plan(behavior, catalogue), parameters=parameters)
+            run = (await CellRunner(cell, NullJournal()).start(request)).run
             asyncio.get_running_loop().call_later(2.0, lambda: run.stop("it was long enough"))
             result = await run.execute()
             after = [_joints(cell.bus, arm) for arm in ("left", "right")]

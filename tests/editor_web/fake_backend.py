@@ -37,7 +37,7 @@ from engine.journal import RunRecord
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
-from engine.project.run_factory import RunPosition
+from engine.project.run_request import RunPosition
 from engine.project.session import Session
 from engine.project.session_operators import RunOperator
 from engine.project.session_run import RunView

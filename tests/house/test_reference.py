@@ -9,7 +9,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def test_the_committed_reference_is_current() -> None:
-    """Run `python docs/make_reference.py` after changing a command, a state or a finding."""
+    """Run `python docs/make_reference.py` after changing a command, a state, a finding or the face of the engine."""
     spec = importlib.util.spec_from_file_location("make_reference", DOCS / "make_reference.py")
     assert spec is not None
     assert spec.loader is not None

@@ -6,8 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
+from engine.bus import SkillBus, Topic
 from engine.messages import Vector3
 from engine.skills.planning import PathPreview
 from robots.arm.execution.motion_runner import MotionRunner

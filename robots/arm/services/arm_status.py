@@ -5,8 +5,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
+from engine.bus import SkillBus, Topic
 from engine.skills.arm_control import ArmStatus, ControlSettings, ReadArm
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.port import ArmSettings

@@ -15,7 +15,7 @@ from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, JointDmp
 from engine.skills.motion_trace import Trace, TraceMotion
-from engine.store.entry_kinds import Joints
+from engine.store import Joints
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.model.inverse_kinematics import InverseKinematicsSolver
 from robots.model.mechanics.kinematics import ArmKinematics

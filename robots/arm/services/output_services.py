@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
+from engine.bus import SkillBus, Topic
 from engine.errors import RobotError
 from engine.skills.digital_outputs import DigitalOutputs, SetGripper, SetLinearAxis, SetOutput, SetToolExchange
 from engine.skills.switch_result import SwitchResult

@@ -15,8 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.yaml_source import load_source
+from engine.document import StrictModel, decode_document, load_source
 from engine.errors import CellError, DocumentError
 from engine.suggestions import did_you_mean
 from robots.model.folder.folder_document import CalibrationFormat

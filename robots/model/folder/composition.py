@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.document.yaml_source import DataPath
+from engine.document import DataPath
 from engine.errors import CellError
 from robots.model.folder.calibration import apply_calibration, load_calibration
 from robots.model.folder.folder_document import FileReference, RobotDocument, ToolDocument

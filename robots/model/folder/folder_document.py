@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel
+from engine.document import StrictModel
 from robots.model.tool_model import Triple
 
 Text = Annotated[str, Meta(min_length=1)]

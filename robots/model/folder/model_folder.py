@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from engine.document.decoding import decode_document
-from engine.document.yaml_source import DataPath, DocumentSource, load_source
+from engine.document import DataPath, DocumentSource, decode_document, load_source
 from engine.errors import CellError, DocumentError
 from engine.suggestions import did_you_mean
 from robots.model.folder.folder_document import (

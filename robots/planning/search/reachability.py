@@ -7,7 +7,7 @@ from functools import cached_property
 import msgspec
 import numpy as np
 
-from engine.document.cell import Cell, MujocoWorld
+from engine.document import Cell, MujocoWorld
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, TargetViolation

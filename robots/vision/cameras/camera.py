@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.document.cell_perception import DepthCamera
+from engine.document import DepthCamera
 from engine.errors import CellError
 from engine.messages import Pose, Vector3
 from engine.messages.sensing import CameraIntrinsics, DepthImage

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from engine.document.cell_perception import ObjectDetector
+from engine.document import ObjectDetector
 from engine.messages import Pose
 
 

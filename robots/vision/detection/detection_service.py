@@ -6,9 +6,8 @@ import asyncio
 
 import msgspec
 
-from engine.bus import SkillBus
-from engine.bus.topic import Topic
-from engine.document.cell_perception import DetectionRate
+from engine.bus import SkillBus, Topic
+from engine.document import DetectionRate
 from engine.errors import SkillFailed
 from engine.skills.vision import Detections, DetectObjects
 from robots.vision.cameras.camera import CameraSpec

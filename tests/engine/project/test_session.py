@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 
 from engine.cell.open_cell import OpenCell
+from engine.document.loader import BehaviorSurvey, survey_behavior
 from engine.errors import DocumentError, FlexcellError
 from engine.journal import Journal, list_runs
+from engine.library import behavior_library
 from engine.project.session import Session
 from engine.registry import load_states
 from engine.runtime.control import Breakpoint
@@ -55,6 +57,21 @@ async def _session(project: Path) -> AsyncGenerator[Session]:
             Session(cell, project=project, catalogue=CATALOGUE, journal=journal) as opened,
         ):
             yield opened
+
+
+async def test_the_list_and_the_editor_read_a_document_once(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both look at the same library; a file that changes is read once more."""
+    read: list[str] = []
+
+    def survey(file: Path) -> BehaviorSurvey:
+        read.append(file.name)
+        return survey_behavior(file)
+
+    monkeypatch.setattr(behavior_library, "survey_behavior", survey)
+    async with _session(project) as session:
+        listed = [view.id for view in session.behaviors()]
+        assert [view.id for view in session.documents.referable()] == listed
+        assert sorted(read) == ["endless.yaml", "quick.yaml"]
 
 
 async def test_behaviors_are_listed_with_their_problems_and_cells_are_not(project: Path) -> None:

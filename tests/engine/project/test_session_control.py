@@ -12,7 +12,7 @@ from engine.cell.open_cell import OpenCell
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.event import Event, GateReached, NodeEntered, OperatorChanged, OperatorCommanded, UserdataWritten
 from engine.journal import Journal
-from engine.project.run_factory import RunPosition
+from engine.project.run_request import RunPosition
 from engine.project.session import Session
 from engine.registry import load_states
 from engine.runtime.control import Breakpoint, save_breakpoints

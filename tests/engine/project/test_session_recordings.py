@@ -102,6 +102,18 @@ async def test_every_run_has_a_recording_that_can_be_replayed(project: Path) -> 
         assert [each.event for each in load_recording(file).events] == events[run]
 
 
+async def test_a_recording_has_the_start_of_a_run_that_is_looked_at_at_once(project: Path) -> None:
+    """As a page does that has just started it; the first look makes the run record its start."""
+    recordings = SessionRecordings(project / "recordings")
+    async with _session(project, recordings) as session:
+        run = await session.start(QUICK, parameters={}, seed=1)
+        assert session.run(run).status == "running"
+        await session.wait(run)
+        await recordings.finished()
+        (file,) = session.recording_files(run)
+        assert [each.event for each in load_recording(file).events] == session.events(run)
+
+
 async def test_a_run_under_way_has_one_too_and_a_killed_server_leaves_it_readable(project: Path) -> None:
     recordings = SessionRecordings(project / "recordings")
     async with _session(project, recordings) as session:

@@ -11,7 +11,8 @@ from engine.clock import run_virtual
 from engine.document import parse_behavior
 from engine.event import Event, NodeEntered, NodeExited, PauseConfirmed, RunSteppedBack
 from engine.journal import Journal
-from engine.project.run_factory import new_run
+from engine.project.cell_runner import CellRunner
+from engine.project.run_request import RunRequest
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run, RunResult
@@ -69,7 +70,7 @@ def test_a_pick_is_taken_back_from_the_middle_of_the_lift_and_done_again(tmp_pat
         with Journal.open(tmp_path, inline=True) as journal:
             async with opened_cell(tmp_path, seed=3) as cell:
                 plan = new_plan(parse_behavior(PICKING, file="picking.yaml"), load_states())
-                run = new_run(plan, cell=cell, journal=journal)
+                run = (await CellRunner(cell, journal).start(RunRequest(plan=plan))).run
                 run.watch(note)
                 before = np.array(joint_state(cell.bus).position_rad)
                 stood.append(("begin", part_height_m(cell.bus), before))

@@ -16,7 +16,7 @@ from engine.document.cell import load_cell
 from engine.document.substitutes import parse_substitutes
 from engine.errors import ControlError, DocumentError, Position
 from engine.event import Event, NodeEntered, NodeExited
-from engine.project.run_factory import require_simulation
+from engine.project.run_request import require_simulation
 from engine.runtime.plan import Plan, new_plan
 from engine.runtime.run import Run, RunResult
 from engine.state import Context, Outcome, State

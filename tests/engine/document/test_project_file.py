@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.document.project import find_project, load_project
+from engine.document.project_file import find_project, load_project
 from engine.errors import DocumentError
 
 

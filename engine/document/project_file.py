@@ -40,7 +40,7 @@ class ProjectDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Project:
+class ProjectFile:
     """A project document with its file."""
 
     document: ProjectDocument
@@ -57,17 +57,17 @@ class Project:
         return self.source.position(("states", index))
 
 
-def load_project(file: Path) -> Project:
+def load_project(file: Path) -> ProjectFile:
     """Read a project file.
 
     Raises:
         DocumentError: it cannot be read or is no valid project file; `where` is the position.
     """
     source = load_source(file)
-    return Project(document=decode_document(source, ProjectDocument), file=file.resolve(), source=source)
+    return ProjectFile(document=decode_document(source, ProjectDocument), file=file.resolve(), source=source)
 
 
-def find_project(start: Path) -> Project | None:
+def find_project(start: Path) -> ProjectFile | None:
     """Read the project file of the folder `start` (or of the file's folder), or of the nearest one around it.
 
     A file in a world-writable folder, such as `/tmp`, is ignored.

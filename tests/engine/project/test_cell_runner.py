@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,9 @@ from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
 from engine.errors import ControlError, DocumentError, JournalError
 from engine.journal import Journal, NullJournal, list_runs, read_origin
-from engine.project.run_factory import new_origin, new_run, plan_resume, require_names
+from engine.project.cell_runner import CellRunner
+from engine.project.resume_plan import plan_resume
+from engine.project.run_request import RunRequest, require_names
 from engine.recording.recorded_run import read_run
 from engine.registry import load_states
 from engine.runtime.plan import Plan, new_plan
@@ -75,10 +78,11 @@ def planned(file: Path) -> Plan:
 async def test_a_refused_value_leaves_no_run_in_the_journal(
     outer: Path, parameters: dict[str, object], inputs: dict[str, object], message: str
 ) -> None:
+    request = RunRequest(plan=planned(outer), parameters=parameters, inputs=inputs)
     with Journal.open(outer.parent) as journal:
         async with OpenCell(None) as cell:
             with pytest.raises(DocumentError, match=message):
-                new_run(planned(outer), cell=cell, journal=journal, parameters=parameters, inputs=inputs)
+                await CellRunner(cell, journal).start(request)
         assert list_runs(outer.parent) == ()
 
 
@@ -86,22 +90,14 @@ async def test_a_refused_value_leaves_no_run_in_the_journal(
 async def test_the_journal_knows_how_a_run_was_started(outer: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Absolute paths, both seeds, the clock, the operator's rules, and the documents themselves."""
     monkeypatch.chdir(outer.parent)
-    behavior = load_behavior(Path(outer.name))
+    plan = planned(Path(outer.name))
     watched = RunOptions(autonomy="low", demand_operator=True)
     with Journal.open(outer.parent, inline=True) as journal:
         async with OpenCell(load_cell("cell.yaml"), seed=5) as cell:
-            run = new_run(
-                new_plan(behavior, CATALOGUE),
-                cell=cell,
-                journal=journal,
-                parameters={"after": 2.0},
-                inputs={"given": 7},
-                seed=9,
-                origin=new_origin(behavior, cell=cell, supervision=watched),
-                supervision=watched,
-            )
-            await run.execute()
-    origin = read_origin(outer.parent, run.id)
+            request = RunRequest(plan=plan, parameters={"after": 2.0}, inputs={"given": 7}, seed=9, supervision=watched)
+            prepared = await CellRunner(cell, journal).start(request)
+            await prepared.execute()
+    origin = read_origin(outer.parent, prepared.run.id)
     assert origin is not None
     assert (origin.behavior, origin.cell) == (str(outer), str(outer.parent / "cell.yaml"))
     assert (origin.store, origin.seed, origin.run_seed) == (str(outer.parent / "here.db"), 5, 9)
@@ -117,10 +113,9 @@ def test_what_it_executed_can_be_read_back_though_the_files_have_gone(outer: Pat
     async def main() -> str:
         with Journal.open(outer.parent, inline=True) as journal:
             async with OpenCell(None) as cell:
-                origin = new_origin(behavior, cell=cell)
-                run = new_run(plan, cell=cell, journal=journal, parameters={"after": 0.0}, origin=origin)
-                await run.execute()
-        return run.id
+                prepared = await CellRunner(cell, journal).start(RunRequest(plan=plan, parameters={"after": 0.0}))
+                await prepared.execute()
+        return prepared.run.id
 
     run_id = run_virtual(main())
     outer.unlink()
@@ -132,32 +127,32 @@ def test_what_it_executed_can_be_read_back_though_the_files_have_gone(outer: Pat
 
 @pytest.mark.virtual
 async def test_a_run_without_origin_cannot_be_resumed_and_says_so(outer: Path) -> None:
+    plan = replace(planned(outer), source=None)
     with Journal.open(outer.parent, inline=True) as journal:
         async with OpenCell(None) as cell:
-            run = new_run(planned(outer), cell=cell, journal=journal, parameters={"after": 0.0})
-            await run.execute()
+            prepared = await CellRunner(cell, journal).start(RunRequest(plan=plan, parameters={"after": 0.0}))
+            await prepared.execute()
     with pytest.raises(JournalError, match=r"does not tell how run outer-.* was started"):
-        read_run(outer.parent, run.id)
+        read_run(outer.parent, prepared.run.id)
 
 
 @pytest.mark.virtual
 async def test_without_a_journal_a_run_is_not_kept(outer: Path) -> None:
     async with OpenCell(None) as cell:
-        run = new_run(planned(outer), cell=cell, journal=NullJournal(), parameters={"after": 0.0})
-        assert (await run.execute()).outcome == "good"
+        request = RunRequest(plan=planned(outer), parameters={"after": 0.0})
+        prepared = await CellRunner(cell, NullJournal()).start(request)
+        assert (await prepared.execute()).outcome == "good"
 
 
 async def test_a_run_that_is_driven_here_is_not_resumed(outer: Path) -> None:
-    behavior = load_behavior(outer)
     plan = planned(outer)
     with Journal.open(outer.parent) as journal:
         async with OpenCell(None) as cell:
-            origin = new_origin(behavior, cell=cell)
-            run = new_run(plan, cell=cell, journal=journal, parameters={"after": 0.0}, origin=origin)
-            found = read_run(outer.parent, run.id)
+            prepared = await CellRunner(cell, journal).start(RunRequest(plan=plan, parameters={"after": 0.0}))
+            found = read_run(outer.parent, prepared.run.id)
             with pytest.raises(ControlError, match=f"process {os.getpid()} executes this run"):
                 plan_resume(found, plan, catalogue=CATALOGUE)
-            await run.execute()
+            await prepared.execute()
 
 
 def test_a_run_that_names_what_its_cell_lacks_is_refused(tmp_path: Path) -> None:
