@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import type { FindingBody, GraphDifferenceBody } from '../../api/types'
+import type { Finding, GraphDifference } from '../../api/types'
 import { shiftedFindings, withDifference } from './graphDifference'
 import { nodeOf } from './model'
 import { machineNode, node } from './testNodes'
@@ -8,7 +8,7 @@ const a = node('root/a', ['done'], { line: 5, end_line: 7 })
 const b = node('root/b', ['done'], { line: 8, end_line: 9 })
 const root = { ...machineNode('root', 'a', [a, b], [['a', 'done', 'b'], ['b', 'done', 'good']]), line: 2, end_line: 9 }
 
-function difference(more: Partial<GraphDifferenceBody>): GraphDifferenceBody {
+function difference(more: Partial<GraphDifference>): GraphDifference {
   return { base: 'h', nodes: {}, children: {}, arrows: {}, shifts: [], lines: {}, ...more }
 }
 
@@ -62,7 +62,7 @@ test('the difference from another graph is told', () => {
 })
 
 test('findings move with their lines', () => {
-  const finding = (line: number) => ({ line, column: 1, path: 'root' }) as FindingBody
+  const finding = (line: number) => ({ line, column: 1, path: 'root' }) as Finding
   const moved = shiftedFindings([finding(3), finding(8)], difference({ shifts: [[8, 2]] }))
   expect(moved.map((each) => each.line)).toEqual([3, 10])
 })

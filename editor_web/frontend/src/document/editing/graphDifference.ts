@@ -1,9 +1,9 @@
 /** Turning the graph of a text into that of the text after an edit, with the difference that the server sends. Pure. */
-import type { FindingBody, GraphDifferenceBody } from '../../api/types'
+import type { Finding, GraphDifference } from '../../api/types'
 import { lookup, type Dict } from '../dict'
 import { allNodes, type EditNode } from './model'
 
-type Shifts = GraphDifferenceBody['shifts']
+type Shifts = GraphDifference['shifts']
 type Transitions = EditNode['transitions']
 
 /** Where a line of the old text is in the new one. */
@@ -17,7 +17,7 @@ export function shiftedLine(line: number, shifts: Shifts): number {
  * What is shown inside of a reference is not of this text: it stays with a reference that stays as it is.
  * Undefined where the difference is not one of this graph.
  */
-export function withDifference(root: EditNode, difference: GraphDifferenceBody): EditNode | undefined {
+export function withDifference(root: EditNode, difference: GraphDifference): EditNode | undefined {
   const known = new Map(allNodes(root).map((node) => [node.path, node]))
   const made = (path: string): EditNode | undefined => {
     const was = known.get(path)
@@ -44,7 +44,7 @@ export function withDifference(root: EditNode, difference: GraphDifferenceBody):
   return made(root.path)
 }
 
-function linesOf(path: string, was: EditNode | undefined, difference: GraphDifferenceBody): readonly [number, number, number] {
+function linesOf(path: string, was: EditNode | undefined, difference: GraphDifference): readonly [number, number, number] {
   const said = lookup(difference.lines, path)
   if (said || !was) return said ?? [1, 1, 1]
   return [shiftedLine(was.line, difference.shifts), was.column, shiftedLine(was.end_line, difference.shifts)]
@@ -62,7 +62,7 @@ function transitionsOf(
 }
 
 /** Findings of the old text at their lines in the new one. */
-export function shiftedFindings(findings: readonly FindingBody[], { shifts }: GraphDifferenceBody): readonly FindingBody[] {
+export function shiftedFindings(findings: readonly Finding[], { shifts }: GraphDifference): readonly Finding[] {
   if (shifts.length === 0) return findings
   return findings.map((each) => ({ ...each, line: shiftedLine(each.line, shifts) }))
 }

@@ -3,7 +3,7 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { DocumentInfoBody, DocumentNodeBody, Edit, RuleBody } from '../../api/types'
+import type { DocumentInfo, DocumentNode, Edit, RuleBody } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { nodeOf } from '../../document/editing/model'
 import { draftFrom } from './apply'
@@ -13,9 +13,9 @@ import { blank, rootOf, setEditor, useEditor } from './store'
 
 const ID = 'behaviors/shift.yaml'
 const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfoBody = { name: 'shift', description: '', cell: null, parameters: {}, userdata: {}, outcomes: ['good', 'bad'], success: ['good'] }
+const INFO: DocumentInfo = { name: 'shift', description: '', cell: null, parameters: {}, userdata: {}, outcomes: ['good', 'bad'], success: ['good'] }
 
-function part(path: string, told: Partial<DocumentNodeBody> = {}): DocumentNodeBody {
+function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
   const name = path.split('/').at(-1) ?? path
   return {
     path, name, kind: 'state', title: 'test.Give', outcomes: ['a', 'b', 'c'], children: [], transitions: [], initial: null, conditions: [], label: name, role: '',
@@ -37,7 +37,7 @@ const WATCH = part('root/watch', { kind: 'sequence', state: null, children: [LOO
 const ROOT = part('root', { kind: 'machine', state: null, outcomes: ['good', 'bad'], children: [SET, BOTH, WATCH], initial: 'set' })
 
 /** The document with other rules, as the server answers after an edit. */
-function answered(root: DocumentNodeBody) {
+function answered(root: DocumentNode) {
   return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null }
 }
 
