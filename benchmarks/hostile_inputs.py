@@ -142,8 +142,8 @@ class HostileInputProbe:
     def _edited(self, text: str) -> None:
         self._desk.draw(text, file=self._file, context=self._knowledge)
         edit = SetParameter(path="root/take", name="value", value="${a + a}")
-        done, _ = self._desk.edit(text, [edit], file=self._file, context=self._knowledge)
-        self._desk.examine(done.text, file=self._file, context=self._knowledge)
+        done = self._desk.edit(text, [edit], file=self._file, context=self._knowledge)
+        self._desk.examine(done.result.text, file=self._file, context=self._knowledge)
 
     async def _run(self, plan: Plan) -> RunResult:
         with _timed_callbacks(self.running):

@@ -8,7 +8,8 @@ import msgspec
 from hypothesis import strategies as st
 
 from engine.document import node_spec
-from engine.document.node_kind import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.node_kind import KINDS, WRAPPERS
+from engine.document.node_spec import TREE_KINDS
 from engine.editing.edit import AnyEdit, GroupNodes
 from engine.editing.outline import NodeRef, Outline
 from tests.engine.editing.layouts import Plain

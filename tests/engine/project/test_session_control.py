@@ -75,12 +75,12 @@ async def test_a_run_is_controlled_and_shown_with_its_control(project: Path) -> 
     async with opened(project) as session:
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=RunOptions(start_paused=True))
         await told(session, run, waits("root"))
-        view = session.run(run).control
-        assert view is not None
+        view = session.control(run).view()
+        assert session.run(run).waits == "paused"
         assert (view.paused, view.confirmed, [each.path for each in view.waiting]) == (True, True, ["root"])
         session.control(run).resume()
         assert (await session.wait(run)).outcome == "good"
-        assert session.run(run).control is None
+        assert session.run(run).waits == ""
         with pytest.raises(ControlError, match="this run is over"):
             session.control(run)
         with pytest.raises(FlexcellError, match="there is no run 'x'"):
