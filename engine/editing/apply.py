@@ -107,6 +107,7 @@ def apply_edits_to_draft(
             _MAKERS[type(each)](session, each)
             session.stale()
             index += 1
+        changed = session.changed()
         made = draft.rewritten()
     except (EditRefused, DocumentError) as error:
         return EditResult(
@@ -118,7 +119,7 @@ def apply_edits_to_draft(
             message="the edited document exceeds the size limit", hint="split it with behavior references", index=index
         )
         return EditResult(text=text, refused=refusal)
-    changed, now = session.changed(), session.outline
+    now = session.outline
     if any(made.source_of(ref.data) is None for ref in now.refs.values()):
         now = Outline(made.data)  # with the data of new nodes as it was read back
     return EditResult(text=made.given, draft=made, outline=now, changed=changed)

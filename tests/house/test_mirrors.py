@@ -31,7 +31,6 @@ NOT_MIRRORS: Mapping[str, str] = {
     "EditResultBody": "an edited text with its analysis; the draft inside `EditResult` is not for others",
     "FailureLink": "one link of a chain with the hint of its kind of error",
     "FailureStep": "how a node ended, not a value that was written",
-    "PlanLive": "a path without its waypoints, and with the arm and the node that planned it",
     "StartBody": "a run to start; the description of a recording also has what a run was started with",
     "SupervisionBody": "`breakpoints` says whether those of the file hold; the options of a run list them",
     "TagsBody": "a change of tags; a row of the store has the key of the entry too",

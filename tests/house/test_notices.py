@@ -89,6 +89,7 @@ def test_the_wheel_has_no_other_files_of_others() -> None:
         ".typed",
         ".yaml",
         ".md",
+        ".pyi",
         ".html",
         ".json",
         ".urdf",

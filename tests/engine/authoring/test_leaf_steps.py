@@ -114,7 +114,7 @@ def test_parameters_that_do_not_fit_are_refused_where_the_state_is_made() -> Non
     """A struct checks nothing when made; the document would."""
     with pytest.raises(DocumentError, match=r"the parameters of Draw are invalid: .*> 0") as raised:
         state(Draw(speed=-1.0))
-    assert "test_state.py" in str(raised.value.where)
+    assert "test_leaf_steps.py" in str(raised.value.where)
 
 
 @pytest.mark.parametrize(
