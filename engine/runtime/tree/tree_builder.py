@@ -78,7 +78,7 @@ class TreeBuilder:
         if part.leaf is not None:
             self._rank += 1
             rank = self._rank
-            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank, caught)
+            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank, caught=caught)
             self.parts[leaf] = part
             if part.post:
                 self._post(part, leaf, place)
@@ -87,11 +87,11 @@ class TreeBuilder:
         if part.foreign is not None:
             node: Behaviour = self._foreign(part, place)
         elif part.source.parallel is not None:
-            node = self._parallel(part, place, caught)
+            node = self._parallel(part, place, caught=caught)
         elif part.source.kind in ("sequence", "selector"):
-            node = self._composite(part, place, caught)
+            node = self._composite(part, place, caught=caught)
         elif part.source.kind in SLOTS:
-            node = self._branching(part, place, caught)
+            node = self._branching(part, place, caught=caught)
         else:
             retry = part.source.retry
             errors = retry is not None and retry.errors
@@ -121,7 +121,7 @@ class TreeBuilder:
         self.parts.clear()
         self.statuses.skips.forget_all()
 
-    def _composite(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+    def _composite(self, part: TreeNode, place: ScopeAccess, *, caught: bool) -> Behaviour:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
         children = [self.build(child, place, caught=caught, passing=passing) for child in part.children]
         group = part.source.sequence or part.source.selector
@@ -131,7 +131,7 @@ class TreeBuilder:
             return composites.Sequence(part.path, memory, children)
         return composites.Selector(part.path, memory, children)
 
-    def _branching(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+    def _branching(self, part: TreeNode, place: ScopeAccess, *, caught: bool) -> Behaviour:
         # A skipped condition does not hold.
         children = [self.build(child, place, caught=caught, passing=Status.FAILURE) for child in part.children]
         if part.source.if_then_else is not None:
@@ -139,7 +139,7 @@ class TreeBuilder:
         self.reactive = True
         return WhileDoElse(part.path, children, self.statuses.skips)
 
-    def _parallel(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+    def _parallel(self, part: TreeNode, place: ScopeAccess, *, caught: bool) -> Behaviour:
         places = {child.name: ScopeAccess(place.scope) for child in part.children}
         group = part.source.parallel
         written = group if isinstance(group, nodes.ParallelSpec) else nodes.ParallelSpec(children=())

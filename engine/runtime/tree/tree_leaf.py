@@ -67,6 +67,7 @@ class TreeLeaf(Behaviour):
         turn: TickPause,
         statuses: StatusLog,
         rank: int,
+        *,
         caught: bool,
     ) -> None:
         # All attributes are set here: an attribute added later costs a separate dictionary.
