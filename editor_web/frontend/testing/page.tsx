@@ -13,8 +13,19 @@ import { usePast } from '../src/api/past.ts'
 import { clearRefusal } from '../src/api/refusal.ts'
 import { useSession } from '../src/api/session.ts'
 import { useStop } from '../src/api/stopStore.ts'
-import type { ControlLive, LiveSnapshot, NodeLive, RobotLive, RunOverview, SessionBody } from '../src/api/types.ts'
+import type {
+  ArmInfo,
+  ControlView,
+  GateWait,
+  GraphNode,
+  LiveSnapshot,
+  NodeLive,
+  RobotLive,
+  RunView,
+  SessionBody,
+} from '../src/api/types.ts'
 import { theme } from '../src/app/theme.ts'
+import { useEditor } from '../src/features/editor/store.ts'
 import { FakeServer, type FakeSocket } from './server.ts'
 
 const BLANK = newLiveStore().getState()
@@ -76,6 +87,7 @@ export function forgetPage(): void {
     forget(useCellConnection)
     forget(useShownLayers)
     forget(usePast)
+    forget(useEditor)
   })
   localStorage.clear()
   sessionStorage.clear()
@@ -98,10 +110,23 @@ export function session(told: Partial<SessionBody> = {}): SessionBody {
 }
 
 export function snapshot(told: Partial<LiveSnapshot> = {}): LiveSnapshot {
-  return { k: 'snapshot', run: '', seq: 1, now_s: 0, ticking: false, runs: [], nodes: {}, log: [], control: null, robots: {}, ...told }
+  return {
+    k: 'snapshot',
+    run: '',
+    seq: 1,
+    now_s: 0,
+    ticking: false,
+    runs: [],
+    nodes: {},
+    log: [],
+    control: null,
+    lock_reasons: {},
+    robots: {},
+    ...told,
+  }
 }
 
-export function run(told: Partial<RunOverview> = {}): RunOverview {
+export function run(told: Partial<RunView> = {}): RunView {
   return {
     id: 'r1',
     behavior: 'behaviors/shift.yaml',
@@ -116,7 +141,7 @@ export function run(told: Partial<RunOverview> = {}): RunOverview {
   }
 }
 
-export function control(told: Partial<ControlLive> = {}): ControlLive {
+export function control(told: Partial<ControlView> = {}): ControlView {
   return {
     paused: false,
     confirmed: false,
@@ -127,6 +152,7 @@ export function control(told: Partial<ControlLive> = {}): ControlLive {
     breakpoints: [],
     autonomy: 'full',
     operator: 'none',
+    active: [],
     demanded: false,
     loss_policy: 'hold',
     loss_timeout_s: 5,
@@ -140,4 +166,51 @@ export function node(told: Partial<NodeLive> = {}): NodeLive {
 
 export function robot(told: Partial<RobotLive> = {}): RobotLive {
   return { name: 'left', mode: 'idle', activity: '', error: '', speed_override: 1, controller: '', way: null, ...told }
+}
+
+/** What a node waits for at its end: the answer to its outcome. */
+export function asks(path: string, told: Partial<GateWait> = {}): GateWait {
+  return { path, visit: 1, point: 'after', outcome: 'a', reasons: ['autonomy'], required: 'high', ...told }
+}
+
+/** A state of the graph, or with its children whatever it is told to be. */
+export function graphNode(path: string, told: Partial<GraphNode> = {}): GraphNode {
+  return {
+    path,
+    name: path.split('/').at(-1) ?? path,
+    kind: 'state',
+    title: 'test.Give',
+    description: '',
+    outcomes: ['a', 'b'],
+    children: [],
+    transitions: [],
+    initial: null,
+    conditions: [],
+    ...told,
+  }
+}
+
+/** An arm of two joints. */
+export function armInfo(told: Partial<ArmInfo> = {}): ArmInfo {
+  return {
+    name: 'left',
+    model: 'panda',
+    urdf: '',
+    joint_names: ['j1', 'j2'],
+    lower_rad: [-2.9, -1.76],
+    upper_rad: [2.9, 1.76],
+    velocity_rad_s: [2, 2],
+    acceleration_rad_s2: [10, 10],
+    base: { xyz: [0, 0, 0], xyzw: [0, 0, 0, 1], frame: 'world' },
+    tool_frame: 'left/tool',
+    licence: '',
+    effort_nm: [80, 80],
+    jerk_rad_s3: [100, 100],
+    tool: '',
+    tool_kind: '',
+    tool_licence: '',
+    calibration: '',
+    skills: [],
+    ...told,
+  }
 }

@@ -1,26 +1,22 @@
 /** The page of all runs: a card for each, commands to one of them, and two to be compared. */
 import { act, screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
-import { control, live, node, run, server, show, snapshot } from '../../testing/page'
+import { asks, control, graphNode, live, node, run, server, show, snapshot } from '../../testing/page'
 import { FakeSocket, Refusal } from '../../testing/server'
-import type { GraphNodeBody, LiveSnapshot, RunOverview, WaitingNodeLive } from '../api/types'
+import type { LiveSnapshot, RunView } from '../api/types'
 import { RunsPage } from './RunsPage'
 
-const ASKS: WaitingNodeLive = { path: 'root/left', point: 'after', outcome: 'a', required: 'high', reasons: ['autonomy'] }
+const ASKS = asks('root/left')
 const NAP = run({ id: 'r1', behavior: 'behaviors/nap.yaml' })
 const SHIFT = run({ id: 'r2', behavior: 'behaviors/shift.yaml', waits: 'asks' })
 const NIGHT = run({ id: 'r3', behavior: 'behaviors/night.yaml', waits: 'paused' })
 const OPEN = [NAP, SHIFT, NIGHT]
 const opened = vi.fn()
 
-function leaf(path: string): GraphNodeBody {
-  return { path, name: path.split('/').at(-1) ?? '', kind: 'state', title: 'test.Give', outcomes: ['a', 'b'], children: [], transitions: [], initial: null, conditions: [] }
-}
-
-const GRAPH: GraphNodeBody = { ...leaf('root'), kind: 'machine', title: '', children: [leaf('root/left'), leaf('root/only')] }
+const GRAPH = graphNode('root', { kind: 'machine', title: '', children: [graphNode('root/left'), graphNode('root/only')] })
 
 /** The stream of one card, told how its run stands. */
-function follow(of: RunOverview, told: Partial<LiveSnapshot>): FakeSocket {
+function follow(of: RunView, told: Partial<LiveSnapshot>): FakeSocket {
   const wanted = (each: FakeSocket) => each.sent.some((sent) => JSON.stringify(sent) === JSON.stringify({ k: 'watch', run: of.id }))
   for (const each of FakeSocket.opened) if (each.readyState === FakeSocket.CONNECTING) each.accept()
   const socket = FakeSocket.opened.find(wanted)
@@ -36,7 +32,7 @@ function shown(): ReturnType<typeof show> {
   const user = show(<RunsPage onOpen={opened} />)
   follow(NAP, { nodes: { root: node(), 'root/only': node() } })
   follow(SHIFT, { control: control({ waiting: [ASKS], autonomy: 'low' }), nodes: { root: node(), 'root/left': node() } })
-  follow(NIGHT, { control: control({ paused: true, confirmed: true, waiting: [{ path: 'root', point: 'before', outcome: '', required: '', reasons: ['pause'] }] }) })
+  follow(NIGHT, { control: control({ paused: true, confirmed: true, waiting: [asks('root', { point: 'before', outcome: '', required: '', reasons: ['pause'] })] }) })
   return user
 }
 

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import type { Finding, GraphDifference } from '../../api/types'
+import type { FindingView, GraphDifference } from '../../api/types'
 import { shiftedFindings, withDifference } from './graphDifference'
 import { nodeOf } from './model'
 import { machineNode, node } from './testNodes'
@@ -62,7 +62,7 @@ test('the difference from another graph is told', () => {
 })
 
 test('findings move with their lines', () => {
-  const finding = (line: number) => ({ line, column: 1, path: 'root' }) as Finding
+  const finding = (line: number) => ({ line, column: 1, path: 'root' }) as FindingView
   const moved = shiftedFindings([finding(3), finding(8)], difference({ shifts: [[8, 2]] }))
   expect(moved.map((each) => each.line)).toEqual([3, 10])
 })

@@ -1,5 +1,5 @@
 /** Turning the graph of a text into that of the text after an edit, with the difference that the server sends. Pure. */
-import type { Finding, GraphDifference } from '../../api/types'
+import type { FindingView, GraphDifference } from '../../api/types'
 import { lookup, type Dict } from '../dict'
 import { allNodes, type EditNode } from './model'
 
@@ -62,7 +62,7 @@ function transitionsOf(
 }
 
 /** Findings of the old text at their lines in the new one. */
-export function shiftedFindings(findings: readonly Finding[], { shifts }: GraphDifference): readonly Finding[] {
+export function shiftedFindings(findings: readonly FindingView[], { shifts }: GraphDifference): readonly FindingView[] {
   if (shifts.length === 0) return findings
   return findings.map((each) => ({ ...each, line: shiftedLine(each.line, shifts) }))
 }

@@ -3,9 +3,10 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
+import type { BusListing, BusMetricsFrame, GoalInfo, GoalStreamLine } from '../../api/types'
 import { Bus } from './Bus'
 
-const BOARD = {
+const BOARD: BusListing = {
   shape: 's1',
   topics: [
     { name: 'plant/joint_state', type: 'JointState', doc: 'Measured joint state of one `robot`', takes_commands: false },
@@ -23,7 +24,7 @@ const FORMS: Record<string, object> = {
   'plant/lamp': { brightness: { type: 'number' } },
 }
 const REQUIRED: Record<string, string[]> = { 'plant/add_numbers': ['left'], 'plant/travel': [], 'plant/lamp': ['brightness'] }
-const TRAFFIC = {
+const TRAFFIC: BusMetricsFrame = {
   k: 'traffic',
   shape: 's1',
   topics: {
@@ -63,7 +64,7 @@ function streamed() {
   const body = new ReadableStream<Uint8Array>({ start: (controller) => void (writer = controller) })
   return {
     answer: new Response(body),
-    tell: (line: object) => writer?.enqueue(new TextEncoder().encode(`${JSON.stringify(line)}\n`)),
+    tell: (line: GoalStreamLine) => writer?.enqueue(new TextEncoder().encode(`${JSON.stringify(line)}\n`)),
     end: () => writer?.close(),
   }
 }
@@ -133,7 +134,7 @@ it('shows the course of a goal, and cancels it', async () => {
   expect(server().bodies('POST /bus/goals')).toEqual([{ address: 'plant/travel', request: { target: { xyz: [0.4, 0, 0.3] }, speed: 0.5 } }])
   await user.click(screen.getByRole('button', { name: 'Cancel goal' }))
   expect(server().bodies('POST /bus/goals/g1/cancel')).toEqual([{}])
-  goal.tell({ k: 'end', status: 'canceled', result: null, cause: null })
+  goal.tell({ k: 'end', end: { status: 'canceled', result: null, cause: null } })
   goal.end()
   await waitFor(() => expect(course).toHaveTextContent('Cancelled, the device is at rest'))
   expect(form.getByLabelText(/^speed/)).toBeEnabled()
@@ -143,7 +144,8 @@ it('tells who holds what, for whom and for how long', async () => {
   const { socket } = await at('Leases')
   expect(screen.getByText('Nobody holds anything')).toBeVisible()
   const lease = { resource: 'plant', run: 'run-7', node: 'root/move', goal: 'g1', held_s: 2 }
-  socket.tell({ ...TRAFFIC, leases: [lease], goals: [{ id: 'g1', address: 'plant/travel', run: 'run-7', node: 'root/move', status: 'active' }] })
+  const goal: GoalInfo = { id: 'g1', address: 'plant/travel', run: 'run-7', node: 'root/move', status: 'active', feedback: null }
+  socket.tell({ ...TRAFFIC, leases: [lease], goals: [goal] })
   expect(screen.getByRole('row', { name: /^plant/ })).toHaveTextContent('plantrun run-7root/moveplant/travel (active)2.00 s')
 })
 

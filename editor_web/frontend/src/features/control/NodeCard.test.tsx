@@ -1,10 +1,10 @@
 /** What can be done with a chosen node: breakpoints, locks, forced outcomes, and the list of all that holds a run. */
 import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
-import { control, live, node, run, server, show, snapshot } from '../../../testing/page'
+import { control, graphNode, live, node, run, server, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { loadSavedBreakpoints } from '../../api/breakpoints'
-import type { BreakpointLive, BreakpointsBody, GraphNodeBody } from '../../api/types'
+import type { Breakpoint, BreakpointsBody } from '../../api/types'
 import { Holds } from './Holds'
 import { NodeCard } from './NodeCard'
 import { RefusalLine } from './RefusalLine'
@@ -12,18 +12,9 @@ import { useCommands } from './useCommands'
 
 const SHIFT = 'behaviors/shift.yaml'
 const RUN = run()
-const REST: GraphNodeBody = {
-  path: 'root/rest',
-  name: 'rest',
-  kind: 'state',
-  title: 'flow.Wait',
-  outcomes: ['done', 'late'],
-  children: [],
-  transitions: [],
-  initial: null,
-  conditions: [],
-}
-const POINT: BreakpointLive = { path: 'root/rest', when: 'before', condition: null, hits: 1, outcomes: [], enabled: true }
+const REST = graphNode('root/rest', { title: 'flow.Wait', outcomes: ['done', 'late'] })
+/** As it is written: what is as usual is left out. */
+const POINT: Breakpoint = { path: 'root/rest' }
 
 function Card({ isRunning = true }: { readonly isRunning?: boolean }) {
   const commands = useCommands(isRunning ? RUN : undefined, REST.path)
@@ -37,7 +28,7 @@ function Card({ isRunning = true }: { readonly isRunning?: boolean }) {
 }
 
 /** The server keeps breakpoints, and tells the page of those of the run. */
-function keeping(points: readonly BreakpointLive[] = []): void {
+function keeping(points: readonly Breakpoint[] = []): void {
   server()
     .on(`GET /breakpoints/${SHIFT}`, { breakpoints: points })
     .on(`PUT /breakpoints/${SHIFT}`, ({ body }: { body: BreakpointsBody }) => body)
@@ -69,7 +60,7 @@ it('keeps condition and count of a breakpoint when Enter is pressed, in the run 
   await user.clear(screen.getByLabelText('From time'))
   await user.type(screen.getByLabelText('From time'), '3')
   await user.type(screen.getByLabelText('Only if'), 'value == 1{Enter}')
-  const wanted = { ...POINT, condition: 'value == 1', hits: 3 }
+  const wanted: Breakpoint = { path: 'root/rest', when: 'before', if: 'value == 1', hits: 3, outcomes: [], enabled: true }
   await waitFor(() => expect(server().bodies('POST /runs/r1/control/breakpoints').at(-1)).toEqual({ breakpoints: [wanted] }))
   expect(server().bodies(`PUT /breakpoints/${SHIFT}`).at(-1)).toEqual({ breakpoints: [wanted] })
 })
@@ -85,7 +76,7 @@ it('says why a condition was refused', async () => {
 })
 
 it('tells a condition in the list of what holds', async () => {
-  keeping([{ ...POINT, condition: 'value == 1' }])
+  keeping([{ ...POINT, if: 'value == 1' }])
   await loadSavedBreakpoints(SHIFT)
   live()
   show(<Card isRunning={false} />)
@@ -99,8 +90,8 @@ it('locks a node with a reason, tells it, and unlocks it', async () => {
   await user.type(screen.getByLabelText('Reason of the lock'), 'the tray is being changed')
   await user.click(screen.getByRole('button', { name: 'Lock' }))
   expect(server().bodies('POST /runs/r1/control/lock')).toEqual([{ path: 'root/rest', reason: 'the tray is being changed' }])
-  const locks = [{ path: 'root/rest', reason: 'the tray is being changed' }]
-  socket.tell(snapshot({ run: 'r1', runs: [RUN], control: control({ locks }) }))
+  const lock_reasons = { 'root/rest': 'the tray is being changed' }
+  socket.tell(snapshot({ run: 'r1', runs: [RUN], control: control({ locks: ['root/rest'] }), lock_reasons }))
   expect(screen.getByText('Locked: the tray is being changed')).toBeVisible()
   expect(screen.getByText('locked: the tray is being changed')).toBeVisible()
   await user.click(screen.getByRole('button', { name: 'Unlock root/rest' }))

@@ -1,18 +1,17 @@
 /** What a run asks its operator, how it is answered, and when a question is gone. */
 import { screen } from '@testing-library/react'
 import { expect, it } from 'vitest'
-import { control, live, node, robot, run, server, show, snapshot } from '../../../testing/page'
-import type { GraphNodeBody, LiveSnapshot, WaitingNodeLive } from '../../api/types'
+import { asks, control, graphNode, live, node, robot, run, server, show, snapshot } from '../../../testing/page'
+import type { LiveSnapshot } from '../../api/types'
 import { Requests } from './Requests'
 import { useCommands } from './useCommands'
 
 const RUN = run()
-const LEAF: GraphNodeBody = { path: 'root/left', name: 'left', kind: 'state', title: 'test.Give', outcomes: ['a', 'b'], children: [], transitions: [], initial: null, conditions: [] }
-const ROOT: GraphNodeBody = { ...LEAF, path: 'root', name: 'root', kind: 'concurrency', title: '', children: [LEAF, { ...LEAF, path: 'root/right', name: 'right' }] }
+const ROOT = graphNode('root', { kind: 'concurrency', title: '', children: [graphNode('root/left'), graphNode('root/right')] })
 const PLAN = { robot: 'left', duration_s: 3.25, length_m: 1.24, found_by: 'RRTConnect', planning_s: 0.12 }
 
 function asking(...paths: string[]): Partial<LiveSnapshot> {
-  const waiting = paths.map((path): WaitingNodeLive => ({ path, point: 'after', outcome: 'a', required: 'high', reasons: ['autonomy'] }))
+  const waiting = paths.map((path) => asks(path))
   return { run: 'r1', runs: [RUN], control: control({ waiting, autonomy: 'low' }) }
 }
 

@@ -1,9 +1,9 @@
 /** The bar of a run: what is possible, why not otherwise, and what the server is asked for. */
 import { fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { expect, it } from 'vitest'
-import { control, live, run, server, show, snapshot } from '../../../testing/page'
+import { asks, control, live, run, server, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { LiveSnapshot, RunOverview } from '../../api/types'
+import type { LiveSnapshot, RunView } from '../../api/types'
 import { ChangeReport } from './ChangeReport'
 import { RefusalLine } from './RefusalLine'
 import { RunBar } from './RunBar'
@@ -13,7 +13,7 @@ const COMMANDS = ['Pause', 'Step into', 'Step over', 'Step out', 'Step back', 'O
 const RUN = run()
 const PAUSED: Partial<LiveSnapshot> = { run: 'r1', runs: [RUN], control: control({ paused: true, confirmed: true }) }
 
-function Bar({ of }: { readonly of?: RunOverview }) {
+function Bar({ of }: { readonly of?: RunView }) {
   const commands = useCommands(of, undefined)
   return (
     <>
@@ -77,7 +77,7 @@ it('shows the words of the server when it refuses, and takes them away when it d
 })
 
 it('tells how the run stands and where it waits, as it changes', () => {
-  const waiting = [{ path: 'root/first', point: 'before' as const, outcome: '', required: '', reasons: ['pause'] }]
+  const waiting = [asks('root/first', { point: 'before', outcome: '', required: '', reasons: ['pause'] })]
   const socket = live({ ...PAUSED, control: control({ paused: true, confirmed: false, waiting }) })
   show(<Bar of={RUN} />)
   expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Pausing: what moves comes to rest')

@@ -2,17 +2,17 @@
 import { screen, within } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { live, run, server, show } from '../../../testing/page'
-import type { UserdataScope, UserdataValue } from '../../api/data'
+import type { ScopeView, UserdataRecord } from '../../api/types'
 import { Data } from './Data'
 
 const RUN = run()
 const chosen = vi.fn()
 
-function value(of: unknown, by = '', writes = 0): UserdataValue {
+function value(of: unknown, by = '', writes = 0): UserdataRecord {
   return { value: of, by, at_s: by ? 0.25 : 0, writes }
 }
 
-const SCOPES: Record<string, UserdataScope> = {
+const SCOPES: Record<string, ScopeView> = {
   '': { is_open: true, since_s: 0, values: { count: value(1, 'root/count', 1), found: value([]), pose: value({ xyz: [0.1, 0.2, 0.3] }) } },
   'root/look': { is_open: false, since_s: 0, values: { local: value('a long note', 'root/look/note', 1) } },
 }

@@ -3,14 +3,14 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
 import { server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { DemonstrationBody, ProposalBody } from '../../api/types'
+import type { DemonstrationBody, EntryName, ProposalBody } from '../../api/types'
 import { Demonstration } from './Demonstration'
 
-const ENTRIES = [
-  { kind: 'joints', name: 'above', tags: [] },
-  { kind: 'pose', name: 'tray', tags: [] },
-  { kind: 'trajectory', name: 'sweep', tags: [] },
-  { kind: 'record', name: 'note', tags: [] },
+const ENTRIES: readonly EntryName[] = [
+  { kind: 'joints', name: 'above' },
+  { kind: 'pose', name: 'tray' },
+  { kind: 'trajectory', name: 'sweep' },
+  { kind: 'record', name: 'note' },
 ]
 const ROLES: Record<string, ProposalBody['steps'][number]['role']> = { above: 'approach', tray: 'grasp', sweep: 'follow', close: 'close' }
 const PROPOSAL = 'POST /teach/proposal'
@@ -99,7 +99,7 @@ it('is made under a name, in the arm that is chosen', async () => {
   await screen.findByText('goes to above')
   await user.click(screen.getByRole('button', { name: 'Create and open' }))
   await waitFor(() => expect(made.mock.calls).toEqual([['behaviors/taught_transfer.yaml']]))
-  expect(wanted()).toMatchObject({ id: 'behaviors/taught_transfer.yaml', arm: 'right', steps: [{ kind: 'joints', name: 'above' }] })
+  expect(wanted()).toMatchObject({ id: 'behaviors/taught_transfer.yaml', options: { arm: 'right' }, steps: [{ kind: 'joints', name: 'above' }] })
 })
 
 it('says why there is no proposal', async () => {

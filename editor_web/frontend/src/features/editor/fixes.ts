@@ -3,7 +3,7 @@ import { useEffect } from 'react'
 import { create } from 'zustand'
 import { useLive } from '../../api/live'
 import { relations } from '../../api/relations'
-import type { Edit, FindingView, Fix, FixesBody } from '../../api/types'
+import type { FindingView, Fix, FixesBody } from '../../api/types'
 import { perform } from './apply'
 import { draftOf, useEditor } from './store'
 
@@ -48,6 +48,5 @@ export function fixesOf(all: readonly FixesBody[], finding: FindingView): readon
 
 /** Make a fix: one step of the history, which undo takes back. */
 export function makeFix(fix: Fix): void {
-  // The server made these edits; they are of the union that it takes.
-  void perform(fix.title.replaceAll('`', ''), fix.edits as unknown as readonly Edit[])
+  void perform(fix.title.replaceAll('`', ''), fix.edits)
 }

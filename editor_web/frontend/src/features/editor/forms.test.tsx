@@ -3,7 +3,7 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { DocumentInfo, DocumentNode, Edit, RuleBody } from '../../api/types'
+import type { ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditResultBody } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { nodeOf } from '../../document/editing/model'
 import { draftFrom } from './apply'
@@ -25,7 +25,7 @@ function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
   }
 }
 
-function rule(outcome: string, when: RuleBody['when'], told: Partial<RuleBody> = {}): RuleBody {
+function rule(outcome: string, when: ConcurrencyCondition['when'], told: Partial<ConcurrencyCondition> = {}): ConcurrencyCondition {
   return { outcome, when, at_least: null, preempt: [], ...told }
 }
 
@@ -37,8 +37,8 @@ const WATCH = part('root/watch', { kind: 'sequence', state: null, children: [LOO
 const ROOT = part('root', { kind: 'machine', state: null, outcomes: ['good', 'bad'], children: [SET, BOTH, WATCH], initial: 'set' })
 
 /** The document with other rules, as the server answers after an edit. */
-function answered(root: DocumentNode) {
-  return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null }
+function answered(root: DocumentNode): EditResultBody {
+  return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null, difference: null }
 }
 
 function Form({ path }: { readonly path: string }) {
@@ -65,7 +65,7 @@ beforeEach(() => {
     .on(`POST /documents/${ID}/targets`, { findings: [], dropped: false, problem: '' })
   live()
   useEditor.setState(blank(ID), true)
-  const draft = draftFrom({ graph: ROOT, findings: [], checked: true, document: INFO }, 'one', undefined)
+  const draft = draftFrom({ hash: 'h1', graph: ROOT, findings: [], checked: true, document: INFO }, 'one', undefined)
   setEditor({ phase: 'ready', base: { text: 'one', hash: 'h1' }, history: newHistory(draft) })
 })
 
@@ -103,7 +103,7 @@ it('keeps two changes of rules of which the second is made before the first is a
 })
 
 it('lets a rule preempt some branches while the others go on; then it has no outcome', async () => {
-  const preempting = { ...BOTH, rules: [RULES[0] ?? BOTH.rules[0], rule('', { left: 'b' }, { preempt: ['right'] })] as RuleBody[] }
+  const preempting = { ...BOTH, rules: [RULES[0] ?? BOTH.rules[0], rule('', { left: 'b' }, { preempt: ['right'] })] as ConcurrencyCondition[] }
   server().on(EDITS, answered({ ...ROOT, children: [SET, preempting] }))
   const user = show(<Form path="root/both" />)
   const words = 'all: preempted by rule 2'

@@ -2,10 +2,10 @@
 import { screen } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { show } from '../../../testing/page'
-import type { Finding } from '../../api/types'
+import type { FindingView } from '../../api/types'
 import { FindingList } from './FindingList'
 
-const UNKNOWN: Finding = {
+const UNKNOWN: FindingView = {
   severity: 'error',
   code: 'unknown-state',
   message: "no state is named 'motion.MoveJoint'",

@@ -2,15 +2,14 @@
 import { screen } from '@testing-library/react'
 import { useState } from 'react'
 import { expect, it } from 'vitest'
-import { live, node, run, show, snapshot } from '../../../testing/page'
-import type { GraphNodeBody } from '../../api/types'
+import { graphNode, live, node, run, show, snapshot } from '../../../testing/page'
+import type { GraphNode } from '../../api/types'
 import { nodeAt } from '../../document/tree'
 import { Outline } from './Outline'
 import { Selection } from './Selection'
 
-function part(path: string, told: Partial<GraphNodeBody> = {}): GraphNodeBody {
-  const name = path.split('/').at(-1) ?? path
-  return { path, name, kind: 'state', title: 'motion.MoveJoints', outcomes: ['reached', 'failed'], children: [], transitions: [], initial: null, conditions: [], ...told }
+function part(path: string, told: Partial<GraphNode> = {}): GraphNode {
+  return graphNode(path, { title: 'motion.MoveJoints', outcomes: ['reached', 'failed'], ...told })
 }
 
 const APPROACH = part('root/approach', {

@@ -3,16 +3,14 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
 import { control, live, run, server, session, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { BehaviorBody, StartBody } from '../../api/types'
+import type { BehaviorView, RunStarted, StartBody } from '../../api/types'
 import { useRefusal } from '../../api/refusal'
 import { ParameterForm } from './ParameterForm'
 
-const SHIFT: BehaviorBody = {
+const SHIFT: BehaviorView = {
   id: 'behaviors/shift.yaml',
   name: 'shift',
   description: '',
-  errors: 0,
-  warnings: 0,
   parameters: [
     { name: 'part', schema: { type: 'string', title: 'Part' }, required: true },
     { name: 'speed', schema: { type: 'number', title: 'Speed', minimum: 0.05, maximum: 1, default: 0.3, unit: 'm/s' }, required: false },
@@ -27,7 +25,7 @@ const SHIFT: BehaviorBody = {
 const DEFAULTS = { part: 'hca_1', speed: 0.3, cycles: 1, verify: true }
 const started = vi.fn()
 
-function Form({ of = SHIFT, obstacle, shown }: { readonly of?: BehaviorBody; readonly obstacle?: string; readonly shown?: string }) {
+function Form({ of = SHIFT, obstacle, shown }: { readonly of?: BehaviorView; readonly obstacle?: string; readonly shown?: string }) {
   return (
     <>
       <ParameterForm behavior={of} obstacle={obstacle} place="In the cell bench." terminal="flexcell run" onStarted={started} run={shown} />
@@ -115,8 +113,18 @@ it('begins with the userdata that is written as a JSON object, and with nothing 
 })
 
 it('takes over parameters, userdata and seed of the run that is shown', async () => {
-  const origin = { parameters: { part: 'hca_7', speed: 0.25, gone: 1 }, inputs: { value: 5 }, seed: 77 }
-  server().on('GET /runs/r0/events', { events: [origin] })
+  const origin: RunStarted = {
+    event: 'run_started',
+    seq: 1,
+    time_s: 0,
+    behavior: 'shift',
+    document: 'd1',
+    parameters: { part: 'hca_7', speed: 0.25, gone: 1 },
+    seed: 77,
+    clock: 'real',
+    inputs: { value: 5 },
+  }
+  server().on('GET /runs/r0/events', { events: [origin], last: 1 })
   const user = show(<Form shown="r0" />)
   await user.click(screen.getByRole('button', { name: 'Same as the shown run' }))
   await waitFor(() => expect(screen.getByLabelText(/^Part/)).toHaveValue('hca_7'))

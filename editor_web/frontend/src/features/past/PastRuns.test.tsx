@@ -3,7 +3,7 @@ import { fireEvent, screen, waitFor } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { live, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { PastRunBody } from '../../api/types'
+import type { PastRunBody, RecordingFile } from '../../api/types'
 import { dayEndS, dayStartS } from './days'
 import { PastRuns } from './PastRuns'
 import { Recordings } from './Recordings'
@@ -15,6 +15,7 @@ function past(told: Partial<PastRunBody>): PastRunBody {
   return {
     id: 'r1',
     behavior: 'shift',
+    document: 'd1',
     status: 'finished',
     outcome: 'good',
     success: true,
@@ -88,7 +89,7 @@ it('says why the journal cannot be read', async () => {
 
 it('lists recordings with their size, and why one cannot be opened', async () => {
   opened.mockReset()
-  const file = { path: 'runs/a.mcap', behavior: 'shift', started_at_s: 1000, size_bytes: 2_400_000, problem: '' }
+  const file: RecordingFile = { path: 'runs/a.mcap', run: 'r1', behavior: 'shift', started_at_s: 1000, size_bytes: 2_400_000, changed_at_s: 1003, problem: '' }
   server().on('GET /recordings', [file, { ...file, path: 'runs/b.mcap', behavior: '', size_bytes: 10, problem: 'it is cut off' }])
   const user = show(<Recordings href={(path) => `/recordings/${path}`} onOpen={opened} />)
   const [whole, cut] = await screen.findAllByRole('listitem')

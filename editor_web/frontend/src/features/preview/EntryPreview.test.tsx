@@ -1,14 +1,14 @@
 /** A named entry as an arm would be there: which arm, what is known of it, and why it cannot be shown. */
 import { screen, waitFor } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
-import { live, server, show } from '../../../testing/page'
+import { armInfo, live, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { ArmInfo } from '../../api/types'
+import type { EntryChanged } from '../../api/types'
 import type { Previewed } from '../../api/preview'
 import { EntryPreview } from './EntryPreview'
 
-const ARM: ArmInfo = { name: 'left', model: 'panda', joint_names: ['j1'], lower_rad: [-1], upper_rad: [1], velocity_rad_s: [1], tool: '', skills: [] }
-const ROW = { kind: 'joints', name: 'above', revision: 3, tags: ['station_1'], by: 'ana', reason: 'more room', changed_unix_ms: 0 }
+const ARM = armInfo({ joint_names: ['j1'], lower_rad: [-1], upper_rad: [1], velocity_rad_s: [1], acceleration_rad_s2: [10], effort_nm: [80], jerk_rad_s3: [100] })
+const ROW: EntryChanged = { kind: 'joints', name: 'above', revision: 3, deleted: false, tags: ['station_1'], by: 'ana', reason: 'more room', changed_unix_ms: 0 }
 const SHOWN: Previewed = { by: 'field', kind: 'joints', name: 'above', arm: 'left' }
 const closed = vi.fn()
 

@@ -4,7 +4,7 @@ import { afterEach, beforeEach, expect, it, vi } from 'vitest'
 import { server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { api } from '../../api/client'
-import type { StopAnswer } from '../../document/stopReport'
+import type { StopStatus } from '../../api/types'
 import { StopCell } from './StopCell'
 
 const STOP = 'http://127.0.0.9:4444/stop'
@@ -12,9 +12,10 @@ const CHANNEL = { url: STOP, token: 'stop-token' }
 const REASON = 'the cell was stopped in the dashboard'
 const ENGINE = 'POST /cell/stop'
 
-function answer(told: Partial<StopAnswer> & { readonly atRest?: boolean } = {}): StopAnswer {
+function answer(told: Partial<StopStatus> & { readonly atRest?: boolean } = {}): StopStatus {
   const { atRest = true, ...rest } = told
-  return { stop: 1, acknowledged: true, devices: [{ name: 'world', acknowledged: true, at_rest: atRest }], engine: 'informed', ...rest }
+  const devices = [{ name: 'world', connected: true, acknowledged: true, at_rest: atRest }]
+  return { stop: 1, reason: REASON, acknowledged: true, at_rest: atRest, engine: 'informed', after_s: 0.01, devices, ...rest }
 }
 
 /** The page of somebody, whose server has a stop process or not. */

@@ -1,24 +1,15 @@
 /** Teaching: triggers as a table and as YAML, tags of entries, and why an arm cannot be moved. */
 import { fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { afterEach, beforeEach, expect, it } from 'vitest'
-import { live, server, session, show } from '../../../testing/page'
+import { armInfo, live, server, session, show } from '../../../testing/page'
 import { Refusal, type FakeSocket } from '../../../testing/server'
 import { connectTeach } from '../../api/teaching'
-import type { ArmInfo, ArmLive, EntryRow, Trigger, TriggerStatus } from '../../api/types'
+import type { ArmLive, EntryChanged, Trigger, TriggerStatus } from '../../api/types'
 import { EntryDetails } from './EntryDetails'
 import { JogPanel } from './JogPanel'
 import { TriggerTable } from './TriggerTable'
 
-const LEFT: ArmInfo = {
-  name: 'left',
-  model: 'panda',
-  joint_names: ['j1', 'j2'],
-  lower_rad: [-2.9, -1.76],
-  upper_rad: [2.9, 1.76],
-  velocity_rad_s: [2, 2],
-  tool: 'hand',
-  skills: [],
-}
+const LEFT = armInfo({ tool: 'hand' })
 const SAVE: Trigger = {
   trig_name: 'Joints',
   robot_ns: 'left',
@@ -199,7 +190,7 @@ it.each([
 })
 
 it('keeps tags that are written as tags are, and only where they have changed', async () => {
-  const entry: EntryRow = { kind: 'joints', name: 'aside', revision: 3, tags: ['station_1'], by: 'ana', reason: '', changed_unix_ms: 0 }
+  const entry: EntryChanged = { kind: 'joints', name: 'aside', revision: 3, deleted: false, tags: ['station_1'], by: 'ana', reason: '', changed_unix_ms: 0 }
   answers['store/read_history'] = () => ({ changes: [] })
   server().on('POST /teach/tags', undefined).on('GET /teach/fits', {})
   taught()
