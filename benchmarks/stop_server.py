@@ -147,7 +147,7 @@ class Server:
         self.heartbeat = Heartbeat.of_process(worlds[0])
 
     def wait_until_idle(self) -> None:
-        """Wait until no run is under way and the devices take motions again."""
+        """Wait until no run is active and the devices take motions again."""
         while any(run["status"] in _UNDER_WAY for run in self.http.get("/api/v1/runs").json()):
             time.sleep(0.02)
 

@@ -107,7 +107,7 @@ def waiting(page: Page) -> None:
     page.get_by_role("option", name="stays").click()
     start(page)
     expect(page.get_by_role("log")).to_contain_text("pick —picked→ carry", timeout=LIMIT_MS)
-    expect(page.get_by_role("list", name="Arms whose way is blocked")).to_be_visible(timeout=LIMIT_MS)
+    expect(page.get_by_role("list", name="Arms with a blocked path")).to_be_visible(timeout=LIMIT_MS)
 
 
 def edited(page: Page) -> None:

@@ -286,7 +286,7 @@ class Session:
         """
         for run_id, started in self._runs.items():
             if started.result is None and not self.cell.connection.connected:
-                raise ControlError("a run is under way", where=run_id, hint="stop it first, then connect the cell")
+                raise ControlError("a run is active", where=run_id, hint="stop it first, then connect the cell")
         await self.cell.reconnect()
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:

@@ -226,7 +226,7 @@ class FakeBackend(Session):
 
     async def connect_cell(self) -> None:
         if any(not task.done() for task in self._tasks.values()):
-            raise ControlError("a run is under way", hint="stop it first, then connect the cell")
+            raise ControlError("a run is active", hint="stop it first, then connect the cell")
         self.lost_reason = ""
 
     def interrupted(self) -> tuple[RunRecord, ...]:

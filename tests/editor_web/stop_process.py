@@ -120,5 +120,5 @@ def stop_button(page: Page) -> Locator:
 
 
 def stop_news(page: Page) -> Locator:
-    """What became of the stop."""
-    return page.get_by_role("status", name="What became of the stop")
+    """State of the stop."""
+    return page.get_by_role("status", name="State of the stop")

@@ -46,7 +46,7 @@ def at_bus(
     # The browser reports refused requests as errors.
     with opened_page(browser, shop.running, path, size=size, scheme=scheme, quiet=False) as page:
         page.get_by_role("tab", name="Bus").click()
-        chooser = page.get_by_label("What of the bus")
+        chooser = page.get_by_label("Part of the bus")
         expect(chooser).to_be_visible()
         if page.locator("select.bus-kind").count():
             chooser.select_option(label=kind)
@@ -112,7 +112,7 @@ def test_a_parameter_is_set_and_a_topic_that_takes_commands_published_on(
         field.fill("450")
         page.get_by_role("button", name="Set", exact=True).click()
         expect(page.get_by_role("list", name="Value of plant/stiffness")).to_contain_text("450")
-        page.get_by_label("What of the bus").get_by_text("Topics", exact=True).click()
+        page.get_by_label("Part of the bus").get_by_text("Topics", exact=True).click()
         entry(page, "lamp").click()
         page.get_by_label("brightness").fill("0.5")
         page.get_by_role("button", name="Publish").click()
@@ -163,7 +163,7 @@ def test_the_bus_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme)
         entry(page, "joint_state").click()
         expect(page.get_by_role("list", name="Newest message of plant/joint_state")).to_be_visible()
         require_accessible(page, "topics", part=".dock")
-        page.get_by_label("What of the bus").get_by_text("Actions", exact=True).click()
+        page.get_by_label("Part of the bus").get_by_text("Actions", exact=True).click()
         entry(page, "travel").click()
         expect(page.get_by_role("form", name="Request to plant/travel")).to_be_visible()
         require_accessible(page, "actions", part=".dock")

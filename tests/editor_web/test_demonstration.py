@@ -123,13 +123,13 @@ def test_entries_are_chosen_in_their_order_and_the_behavior_opens_in_the_editor(
     with at_editor(browser, taught, SHIFT_ID) as page:
         opened_dialog(page)
         choose_all(page)
-        preview = page.get_by_role("region", name="What it will do")
+        preview = page.get_by_role("region", name="Resulting steps")
         expect(preview.get_by_role("listitem")).to_have_text(WORDS)
         expect(page.get_by_label("What tray_pick is for")).to_have_value("grasp")
-        expect(page.get_by_label("What is grasped")).to_have_value("gear")
+        expect(page.get_by_label("Grasped part")).to_have_value("gear")
         page.get_by_label("What above_tray is for").select_option("via")
         expect(preview.get_by_role("listitem")).to_have_text(["Move to home", "Move to above_tray", *WORDS[1:]])
-        page.get_by_label("What is grasped").select_option("lid")
+        page.get_by_label("Grasped part").select_option("lid")
         expect(preview.get_by_role("listitem").nth(2)).to_have_text("Pick lid at tray_pick")
         page.get_by_role("listitem", name="Step 2: above_tray").get_by_role("button", name="Remove").click()
         page.get_by_role("listitem", name="Step 1: home").get_by_role("button", name="Later").click()
@@ -163,7 +163,7 @@ def test_on_a_phone_the_dialog_is_as_wide_as_the_page(browser: Browser, taught: 
         page.get_by_role("tab", name="Library").click()
         opened_dialog(page)
         choose_all(page)
-        expect(page.get_by_role("region", name="What it will do").get_by_role("listitem")).to_have_text(WORDS)
+        expect(page.get_by_role("region", name="Resulting steps").get_by_role("listitem")).to_have_text(WORDS)
         page.wait_for_function(
             "() => document.querySelector('dialog').scrollWidth <= document.querySelector('dialog').clientWidth"
         )

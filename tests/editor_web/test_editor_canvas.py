@@ -307,7 +307,7 @@ def test_conduct_data_and_the_document_itself_are_edited_in_forms(browser: Brows
         timeout = page.get_by_role("combobox", name="Timeout", exact=True)
         timeout.fill("30 s")
         timeout.press("Enter")
-        expect(page.get_by_label("Timeout leads to")).to_have_value("bad")
+        expect(page.get_by_label("Timeout target")).to_have_value("bad")
         behavior = saved(page, shop)
     node = behavior.root.children["set"]
     assert node.parameters == {"value": "${greeting}"}

@@ -56,7 +56,7 @@ def test_it_is_seen_who_writes_a_key_who_reads_it_and_on_which_way_it_is_undefin
 ) -> None:
     (shop.project / FLOW_ID).write_text(FLOW, encoding="utf-8")
     with at_editor(browser, shop, FLOW_ID, scheme=scheme) as page:
-        page.get_by_role("button", name=re.compile("^Data flow: who writes")).click()
+        page.get_by_role("button", name=re.compile("^Data flow: writers")).click()
         panel = page.get_by_label("Data flow", exact=True).first
         expect(panel.get_by_role("button", name=re.compile("limit"))).to_contain_text("number, s")
         arrows = page.locator(".flow-link")
@@ -152,7 +152,7 @@ def test_what_is_seen_in_place_follows_its_file(browser: Browser, shop: Workshop
     (shop.project / OUTER_ID).write_text(OUTER, encoding="utf-8")
     with at_editor(browser, shop, OUTER_ID) as page:
         card(page, "root/nap").click()
-        page.get_by_role("button", name="Show what is inside here (O)").click()
+        page.get_by_role("button", name="Show the contents here (O)").click()
         expect(card(page, "root/nap/root/only")).to_be_visible()
         nap = shop.project / NAP_ID
         nap.write_text(nap.read_text(encoding="utf-8").replace("only", "later"), encoding="utf-8")

@@ -70,7 +70,7 @@ def asked(page: Page) -> Locator:
 
 def blocked(page: Page) -> Locator:
     """The arms that wait."""
-    return page.get_by_role("list", name="Arms whose way is blocked")
+    return page.get_by_role("list", name="Arms with a blocked path")
 
 
 @contextmanager

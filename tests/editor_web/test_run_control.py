@@ -130,7 +130,7 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
             SHIFT.replace("  machine:", "  priority:").replace("    initial: first\n", ""), encoding="utf-8"
         )
         command(page, "Take file").click()
-        expect(page.get_by_role("alert")).to_contain_text("Take the file as it is now was refused")
+        expect(page.get_by_role("alert")).to_contain_text("Apply the current file was refused")
 
 
 def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Browser, shop: Workshop) -> None:
@@ -217,7 +217,7 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
         expect(first.locator(".page-head .badge")).to_have_text("running")
         expect(first.get_by_role("region", name="The run asks")).to_be_visible()
         command(first, "Operate").click()
-        expect(first.get_by_text("Nobody operates this run: it asks nothing.")).to_be_visible()
+        expect(first.get_by_text("This run has no operator: it asks nothing.")).to_be_visible()
     changes = [event.status for event in shop.events(run) if isinstance(event, OperatorChanged)]
     assert changes == ["attached", "lost", "attached", "detached"]
 

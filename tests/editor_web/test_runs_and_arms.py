@@ -32,7 +32,7 @@ def test_several_runs_go_on_side_by_side(browser: Browser, shop: Workshop) -> No
         expect(page.locator(".active-run")).to_contain_text("+ 1")
         page.get_by_role("button", name="Stop", exact=True).click()
         expect(page.locator(".page-head .badge")).to_have_text("stopped")
-        expect(page.get_by_text("Another run is under way")).to_be_visible()
+        expect(page.get_by_text("Another run is active")).to_be_visible()
         page.get_by_role("button", name="Start").click()
         expect(page.locator(".page-head .badge")).to_have_text("running")
         expect(runs.get_by_role("link")).to_have_count(3)
@@ -73,7 +73,7 @@ def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Works
         stop = page.get_by_role("button", name="Stop the cell")
         expect(stop).to_have_attribute("title", re.compile("This is no emergency stop"))
         stop.click()
-        expect(page.get_by_role("status", name="What became of the stop")).to_contain_text("All arms at rest")
+        expect(page.get_by_role("status", name="State of the stop")).to_contain_text("All arms at rest")
         expect(page.get_by_role("table").locator(".badge", has_text="stopped")).to_have_count(2)
     for run in runs:
         reasons = [event.reason for event in shop.events(run) if isinstance(event, StopRequested)]

@@ -85,13 +85,13 @@ def test_the_page_operates_one_run_at_a_time(browser: Browser, shop: Workshop) -
     """Operating another one leaves the one before; leaving the page of all runs keeps it."""
     runs = three_runs(shop)
     with opened_page(browser, shop.running) as page:
-        page.get_by_role("link", name="All runs under way").click()
+        page.get_by_role("link", name="All active runs").click()
         nap, night = card(page, "nap"), card(page, "night")
         command(nap, "Operate").click()
         expect(nap).to_contain_text("You operate this run")
         command(night, "Operate").click()
         expect(night).to_contain_text("You operate this run")
-        expect(nap).to_contain_text("Nobody operates this run")
+        expect(nap).to_contain_text("This run has no operator")
         night.get_by_role("link", name="night").click()
         expect(page.get_by_text("You operate this run")).to_be_visible()
     told = [[e.status for e in shop.events(runs[name]) if isinstance(e, OperatorChanged)] for name in ("nap", "night")]

@@ -115,7 +115,7 @@ def test_a_primitive_is_measured_against_its_demonstration_in_the_joints_and_at_
     # A capture may be asked for before it is there; the server says so in the console.
     with teaching(browser, site, quiet=False) as page:
         page.get_by_role("button", name="Record", exact=True).click()
-        expect(page.get_by_role("status", name="The Helping Hand says")).to_have_text("left is being recorded")
+        expect(page.get_by_role("status", name="Messages of the Helping Hand")).to_have_text("left is being recorded")
         site.call(site.turn(0.3))
         page.get_by_role("button", name="End recording").click()
         captures = tab(page, "Captures")
@@ -134,7 +134,9 @@ def test_a_frame_is_captured_as_seen_from_another(browser: Browser, site: TeachS
         asked.get_by_label("Seen from").select_option("left/panda_hand")
         require_accessible(page, "a frame is chosen")
         asked.get_by_role("button", name="Capture the frame").click()
-        expect(page.get_by_role("status", name="The Helping Hand says")).to_have_text(re.compile("of left: pose"))
+        expect(page.get_by_role("status", name="Messages of the Helping Hand")).to_have_text(
+            re.compile("of left: pose")
+        )
         captures = tab(page, "Captures")
         expect(captures.get_by_text("In left/panda_hand")).to_be_visible()
         expect(captures.get_by_text(re.compile(r"^-?0\.0 {2}-?0\.0 {2}103\.4 mm"))).to_be_visible()

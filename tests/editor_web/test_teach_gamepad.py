@@ -51,7 +51,7 @@ def test_the_buttons_of_a_gamepad_are_triggers(browser: Browser, site: TeachSite
         switch(buttons.get_by_role("switch"))
         pads.hold(index=1)
         pads.hold(SOUTH)
-        said = page.get_by_role("status", name="The Helping Hand says")
+        said = page.get_by_role("status", name="Messages of the Helping Hand")
         expect(said).to_have_text(re.compile("capture [0-9]+ of left: joints"))
         number = int(said.inner_text().split()[1])
         expect(buttons.get_by_role("status", name="Gamepad")).to_have_text("gamepad/south")

@@ -41,7 +41,7 @@ async def test_a_cell_in_use_is_not_connected_and_says_why(serve: Serve) -> None
     async with serve(backend) as served:
         await backend.start(SINGLE.id, parameters={"part": "hca_north"}, seed=1)
         answer = await served.http.post("/api/v1/cell/connect", json={})
-    assert (answer.status_code, answer.json()["message"]) == (409, "a run is under way")
+    assert (answer.status_code, answer.json()["message"]) == (409, "a run is active")
 
 
 async def test_only_an_operator_connects(serve: Serve) -> None:

@@ -200,7 +200,7 @@ async def test_a_cell_is_not_connected_under_a_run(tmp_path: Path, world: FakeWo
     async with session(tmp_path) as opened_session:
         run = await opened_session.start("behaviors/moves.yaml", parameters={}, seed=1)
         world.lose()
-        with pytest.raises(ControlError, match="a run is under way"):
+        with pytest.raises(ControlError, match="a run is active"):
             await opened_session.connect_cell()
         await opened_session.wait(run)
         await opened_session.connect_cell()

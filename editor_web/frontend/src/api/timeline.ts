@@ -13,7 +13,7 @@ export interface Subject {
   /** Below `/api/v1`. */
   readonly address: string
   readonly run: string
-  /** What the 3D view shows it from: the run, or the path of its recording. */
+  /** Layers of the 3D view it from: the run, or the path of its recording. */
   readonly recorded: string
   /** There is no present to go back to. */
   readonly isPast: boolean

@@ -93,7 +93,7 @@ export function App() {
         <div>
           <PageLink href={RUNS_HREF} className={sideItem(isOfRuns)} isCurrent={isOfRuns} onOpen={() => open(RUNS_HREF)}>
             <IconLayoutGrid size={15} aria-hidden />
-            <span className="side-item-name">All runs under way</span>
+            <span className="side-item-name">All active runs</span>
           </PageLink>
           <PageLink href={PAST_HREF} className={sideItem(route.page === 'past')} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
             <IconHistory size={15} aria-hidden />

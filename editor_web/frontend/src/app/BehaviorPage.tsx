@@ -46,7 +46,7 @@ export interface BehaviorPageProps {
   readonly id: string
   /** The run that is shown, if any. */
   readonly run: RunView | undefined
-  /** All runs under way. */
+  /** All active runs. */
   readonly active: readonly RunView[]
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean

@@ -64,7 +64,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
           </button>
           <RunTime run={named} />
           {others > 0 && (
-            <PageLink href={RUNS_HREF} className="active-run-others" title="All runs under way" onOpen={onRuns}>
+            <PageLink href={RUNS_HREF} className="active-run-others" title="All active runs" onOpen={onRuns}>
               + {others}
               <span className="active-run-words"> other{others > 1 && 's'}</span>
             </PageLink>

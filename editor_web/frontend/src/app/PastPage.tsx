@@ -69,7 +69,7 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
     <Graph root={behavior.graph} selected={selected} onSelect={setSelected} shown={shown} breadcrumb={<Breadcrumb selected={selected} onSelect={show} />} />
   ) : (
     <Panel title="Graph">
-      <Empty title="There is no graph to draw">Nothing tells which behavior was executed; its events are below.</Empty>
+      <Empty title="There is no graph to draw">The executed behavior is unknown; its events are below.</Empty>
     </Panel>
   )
   const cell = (

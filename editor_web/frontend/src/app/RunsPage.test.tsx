@@ -109,7 +109,7 @@ it('operates one run at a time', async () => {
   expect(card('nap').getByText(/^You operate this run/)).toBeVisible()
   await user.click(card('night').getByRole('button', { name: 'Operate' }))
   expect(card('night').getByText(/^You operate this run/)).toBeVisible()
-  expect(card('nap').getByText(/^Nobody operates this run/)).toBeVisible()
+  expect(card('nap').getByText(/^This run has no operator/)).toBeVisible()
   const operated = page?.sent.filter((sent) => (sent as { k: string }).k === 'operate')
   expect(operated).toEqual([{ k: 'operate', run: 'r1' }, { k: 'operate', run: 'r3' }])
 })
@@ -132,10 +132,10 @@ it('opens a run by its name', async () => {
   expect(opened.mock.calls).toEqual([['/runs/r3']])
 })
 
-it('says what to do while no run is under way', async () => {
+it('says what to do while no run is active', async () => {
   live({ runs: [run({ status: 'stopped', cause: 'enough' })] })
   show(<RunsPage onOpen={opened} />)
-  expect(screen.getByText('None is under way')).toBeVisible()
+  expect(screen.getByText('None is active')).toBeVisible()
   expect(screen.getByText(/Choose a behavior in the menu and start it/)).toBeVisible()
   expect(screen.getByRole('list', { name: 'Runs that ended last' })).toHaveTextContent('stopped')
   await waitFor(() => expect(server().asked.map((each) => each.what)).toContain('GET /interrupted'))

@@ -1,4 +1,4 @@
-/** All runs under way at once, each with its commands; those that ended last; and two of them to be compared. */
+/** All active runs at once, each with its commands; those that ended last; and two of them to be compared. */
 import { IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { useData } from '../api/data'
@@ -53,7 +53,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
         <span className="spacer" />
         <CommandButton
           label="Side by side"
-          hint="Graph and log of two runs beside one another"
+          hint="Graph and log of two runs side by side"
           icon={<IconLayoutColumns size={16} aria-hidden />}
           obstacle={pair ? undefined : CHOOSE}
           onObstacle={() => showRefusal('Side by side', CHOOSE)}
@@ -64,7 +64,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
       <div className="runs-body">
         <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
         {active.length === 0 ? (
-          <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is under way">
+          <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is active">
             Choose a behavior in the menu and start it; several go on at once as long as no two need the same arm.
           </Empty>
         ) : (
@@ -137,7 +137,7 @@ function pairOf(chosen: readonly string[], active: readonly RunView[]): readonly
 }
 
 function wordsOf(active: number, asking: number): string {
-  const going = active === 0 ? 'None is under way' : active === 1 ? 'One is under way' : `${active} are under way`
+  const going = active === 0 ? 'None is active' : active === 1 ? 'One is active' : `${active} are under way`
   if (asking === 0) return going
   return `${going}, ${asking === 1 ? 'one asks' : `${asking} ask`}`
 }

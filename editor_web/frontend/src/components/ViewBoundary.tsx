@@ -74,7 +74,7 @@ function FailedView({ name, failure, onAgain }: FailedViewProps) {
           {copied === 'yes' ? 'Copied' : 'Copy details'}
         </button>
       </div>
-      <p className="quiet">The rest of the page goes on. Please report the details.</p>
+      <p className="quiet">The rest of the page still works. Please report the details.</p>
       {copied === 'refused' && <pre>{details}</pre>}
     </section>
   )

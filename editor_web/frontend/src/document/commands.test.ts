@@ -18,7 +18,7 @@ describe('a command', () => {
     ['pause', {}, undefined],
     ['pause', { role: 'viewer' }, 'you may look only; log in with the operator token'],
     ['pause', { isConnected: false }, 'the server does not answer'],
-    ['pause', { run: undefined, control: null }, 'no run is under way'],
+    ['pause', { run: undefined, control: null }, 'no run is active'],
     ['pause', { run: { ...run, status: 'stopping' } }, 'the run is stopping'],
     ['pause', { control: { ...control, paused: true } }, 'the run is paused'],
     ['pause', { control: { ...control, paused: true, stepping: true } }, undefined],
@@ -43,7 +43,7 @@ describe('a command', () => {
 describe('the words of a run', () => {
   it.each<[Partial<ControlView>, string]>([
     [{}, 'Running'],
-    [{ paused: true }, 'Pausing: what moves comes to rest'],
+    [{ paused: true }, 'Pausing: motions come to rest'],
     [{ paused: true, confirmed: true }, 'Paused, everything rests'],
     [{ paused: true, confirmed: true, cannot: ['g1'] }, 'Paused; cannot be held: g1'],
     [{ paused: true, stepping: true }, 'Stepping: runs to the next stop'],

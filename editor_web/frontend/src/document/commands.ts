@@ -32,7 +32,7 @@ export function disabledReason(command: Command, now: Situation): string | undef
   if (!now.isConnected) return 'the server does not answer'
   if (now.role !== 'operator') return 'you may look only; log in with the operator token'
   if (command === 'breakpoint') return node ? undefined : 'choose a node in the graph first'
-  if (!run || !isActive(run) || !control) return 'no run is under way'
+  if (!run || !isActive(run) || !control) return 'no run is active'
   if (run.status === 'stopping') return 'the run is stopping'
   switch (command) {
     case 'pause':
@@ -80,7 +80,7 @@ export function runStatusText(run: RunView | undefined, control: ControlView | n
   if (run.status === 'stopping') return 'Stopping: states clean up, robots come to rest'
   const asked = requestsOf(control).length
   if (control.stepping) return 'Stepping: runs to the next stop'
-  if (control.paused && !control.confirmed) return 'Pausing: what moves comes to rest'
+  if (control.paused && !control.confirmed) return 'Pausing: motions come to rest'
   if (control.paused) {
     return control.cannot.length > 0 ? `Paused; cannot be held: ${control.cannot.join(', ')}` : 'Paused, everything rests'
   }
@@ -105,6 +105,6 @@ export function operatorWords(control: ControlView, isMine: boolean): string {
   if (isMine) return `You operate this run. If this page is lost, ${lossWords(control)}.`
   if (control.operator === 'attached') return 'Another page or console operates this run.'
   return control.demanded
-    ? 'Nobody operates this run, and it demands an operator: it asks all the same.'
-    : 'Nobody operates this run: it asks nothing.'
+    ? 'This run has no operator, but demands one: it asks anyway.'
+    : 'This run has no operator: it asks nothing.'
 }

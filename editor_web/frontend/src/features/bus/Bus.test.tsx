@@ -142,7 +142,7 @@ it('shows the course of a goal, and cancels it', async () => {
 
 it('tells who holds what, for whom and for how long', async () => {
   const { socket } = await at('Leases')
-  expect(screen.getByText('Nobody holds anything')).toBeVisible()
+  expect(screen.getByText('No leases')).toBeVisible()
   const lease = { resource: 'plant', run: 'run-7', node: 'root/move', goal: 'g1', held_s: 2 }
   const goal: GoalInfo = { id: 'g1', address: 'plant/travel', run: 'run-7', node: 'root/move', status: 'active', feedback: null }
   socket.tell({ ...TRAFFIC, leases: [lease], goals: [goal] })

@@ -63,9 +63,9 @@ export function Bus({ session }: BusProps) {
   const tools = (
     <div className="bus-tools" ref={toolsRef}>
       {width === 0 ? null : width > 520 ? (
-        <SegmentedControl size="xs" aria-label="What of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value as BusKind)} />
+        <SegmentedControl size="xs" aria-label="Part of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value as BusKind)} />
       ) : (
-        <select className="bus-kind" aria-label="What of the bus" value={kind} onChange={(event) => setKind(event.currentTarget.value as BusKind)}>
+        <select className="bus-kind" aria-label="Part of the bus" value={kind} onChange={(event) => setKind(event.currentTarget.value as BusKind)}>
           {KINDS.map((each) => (
             <option key={each.value} value={each.value}>
               {each.label}
@@ -103,7 +103,7 @@ export function Bus({ session }: BusProps) {
   }
 
   function detail(known: BusListing) {
-    if (!name) return <Empty title="Nothing is chosen">Choose one on the left to see what it is, and what it says or takes.</Empty>
+    if (!name) return <Empty title="Nothing is chosen">Select an entry on the left to see its description, messages and requests.</Empty>
     const shared = { mayChange, onBack: () => setChosen({ ...chosen, [kind]: undefined }) }
     const facts = known.topics.find((each) => each.name === name)
     if (kind === 'topics' && facts) {

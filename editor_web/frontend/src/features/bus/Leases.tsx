@@ -15,7 +15,7 @@ export function Leases({ leases, goals, search }: LeasesProps) {
   const shown = leases.filter((each) => `${each.resource} ${each.run} ${each.node}`.toLowerCase().includes(search.toLowerCase()))
   if (shown.length === 0) {
     return (
-      <Empty icon={<IconLockOpen size={26} stroke={1.4} aria-hidden />} title={leases.length > 0 ? 'Nothing matches' : 'Nobody holds anything'}>
+      <Empty icon={<IconLockOpen size={26} stroke={1.4} aria-hidden />} title={leases.length > 0 ? 'Nothing matches' : 'No leases'}>
         {leases.length > 0 ? 'Clear the search.' : 'A run takes an arm or gripper when it first commands it, and keeps it to its end.'}
       </Empty>
     )

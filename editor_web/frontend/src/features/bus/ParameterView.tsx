@@ -32,7 +32,7 @@ export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) 
   return (
     <Detail name={facts.name} type="parameter" doc={facts.doc} onBack={onBack}>
       <ValueTree label={`Value of ${facts.name}`} value={value} />
-      <Caution mayChange={mayChange} words="This changes at once what the robot does, and may move it." />
+      <Caution mayChange={mayChange} words="This takes effect at once and may move the robot." />
       <RequestForm
         label={`Set ${facts.name}`}
         form={form}

@@ -29,7 +29,7 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
         words={
           isAction
             ? 'This may move the robot. The goal is cancelled when you leave this page.'
-            : 'This may change what the robot does, and may move it.'
+            : 'This may affect the robot and may move it.'
         }
       />
       <RequestForm
@@ -64,7 +64,7 @@ function CourseView({ course }: { course: RequestProgress }) {
         {STATUS_WORDS[course.status] ?? course.status}
         {course.cause && `: ${course.cause}`}
       </p>
-      {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Share of the way" />}
+      {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Progress" />}
       {course.feedback != null && !isOver(course) && <ValueTree label="Feedback" value={course.feedback} />}
       {course.answer != null && <ValueTree label="Answer" value={course.answer} />}
     </div>

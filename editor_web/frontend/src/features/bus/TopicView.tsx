@@ -51,7 +51,7 @@ function Publish({ topic, mayChange }: { topic: string; mayChange: boolean }) {
 
   return (
     <>
-      <Caution mayChange={mayChange} words="This topic takes commands: what is published here may move the robot." />
+      <Caution mayChange={mayChange} words="This topic accepts commands: publishing may move the robot." />
       <RequestForm
         label={`Publish on ${topic}`}
         form={form}

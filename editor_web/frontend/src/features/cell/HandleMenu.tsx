@@ -43,7 +43,7 @@ export function HandleMenu() {
         <SegmentedControl
           fullWidth
           size="xs"
-          aria-label="What the handle does"
+          aria-label="Function of the handle"
           disabled={arm === ''}
           data={[
             { value: 'move', label: 'Move the tool' },

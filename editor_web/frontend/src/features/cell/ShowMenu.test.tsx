@@ -36,7 +36,7 @@ it('puts the parts back, and says why that was refused', async () => {
   expect(server().bodies('POST /bus/call').at(-1)).toEqual({ address: 'cell/reset_parts', request: {} })
 })
 
-it('puts no part back while a run is under way', () => {
+it('puts no part back while a run is active', () => {
   show(<ResetParts isBusy />)
   expect(screen.getByRole('button', { name: 'Reset parts' })).toBeDisabled()
 })

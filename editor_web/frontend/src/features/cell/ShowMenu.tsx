@@ -6,11 +6,11 @@ import { LAYER_GROUPS, setLayerShown, useShownLayers, type LayerGroup } from '..
 
 const WORDS: Record<LayerGroup, readonly [label: string, description: string]> = {
   voxels: ['Voxels', 'Where the cameras see something unknown'],
-  ways: ['Planned ways', 'Blue when proposed, green under way, red while blocked'],
-  obstacles: ['Planning scene', 'Obstacles that were put there, and what arms hold'],
+  ways: ['Planned ways', 'Blue: proposed, green: active, red: blocked'],
+  obstacles: ['Planning scene', 'Obstacles of the planning scene, and held parts'],
   people: ['People', 'Their arms in a simulated cell'],
-  cameras: ['Cameras', 'Where they stand and how far away is what they see'],
-  detections: ['Detections', 'Boxes around what the cameras find, with label and score'],
+  cameras: ['Cameras', 'Their poses and depth images'],
+  detections: ['Detections', 'Boxes around detections, with label and score'],
   frames: ['Frames', 'Axes of the world, the tools and the parts'],
 }
 
@@ -20,7 +20,7 @@ export function ShowMenu() {
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
       <Popover.Target>
-        <button type="button" className="command" title="What the 3D view shows" onClick={() => setOpen(!isOpen)}>
+        <button type="button" className="command" title="Layers of the 3D view" onClick={() => setOpen(!isOpen)}>
           <IconEye size={15} aria-hidden />
           <span className="command-label">Show</span>
         </button>

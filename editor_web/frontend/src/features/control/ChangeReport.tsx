@@ -6,7 +6,7 @@ import type { Commands } from './useCommands'
 export function ChangeReport({ commands }: { commands: Commands }) {
   const { report, forgetReport } = commands
   return (
-    <Dialog isOpen={report !== undefined} onClose={forgetReport} title="The run goes on with the file as it is now">
+    <Dialog isOpen={report !== undefined} onClose={forgetReport} title="The run continues with the current file">
       {report?.length === 0 && <p>The file means the same as before.</p>}
       <ul className="change-report">
         {report?.map((line) => (

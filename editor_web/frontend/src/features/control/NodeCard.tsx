@@ -40,7 +40,7 @@ export function NodeCard({ node, commands }: { node: GraphNode; commands: Comman
       <div className="command-row">
         <CommandButton
           label="Run again"
-          hint="What runs in it is preempted and cleans up first"
+          hint="Its active children are preempted and clean up first"
           icon={<IconRepeat size={16} aria-hidden />}
           shortcut="r"
           obstacle={commands.obstacle('repeat')}

@@ -33,7 +33,7 @@ it('says of every command why it is not possible without a run', () => {
   show(<Bar />)
   for (const name of COMMANDS) {
     expect(button(name)).toHaveAttribute('aria-disabled', 'true')
-    expect(button(name)).toHaveAttribute('title', 'Not possible: no run is under way')
+    expect(button(name)).toHaveAttribute('title', 'Not possible: no run is active')
   }
   expect(screen.getByLabelText('Autonomy')).toBeDisabled()
 })
@@ -42,7 +42,7 @@ it('says so also to those who press it, until the words are put away', async () 
   live()
   const user = show(<Bar />)
   await user.click(button('Pause'))
-  expect(screen.getByRole('alert')).toHaveTextContent('Pause was refused: no run is under way')
+  expect(screen.getByRole('alert')).toHaveTextContent('Pause was refused: no run is active')
   await user.click(button('Put the refusal away'))
   expect(screen.queryByRole('alert')).toBeNull()
   expect(server().asked.map((each) => each.what)).not.toContain('POST /runs//control/pause')
@@ -80,7 +80,7 @@ it('tells how the run stands and where it waits, as it changes', () => {
   const waiting = [asks('root/first', { point: 'before', outcome: '', required: '', reasons: ['pause'] })]
   const socket = live({ ...PAUSED, control: control({ paused: true, confirmed: false, waiting }) })
   show(<Bar of={RUN} />)
-  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Pausing: what moves comes to rest')
+  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Pausing: motions come to rest')
   expect(screen.getByRole('list', { name: 'Nodes that wait' })).toHaveTextContent('root/first before its entry: paused')
   socket.tell(snapshot({ run: 'r1', runs: [RUN], control: control() }))
   expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Running')

@@ -61,7 +61,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
         <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut={key('i')} onPress={() => commands.step('into')} />
         <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut={key('o')} onPress={() => commands.step('over')} />
         <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut={key('u')} onPress={() => commands.step('out')} />
-        <CommandButton {...bar('back', 'Step back')} hint="Undo what began last, and stand before its entry again" icon={<IconArrowBackUp size={16} aria-hidden />} shortcut={key('z')} onPress={commands.stepBack} />
+        <CommandButton {...bar('back', 'Step back')} hint="Undo the last started node, and return to before its entry" icon={<IconArrowBackUp size={16} aria-hidden />} shortcut={key('z')} onPress={commands.stepBack} />
         <span className="run-bar-gap" />
         <CommitSlider
           label="Autonomy"
@@ -83,13 +83,13 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
         />
         <CommandButton
           {...bar('change', 'Take file')}
-          hint="Go on with the behavior as its file is now, and see what that changes"
+          hint="Apply the current file, and show the changes"
           icon={<IconRefreshDot size={16} aria-hidden />}
           onPress={() => commands.change(false)}
         />
         <CommandButton
           {...bar('change', 'Take file and preempt')}
-          hint="As Take file; states that run and have changed are preempted and entered anew, branches that are gone are preempted"
+          hint="Like Take file; changed active states are preempted and entered again, removed branches are preempted"
           icon={<IconRefreshAlert size={16} aria-hidden />}
           onPress={() => commands.change(true)}
         />

@@ -18,7 +18,7 @@ export interface Commands {
   readonly stop: () => void
   readonly setAutonomy: (level: Level) => Promise<boolean>
   readonly toggleOperating: () => void
-  /** Take the file as it is now; with `preempt` what is active and has changed is preempted. */
+  /** Apply the current file; with `preempt` what is active and has changed is preempted. */
   readonly change: (preempt: boolean) => void
   readonly lock: (path: string, reason: string) => Promise<unknown>
   readonly unlock: (path: string) => Promise<unknown>
@@ -70,7 +70,7 @@ export function useCommands(run: RunView | undefined, node: string | undefined, 
         else operate(useLive.getState().operated === id ? '' : id)
       },
       change: (preempt) =>
-        attempt('change', 'Take the file as it is now', async () => setReport((await api.change(id, { preempt })).changes)),
+        attempt('change', 'Apply the current file', async () => setReport((await api.change(id, { preempt })).changes)),
       lock: (path, reason) => sendOf('Lock', () => api.lock(id, path, reason)),
       unlock: (path) => sendOf('Unlock', () => api.unlock(id, path)),
       force: (path, outcome) => sendOf(`Force ${outcome}`, () => api.force(id, path, outcome)),

@@ -54,7 +54,7 @@ export function Data({ run, onShow }: DataProps) {
   )
 
   function body() {
-    if (!run) return <NoData title="No run is shown">Start the behavior; what its states share appears here.</NoData>
+    if (!run) return <NoData title="No run is shown">Start the behavior; the userdata of its states appears here.</NoData>
     if (!current) return <div className="page-wait" role="status" aria-label="Loading" />
     if (current.problem) return <NoData title="The data cannot be shown">{current.problem}</NoData>
     if (scopes.length === 0 && search) return <NoData title="Nothing matches">Clear the search to see everything.</NoData>

@@ -53,7 +53,7 @@ it('offers what was taught, and says what its steps will do', async () => {
   expect(screen.queryByRole('button', { name: /note/ })).toBeNull()
   expect(names()).toEqual(['Step 1: above', 'Step 2: tray', 'Step 3: Close gripper'])
   const words = await screen.findByText('goes to close')
-  expect(within(screen.getByRole('region', { name: 'What it will do' })).getAllByRole('listitem').map((each) => each.textContent)).toEqual([
+  expect(within(screen.getByRole('region', { name: 'Resulting steps' })).getAllByRole('listitem').map((each) => each.textContent)).toEqual([
     'goes to above',
     'goes to tray',
     words.textContent,
@@ -74,7 +74,7 @@ it('changes the order, takes steps away, and says what a step is for', async () 
   await user.click(step(/sweep/).getByRole('button', { name: 'Remove' }))
   await user.selectOptions(await screen.findByLabelText('What above is for'), 'depart')
   await waitFor(() => expect(wanted()?.steps).toEqual([{ kind: 'pose', name: 'tray' }, { kind: 'joints', name: 'above', role: 'depart' }]))
-  await user.selectOptions(await screen.findByLabelText('What is grasped'), 'cup')
+  await user.selectOptions(await screen.findByLabelText('Grasped part'), 'cup')
   await waitFor(() => expect(wanted()?.steps[0]).toEqual({ kind: 'pose', name: 'tray', part: 'cup' }))
 })
 

@@ -105,8 +105,8 @@ function OptionFields({ options, arms, arm, onChange }: OptionFieldsProps) {
 function Preview({ proposed }: { proposed: Proposed }) {
   const { proposal, problem } = proposed
   return (
-    <section className="preview" aria-label="What it will do" aria-live="polite">
-      <h3>What it will do</h3>
+    <section className="preview" aria-label="Resulting steps" aria-live="polite">
+      <h3>Resulting steps</h3>
       {problem && (
         <p className="is-failed" role="alert">
           {problem}

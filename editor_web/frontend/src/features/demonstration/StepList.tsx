@@ -20,7 +20,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
   return (
     <section className="chosen" aria-label="Steps">
       <h3>Steps in their order</h3>
-      {steps.length === 0 && <p className="quiet">Add what was taught, in the order in which it shall happen.</p>}
+      {steps.length === 0 && <p className="quiet">Add taught entries, in the order of execution.</p>}
       <ol className="chosen-list">
         {steps.map((step, index) => {
           const known = fitting(decided, steps) ? decided[index] : undefined
@@ -101,7 +101,7 @@ function PartChoice({ part, parts, onChange }: PartChoiceProps) {
       takes
       <select
         className="chosen-select"
-        aria-label="What is grasped"
+        aria-label="Grasped part"
         value={part}
         onChange={(event) => onChange(event.currentTarget.value)}
       >

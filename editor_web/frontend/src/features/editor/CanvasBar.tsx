@@ -51,7 +51,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       <Tool label="Drag a box to choose" isPressed={boxSelects} onPress={onBoxSelects}>
         <IconSelect size={17} />
       </Tool>
-      <Tool label="Data flow: who writes and reads what (D)" isPressed={hasFlow} onPress={toggleDataFlow}>
+      <Tool label="Data flow: writers and readers of each key (D)" isPressed={hasFlow} onPress={toggleDataFlow}>
         <IconRoute2 size={17} />
       </Tool>
       <Tool label="Notes on the canvas" isPressed={hasNotes} onPress={toggleNotes}>

@@ -37,7 +37,7 @@ export function DocumentForm() {
         <TemplateInput
           label="Description of the behavior"
           isLong
-          placeholder="What it does, for those who start it"
+          placeholder="What it does, for operators"
           value={document.description}
           onCommit={(typed) => setDocument('Description', () => ({ description: typed || null }))}
         />

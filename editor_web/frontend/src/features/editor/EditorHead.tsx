@@ -98,7 +98,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           label="Run"
           shortcut="Control+Enter"
-          hint="Saves, checks, and goes to the run page"
+          hint="Saves, checks, and opens the run page"
           obstacle={noSave}
           icon={<IconPlayerPlayFilled size={14} aria-hidden />}
           onPress={onRun}

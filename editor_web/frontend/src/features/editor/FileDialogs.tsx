@@ -136,7 +136,7 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
           )}
         </>
       )}
-      {dirty && <p className="quiet">What is not saved is saved first.</p>}
+      {dirty && <p className="quiet">Unsaved changes are saved first.</p>}
       {(refusal ?? (to === id ? undefined : problem)) && (
         <p className="is-failed" role="alert">
           {refusal ?? problem}
@@ -169,7 +169,7 @@ function DeleteForm({ id, onGone }: { id: string; onGone: () => void }) {
         <em>Deleted behaviors</em>.
       </p>
       <Referrers all={referrers}>These refer to it and cannot run without it:</Referrers>
-      {isDirty(editor()) && <p className="is-failed">What is not saved is lost.</p>}
+      {isDirty(editor()) && <p className="is-failed">Unsaved changes are lost.</p>}
       {refusal && (
         <p className="is-failed" role="alert">
           {refusal}

@@ -109,7 +109,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
         <TemplateInput
           label="Description"
           isLong
-          placeholder="What it is for, for those who read the behavior"
+          placeholder="Purpose, for readers of the behavior"
           value={node.description}
           onCommit={(typed) => set('description', typed || null, 'Description')}
         />

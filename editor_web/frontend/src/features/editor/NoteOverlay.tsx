@@ -84,7 +84,7 @@ function Note({ path, text }: { path: string; text: string }) {
     <textarea
       className="note-slip nodrag nopan nowheel"
       aria-label={`Note on ${name}`}
-      placeholder="What those who edit it should know"
+      placeholder="Information for editors of the behavior"
       rows={3}
       defaultValue={text}
       ref={(field) => field?.focus({ preventScroll: true })}

@@ -44,7 +44,7 @@ export function PolicyForm({ node, parent }: { node: EditNode; parent: EditNode 
       {node.guard && (
         <Target
           label="Else go to"
-          name="Guard leads to"
+          name="Guard target"
           value={shownValue(node.guard['to'])}
           targets={inTree ? [...targets, 'skipped'] : targets}
           onSet={(to) => measure('guard', 'to', to)}
@@ -78,7 +78,7 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
       {node.timeout && (
         <Target
           label="Then go to"
-          name="Timeout leads to"
+          name="Timeout target"
           value={shownValue(node.timeout['to'])}
           targets={targets}
           onSet={(to) => measure('timeout', 'to', to)}
@@ -123,7 +123,7 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
       )}
       <Target
         label="On an error"
-        name="Error leads to"
+        name="Error target"
         value={node.on_error ?? ''}
         none="the run ends"
         targets={targets}

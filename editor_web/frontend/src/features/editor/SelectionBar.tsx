@@ -89,7 +89,7 @@ function One({ node }: { node: EditNode }) {
       {reference !== null && (
         <>
           <Act
-            label={isOpen ? 'Close it (O)' : 'Show what is inside here (O)'}
+            label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'}
             onPress={() => void toggleReference(node.path)}
           >
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}

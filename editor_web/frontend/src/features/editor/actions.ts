@@ -235,7 +235,7 @@ export async function disconnect(path: string, outcome: string): Promise<void> {
 
 export async function autoConnect(): Promise<void> {
   const { selection, scope } = editor()
-  await perform('Connect what is obvious', [
+  await perform('Add obvious transitions', [
     { edit: 'auto_connect', paths: selection.length > 0 ? selection : [scope] },
   ])
 }

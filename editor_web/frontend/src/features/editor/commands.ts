@@ -137,7 +137,7 @@ export const COMMANDS: readonly Command[] = [
   {
     id: 'auto',
     part: 'Build',
-    words: 'Connect what is obvious',
+    words: 'Add obvious transitions',
     chords: [{ key: 'w' }],
     run: () => void autoConnect(),
   },
@@ -160,7 +160,7 @@ export const COMMANDS: readonly Command[] = [
   {
     id: 'note',
     part: 'Build',
-    words: 'Write a note on the chosen node, or on what fills the canvas',
+    words: 'Add a note to the selected node, or to the container on the canvas',
     chords: [{ key: 'n' }],
     run: () => writeNote(),
   },

@@ -141,7 +141,7 @@ it('leads a timeout to the worst outcome at first, and takes it away with its ti
   await user.type(screen.getByRole('combobox', { name: 'Timeout' }), '30 s{Enter}')
   const timeout = (value: unknown) => ({ edit: 'set_field', path: 'root/set', field: 'timeout', value })
   await waitFor(() => expect(edits()).toEqual([timeout({ to: 'bad', after: '30 s' })]))
-  expect(await screen.findByLabelText('Timeout leads to')).toHaveValue('bad')
+  expect(await screen.findByLabelText('Timeout target')).toHaveValue('bad')
   await user.clear(screen.getByRole('combobox', { name: 'Timeout' }))
   await user.type(screen.getByRole('combobox', { name: 'Timeout' }), '{Enter}')
   await waitFor(() => expect(edits()[1]).toEqual(timeout(null)))

@@ -186,7 +186,7 @@ function CanvasTools({ onTurn, follows, onFollow }: CanvasToolsProps) {
   const { fitView, zoomIn, zoomOut } = useReactFlow()
   return (
     <Group gap={2} wrap="nowrap">
-      <Tool label="Follow what is active" onClick={onFollow} pressed={follows}>
+      <Tool label="Follow the active node" onClick={onFollow} pressed={follows}>
         <IconFocus2 size={16} />
       </Tool>
       <Tool label="Zoom in" onClick={() => void zoomIn({ duration: 150 })}>

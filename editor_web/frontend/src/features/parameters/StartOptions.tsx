@@ -22,7 +22,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
       <Select
         size="sm"
         label="Autonomy at the start"
-        description={`While somebody operates the run, ${LEVEL_WORDS[supervision.autonomy]}`}
+        description={`While the run has an operator, ${LEVEL_WORDS[supervision.autonomy]}`}
         data={[...LEVELS]}
         value={supervision.autonomy}
         allowDeselect={false}
@@ -38,7 +38,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
       <Switch
         size="sm"
         label="Demand an operator"
-        description="It asks also while nobody is there"
+        description="It asks even without an operator"
         checked={supervision.demandsOperator}
         onChange={(event) => set({ demandsOperator: event.currentTarget.checked })}
       />

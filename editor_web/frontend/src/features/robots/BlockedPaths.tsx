@@ -10,7 +10,7 @@ export function BlockedPaths() {
   return (
     <div aria-live="polite" className="blocked-area">
       {blocked.length > 0 && (
-        <ul className="plain-list" aria-label="Arms whose way is blocked">
+        <ul className="plain-list" aria-label="Arms with a blocked path">
           {blocked.map(({ robot, way }) => (
             <li key={robot} className="blocked-way">
               <IconBarrierBlock size={18} aria-hidden />

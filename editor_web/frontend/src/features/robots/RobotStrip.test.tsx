@@ -76,7 +76,7 @@ it('says for what an arm waits and since when; another reason is the same wait',
   show(<BlockedPaths />)
   expect(screen.queryByRole('list')).toBeNull()
   socket.tell(blocked('left/fore would touch anna/hand'))
-  const waiting = screen.getByRole('list', { name: 'Arms whose way is blocked' })
+  const waiting = screen.getByRole('list', { name: 'Arms with a blocked path' })
   expect(waiting).toHaveTextContent(/left waits: left\/fore would touch anna\/hand, since 1:0\d min/)
   socket.tell(blocked('left/fore would touch anna/fore'))
   expect(waiting).toHaveTextContent(/touch anna\/fore, since 1:0\d min/)

@@ -77,14 +77,14 @@ function Robot({ robot }: { robot: RobotLive }) {
         step={5}
         value={Math.round(share * 100)}
         words={(percent) => `${percent} %`}
-        hint="Share of their own speed that all motions run at, the one under way included"
+        hint="Speed of all motions as a fraction of their own speed, including the active one"
         obstacle={obstacle}
         onCommit={(percent) => attempt(() => api.setSpeed(name, percent / 100))}
       />
       {(mode === 'reflex' || mode === 'fault') && (
         <CommandButton
           label="Recover"
-          hint="Look at the arm first. It then holds itself where it stands and takes goals again"
+          hint="Check the arm first. It then holds its position and accepts goals again"
           tone="strong"
           obstacle={obstacle}
           onPress={() => void attempt(() => api.recover(name))}

@@ -26,7 +26,7 @@ async function of(told: Parameters<typeof session>[0]) {
 }
 
 function news(): HTMLElement {
-  return screen.getByRole('status', { name: 'What became of the stop' })
+  return screen.getByRole('status', { name: 'State of the stop' })
 }
 
 async function press(): Promise<void> {

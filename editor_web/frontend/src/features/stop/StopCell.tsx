@@ -53,7 +53,7 @@ function StopNews() {
     return () => clearTimeout(timer)
   }, [isDone, stop?.number])
   return (
-    <div className="stop-news" role="status" aria-live="assertive" aria-label="What became of the stop">
+    <div className="stop-news" role="status" aria-live="assertive" aria-label="State of the stop">
       {report && (
         <div className={`stop-report is-${report.level}`} role={report.level === 'alarm' ? 'alert' : undefined}>
           <strong>{report.title}</strong>

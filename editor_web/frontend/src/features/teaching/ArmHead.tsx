@@ -64,7 +64,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
         <CommandButton label="Joints" hint="Capture where the joints are" icon={<IconTopologyRing3 size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_save')} />
         <CommandButton label="Pose" hint="Capture where the tool is" icon={<IconFlag size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('pose_save')} />
         {arm.skills.includes('gripper/gripper_open') && (
-          <CommandButton label="Grip" hint="Capture how the gripper stands" icon={<IconHandGrab size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('gripper_save')} />
+          <CommandButton label="Grip" hint="Capture the state of the gripper" icon={<IconHandGrab size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('gripper_save')} />
         )}
         <FrameCapture obstacle={obstacle} onCapture={(source, target) => attempt(teach.frame(arm.name, source, target))} />
         {isRecording ? (
@@ -77,7 +77,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
         )}
       </div>
       {hand?.said && (
-        <p className="teach-said" role="status" aria-label="The Helping Hand says">
+        <p className="teach-said" role="status" aria-label="Messages of the Helping Hand">
           {hand.said}
         </p>
       )}

@@ -32,7 +32,7 @@ export function ButtonPanel() {
       <CommandButton label="Add a key" icon={<IconPlus size={15} aria-hidden />} onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])} />
       <p className="pad-row" role="status" aria-label="Gamepad">
         <IconDeviceGamepad2 size={18} aria-hidden />
-        {pads.length > 0 ? pads.map((each) => <span key={each} className="tag is-on">{each}</span>) : <span className="quiet">Press a button of a gamepad: it is told on buttons/gamepad/south, east, start…</span>}
+        {pads.length > 0 ? pads.map((each) => <span key={each} className="tag is-on">{each}</span>) : <span className="quiet">Press a button of a gamepad: it is published on buttons/gamepad/south, east, start…</span>}
       </p>
       {refusal && (
         <p className="teach-problem" role="alert">

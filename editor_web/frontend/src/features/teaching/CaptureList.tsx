@@ -25,7 +25,7 @@ export function CaptureList({ arm }: { readonly arm: string }) {
   const beside = captures.filter((each) => compared.includes(each.id))
   if (captures.length === 0) {
     return (
-      <Empty title="Nothing is captured">Press Joints, Pose or Record above, or the button of a trigger. What is captured waits here until it is saved or discarded.</Empty>
+      <Empty title="Nothing is captured">Press Joints, Pose or Record above, or the button of a trigger. Captures stay here until they are saved or discarded.</Empty>
     )
   }
   return (

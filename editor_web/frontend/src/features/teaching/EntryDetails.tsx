@@ -33,7 +33,7 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
       </h3>
       <div className="command-row">
         {PLAYED.has(kind) && <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />}
-        <CommandButton label="Undo" hint="Bring back what it was before the last change" icon={<IconArrowBackUp size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.undo(kind, name))} />
+        <CommandButton label="Undo" hint="Restore the value before the last change" icon={<IconArrowBackUp size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.undo(kind, name))} />
         <CommandButton label="Delete" hint="Undo brings it back" tone="quiet" icon={<IconTrash size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.remove(kind, name))} />
       </div>
       {(problem || looked) && (

@@ -29,7 +29,7 @@ export function EntryHistory({ arm, entry }: { readonly arm: string; readonly en
                   <span className="mono">{change.revision}</span> {words}
                 </span>
               ) : (
-                <button type="button" className="history-change" aria-expanded={opened === change.revision} title="What it was then" onClick={() => setOpened(opened === change.revision ? undefined : change.revision)}>
+                <button type="button" className="history-change" aria-expanded={opened === change.revision} title="Value at that time" onClick={() => setOpened(opened === change.revision ? undefined : change.revision)}>
                   <span className="mono">{change.revision}</span> {words}
                 </button>
               )}

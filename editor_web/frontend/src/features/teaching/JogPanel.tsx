@@ -66,8 +66,8 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   return (
     <div className="jog">
       <div className="jog-choices">
-        <SegmentedControl size="xs" aria-label="What is jogged" value={space} onChange={(value) => setSpace(value as Space)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
-        <SegmentedControl size="xs" aria-label="How it is jogged" value={isStepping ? 'step' : 'hold'} onChange={(value) => setStepping(value === 'step')} data={[{ value: 'hold', label: 'Hold to run' }, { value: 'step', label: 'Step' }]} />
+        <SegmentedControl size="xs" aria-label="Jog target" value={space} onChange={(value) => setSpace(value as Space)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
+        <SegmentedControl size="xs" aria-label="Jog mode" value={isStepping ? 'step' : 'hold'} onChange={(value) => setStepping(value === 'step')} data={[{ value: 'hold', label: 'Hold to run' }, { value: 'step', label: 'Step' }]} />
         {space === 'tool' && (
           <SegmentedControl size="xs" aria-label="Along the axes of" value={frame} onChange={(value) => setFrame(value as Frame)} data={[{ value: 'world', label: 'World' }, { value: 'base', label: 'Base' }, { value: 'tool', label: 'Tool axes' }]} />
         )}
@@ -110,7 +110,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         <IconKeyboard size={16} aria-hidden />
         <span>Jog with the keyboard</span>
         <span id={hint} className="quiet">
-          {space === 'tool' ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.' : 'Digits turn that joint, with Shift the other way.'}
+          {space === 'tool' ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.' : 'Digits move that joint, with Shift in the other direction.'}
         </span>
       </button>
       <Switch
@@ -122,7 +122,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
       <p className="teach-said" role="status" aria-label="State of jogging">
-        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It goes as long as this is held' : '')}
+        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It moves while this is held' : '')}
       </p>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (

@@ -39,7 +39,7 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
       <div className="command-row">
         <CommandButton
           label={isFloating ? 'Hold itself' : 'Let it float'}
-          hint={isFloating ? 'The arm stays where it is' : 'The arm carries its own weight and gives way to a hand'}
+          hint={isFloating ? 'The arm holds its position' : 'The arm compensates gravity and can be guided by hand'}
           icon={<IconFeather size={15} aria-hidden />}
           isPressed={isFloating}
           obstacle={off}

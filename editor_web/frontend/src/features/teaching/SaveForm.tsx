@@ -61,7 +61,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
         <TextInput size="xs" label="Why" placeholder="more room" value={reason} maxLength={1000} onChange={(event) => setReason(event.currentTarget.value)} autoComplete="off" />
       </div>
       {present.exists && (
-        <div className="overwrites" role="status" aria-label="What overwriting changes">
+        <div className="overwrites" role="status" aria-label="Effect of overwriting">
           <strong>
             {form} {name} is there already.
           </strong>{' '}

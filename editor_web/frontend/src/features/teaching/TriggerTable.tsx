@@ -56,7 +56,7 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
   return (
     <>
       {triggers.length === 0 ? (
-        <Empty title="No button does anything yet">Add a trigger: it says which topic it listens to, and what then happens to which arm.</Empty>
+        <Empty title="No button does anything yet">Add a trigger: its topic, and the action and arm that it triggers.</Empty>
       ) : (
         <div className="trigger-scroll" tabIndex={0} role="region" aria-label="Triggers">
           <table className="trigger-table">

@@ -64,7 +64,7 @@ it('leads to the node and the moment', async () => {
 
 it.each([
   [undefined, null, 'No run yet'],
-  [run(), null, 'The run is under way'],
+  [run(), null, 'The run is active'],
   [FAILED, null, 'This run did not fail'],
   [FAILED, new Refusal(404, { message: 'the journal has no such run' }), 'the journal has no such run'],
 ])('says what there is to tell of a run that has not failed', async (of, answer, words) => {

@@ -61,7 +61,7 @@ function Tools({ failure, onShow }: { failure: RunFailure; onShow: (at: At) => v
 
 function emptyTitle(run: RunView | undefined, isOver: boolean, failure: RunFailure | null | undefined): string {
   if (!run) return 'No run yet'
-  if (!isOver) return 'The run is under way'
+  if (!isOver) return 'The run is active'
   return failure === undefined ? 'Reading…' : 'This run did not fail'
 }
 

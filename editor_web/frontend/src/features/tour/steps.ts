@@ -54,8 +54,8 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Say how long it waits',
-    words: 'What a state needs to know stands on the right. Fill in duration_s, for example 2, and press Enter. The problems above go away as you mend them.',
-    keys: 'With the state chosen, Enter leads to its first field.',
+    words: 'The parameters of a state are on the right. Fill in duration_s, for example 2, and press Enter. The problems above disappear as you fix them.',
+    keys: 'With the state selected, Enter goes to its first field.',
     page: 'edit',
     targets: [FIELD('duration_s'), TABS('form'), NODE('flow.Wait')],
     isDone: () => isFilled('duration_s') || isThere(NODE('flow.Log')),
@@ -72,14 +72,14 @@ export const STEPS: readonly Step[] = [
   {
     title: 'Say what it writes',
     words: 'Fill in message, for example hello, and press Enter or leave the field.',
-    keys: 'With the state chosen, Enter leads to its first field.',
+    keys: 'With the state selected, Enter goes to its first field.',
     page: 'edit',
     targets: [FIELD('message'), TABS('form'), NODE('flow.Log')],
     isDone: () => isFilled('message'),
   },
   {
     title: 'Lead the outcomes on',
-    words: 'Every outcome leads somewhere. Drag from the dot beside done to the pill finished: there the behavior ends.',
+    words: 'Every outcome needs a target. Drag from the dot beside done to the pill finished: there the behavior ends.',
     keys: 'Choose the state, press C, choose the outcome with Enter, write finished, press Enter.',
     page: 'edit',
     targets: ['.edit-canvas .way.is-loose', TABS('canvas'), '.problem-count'],
@@ -88,7 +88,7 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Check, save, and go to the run page',
-    words: 'Run saves the behavior, checks it, and leads to the page on which it runs.',
+    words: 'Run saves the behavior, checks it, and opens the page on which it runs.',
     keys: 'Press Ctrl and Enter.',
     page: 'edit',
     targets: ['.edit-head [aria-keyshortcuts="Control+Enter"]'],
@@ -104,8 +104,8 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Watch it run',
-    words: 'The state that is active is lit. The log below tells what happens, with times. Wait until it has finished.',
-    keys: 'The outline says the same in words.',
+    words: 'The active state is highlighted. The log below lists the events, with times. Wait until it has finished.',
+    keys: 'The outline shows the same as text.',
     page: 'behavior',
     targets: ['.react-flow__node .step[data-status="active"]', '.react-flow'],
     clear: '.react-flow',
