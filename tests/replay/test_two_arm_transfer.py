@@ -55,8 +55,8 @@ def test_one_changed_transition_is_caught_with_its_path_and_both_sides(tmp_path:
     said = flexcell("replay", RECORDING, "--behavior", changed, cwd=PROJECT)
     assert said.code == 4
     first = said.err.splitlines()[0]
-    assert "root/transfer/left: recorded `transition grasp: held → lift`" in first
-    assert "replayed `transition grasp: held → home`" in first
+    assert "root/transfer/left: recorded `grasp —held→ lift`" in first
+    assert "replayed `grasp —held→ home`" in first
 
 
 def test_the_recording_is_small_and_that_of_the_present_behavior() -> None:
