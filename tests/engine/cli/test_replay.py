@@ -58,7 +58,7 @@ def test_a_difference_is_exit_code_4_and_one_line_with_both_sides(project: Path)
     assert said.code == 4
     assert said.err.splitlines()[0] == (
         "run.mcap: differs: event 5 at 60.000 s, root: "
-        "recorded `wait —done→ choose`; replayed `wait —done→ failed`"
+        'recorded `wait —done→ choose`; replayed `wait —done→ failed` (target: "choose" ≠ "failed")'
     )
 
 
