@@ -111,6 +111,8 @@ class InstantOutcomes:
         if not children:
             return frozenset()
         found = self._subject.statuses.get(placed.path) or self._subject.statuses[children[0].path]
+        if placed.node.decorator is not None:
+            found -= placed.node.decorator.late
         return found if placed.is_part else frozenset("success" if end == "skipped" else end for end in found)
 
     def _seen(self, child: NodeAt) -> frozenset[str]:

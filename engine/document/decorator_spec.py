@@ -29,6 +29,11 @@ class DecoratorSpec(StrictModel, frozen=True, kw_only=True):
     turns: ClassVar[Turns] = {}
     """Its effect on the status of its child; a status that is absent stays."""
 
+    @property
+    def late(self) -> frozenset[TreeStatus]:
+        """The statuses that it shows only after a wait of its own."""
+        return frozenset()
+
     def statuses(self, child: TreeStatus) -> tuple[TreeStatus, ...]:
         """Return the statuses that it may show while its child has one."""
         return self.turns.get(child, (child,))

@@ -83,6 +83,11 @@ class RetrySpec(DecoratorSpec, frozen=True, kw_only=True):
         """The first wait in seconds."""
         return seconds(self.backoff)
 
+    @property
+    def late(self) -> frozenset[TreeStatus]:
+        """It fails after its last run, and waits before each but the first."""
+        return frozenset({"failure"} if self.backoff_s > 0 else ())
+
 
 class GuardSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Enter the node only if the expression `when` is true, else continue at `to`.

@@ -44,6 +44,14 @@ def test_a_closed_guard_leads_on_at_once() -> None:
     assert code_paths(HEAD + machine("wait", wait=wait, tell=TELL % "wait")) == ["instant-loop root/wait"]
 
 
+def test_a_retry_that_waits_in_a_tree_makes_the_loop_one_that_waits() -> None:
+    """It fails after its wait only; what succeeds at the first run takes no time."""
+    decide = "{state: flow.Decide, with: {when: '${ready}'}}"
+    retry = "{tree: {retry: {times: 1, backoff: %s, child: " + decide + "}}, transitions: {success: %s, failure: %s}}"
+    assert code_paths(HEAD + machine("ask", ask=retry % ("2 s", "good", "ask"))) == []
+    assert code_paths(HEAD + machine("ask", ask=retry % ("0 s", "good", "ask"))) == ["instant-loop root/ask"]
+
+
 def test_a_container_ends_at_once_where_a_way_through_instant_states_leads() -> None:
     """Machines, trees, rounds and branches are looked into."""
     inner = f"{{machine: {{initial: a, states: {{a: {TELL % 'over'}}}}}, transitions: {{over: look}}}}"
