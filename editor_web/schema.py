@@ -116,7 +116,7 @@ def _type(schema: Schema) -> str:
     if "const" in schema:
         return json.dumps(schema["const"])
     if "anyOf" in schema:
-        parts = [_type(part) for part in schema["anyOf"]]
+        parts = list(dict.fromkeys(_type(part) for part in schema["anyOf"]))
         return "unknown" if "unknown" in parts else " | ".join(parts)
     if schema.get("type") == "array":
         return _array(schema)

@@ -2005,7 +2005,7 @@ export interface Trigger {
   readonly trig_topic: string
   readonly trig_type: "falling_edge" | "hold" | "rising_edge"
   readonly trig_callback: "cart_dmp_save" | "grav_comp" | "gripper_save" | "joint_dmp_save" | "joint_save" | "pose_save" | "tf_save"
-  readonly trig_value: boolean | number | number | string
+  readonly trig_value: boolean | number | string
   readonly field: string
   readonly joint_dmp_N: number
   readonly source_frame: string
