@@ -76,7 +76,7 @@ def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Worksh
         ended = page.get_by_role("list", name="Runs that ended last").get_by_role("listitem")
         expect(ended).to_have_count(1)
         expect(ended).to_contain_text("stopped")
-        expect(page.get_by_text("2 are under way")).to_be_visible()
+        expect(page.get_by_text("2 are active")).to_be_visible()
     statuses = {run.id: run.status for run in shop.session.runs()}
     assert [statuses[runs[name]] for name in ("nap", "shift", "night")] == ["running", "running", "stopped"]
 

@@ -98,7 +98,7 @@ EVENT_TEXTS: Mapping[str, _Template] = {
     "answer.failed": _Template("warning", "call {call} failed"),
     "received": _Template("debug", "{topic}: {message}"),
     "fault": _Template("warning", "fault injected at {address}: {fault}"),
-    "fault.detail": _Template("warning", "fault injected at {address}: {fault} {detail}"),
+    "fault.detail": _Template("warning", "fault injected at {address}: {fault}, {detail}"),
     "command": _Template("info", "operator: {command}"),
     "command.arguments": _Template("info", "operator: {command} {arguments}"),
     "gate": _Template("info", "waits {point}: {reasons}"),

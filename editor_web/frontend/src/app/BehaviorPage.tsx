@@ -290,5 +290,5 @@ function obstacleOf(behavior: BehaviorView, active: readonly RunView[], session:
 function placeOf(session: SessionBody | undefined, active: readonly RunView[]): string {
   const where = session?.cell_name ? `It runs in the cell ${session.cell_name}, in real time.` : 'It runs without a cell, in real time.'
   const others = active.length === 1 ? 'Another run is' : `${active.length} other runs are`
-  return active.length > 0 ? `${where} ${others} under way: an arm that one of them holds is refused to this one.` : where
+  return active.length > 0 ? `${where} ${others} active: an arm that one of them holds is refused to this one.` : where
 }

@@ -50,7 +50,7 @@ it('stops none of several that the page does not show, and leads to them', async
   live({ runs: [NAP, SHIFT] })
   const user = show(<Bar active={[NAP, SHIFT]} />)
   expect(screen.queryByRole('button', { name: 'Stop' })).toBeNull()
-  await user.click(screen.getByRole('link', { name: '2 runs under way' }))
+  await user.click(screen.getByRole('link', { name: '2 runs active' }))
   expect(led.mock.calls).toEqual([['runs']])
 })
 

@@ -52,7 +52,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
         <PageLink href={RUNS_HREF} className="active-run" onOpen={onRuns}>
           <StatusIcon status="active" size={14} />
           <span>
-            {active.length} runs<span className="active-run-words"> under way</span>
+            {active.length} runs<span className="active-run-words"> active</span>
           </span>
         </PageLink>
       )}

@@ -51,7 +51,7 @@ beforeEach(() => {
 it('tells on each card of its own run', async () => {
   shown()
   server().socket('/data').tell({ k: 'traffic', shape: 's', topics: {}, goals: [], leases: [{ resource: 'left', run: 'r1', node: 'root/only', goal: '', held_s: 1 }] })
-  expect(screen.getByText('3 are under way, one asks')).toBeVisible()
+  expect(screen.getByText('3 are active, one asks')).toBeVisible()
   expect(card('nap').getByRole('status')).toHaveTextContent('Running')
   expect(card('nap').getByRole('list', { name: 'Active nodes' })).toHaveTextContent('only')
   expect(card('nap').getAllByRole('definition').at(-1)).toHaveTextContent('left')

@@ -137,7 +137,7 @@ function pairOf(chosen: readonly string[], active: readonly RunView[]): readonly
 }
 
 function wordsOf(active: number, asking: number): string {
-  const going = active === 0 ? 'None is active' : active === 1 ? 'One is active' : `${active} are under way`
+  const going = active === 0 ? 'None is active' : active === 1 ? 'One is active' : `${active} are active`
   if (asking === 0) return going
   return `${going}, ${asking === 1 ? 'one asks' : `${asking} ask`}`
 }
