@@ -99,7 +99,7 @@ class HostileInputProbe:
 
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
-        self._desk = DraftCache()
+        self._drafts = DraftCache()
         self._knowledge = ProjectContext(catalogue, PROJECT / "behaviors", PROJECT)
         self._file = PROJECT / "behaviors" / "hostile.yaml"
         self.checking = ProbeStatistics("check, on a thread")
@@ -140,10 +140,10 @@ class HostileInputProbe:
         return behavior
 
     def _edited(self, text: str) -> None:
-        self._desk.draw(text, file=self._file, context=self._knowledge)
+        self._drafts.draw(text, file=self._file, context=self._knowledge)
         edit = SetParameter(path="root/take", name="value", value="${a + a}")
-        done = self._desk.edit(text, [edit], file=self._file, context=self._knowledge)
-        self._desk.examine(done.result.text, file=self._file, context=self._knowledge)
+        done = self._drafts.edit(text, [edit], file=self._file, context=self._knowledge)
+        self._drafts.examine(done.result.text, file=self._file, context=self._knowledge)
 
     async def _run(self, plan: Plan) -> RunResult:
         with _timed_callbacks(self.running):

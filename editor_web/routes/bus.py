@@ -75,26 +75,29 @@ async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Requ
 @router.get("/board")
 async def get_board(services: ServicesOf) -> BusListing:
     """Return topics, services, actions and parameters with descriptions; `shape` changes when this list does."""
-    desk = services.backend.desk
-    parameters = (msgspec.structs.replace(each, value=truncate_value(each.value)) for each in desk.parameters())
+    inspector = services.backend.inspector
+    parameters = (msgspec.structs.replace(each, value=truncate_value(each.value)) for each in inspector.parameters())
     return BusListing(
-        shape=bus_fingerprint(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters)
+        shape=bus_fingerprint(inspector),
+        topics=inspector.topics(),
+        skills=inspector.skills(),
+        parameters=tuple(parameters),
     )
 
 
 @router.get("/form")
 async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> BusForm:
     """Return the JSON Schema of the request of an address, or of the messages of a topic."""
-    desk = services.backend.desk
-    schema = desk.message_schema(topic) if topic else desk.request_schema(address)
+    inspector = services.backend.inspector
+    schema = inspector.message_schema(topic) if topic else inspector.request_schema(address)
     return BusForm(name=topic or address, schema=schema)
 
 
 @router.get("/fields")
 async def get_fields(services: ServicesOf) -> BusFields:
     """Return the numeric fields of the latest message of every topic, for plots."""
-    desk = services.backend.desk
-    topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
+    inspector = services.backend.inspector
+    topics = ((facts, signal_fields(inspector.latest(facts.name))) for facts in inspector.topics())
     return BusFields(
         topics=tuple(TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields)
     )
@@ -103,20 +106,20 @@ async def get_fields(services: ServicesOf) -> BusFields:
 @router.put("/parameter")
 async def set_parameter(body: BusParameterBody, services: ServicesOf) -> object:
     """Set a parameter and return its new value. This may change the behavior of a robot."""
-    return truncate_value(services.backend.desk.set_parameter(body.name, body.value))
+    return truncate_value(services.backend.inspector.set_parameter(body.name, body.value))
 
 
 @router.post("/goals")
 async def send_goal(body: BusRequestBody, services: ServicesOf) -> Response:
     """Send a goal and stream its progress, one JSON object per line; cancelled on disconnect. This moves the robot."""
-    desk = services.backend.desk
-    return GoalStream(desk, desk.send(body.address, body.request))
+    inspector = services.backend.inspector
+    return GoalStream(inspector, inspector.send(body.address, body.request))
 
 
 @router.post("/goals/{goal}/cancel", status_code=202)
 async def cancel_goal(goal: str, services: ServicesOf) -> None:
     """Cancel a goal that was sent from the page; its own stream reports the end."""
-    services.backend.desk.cancel(goal)
+    services.backend.inspector.cancel(goal)
 
 
 async def run_while_connected(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:

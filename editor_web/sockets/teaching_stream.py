@@ -196,7 +196,7 @@ class _Page:
     def _jogging(self) -> JogStatus | None:
         """Return what limits the jogged arm, if that has changed."""
         arm = self._jogger.arm
-        goals = self._backend.desk.goals() if arm else ()
+        goals = self._backend.inspector.goals() if arm else ()
         feedback = next((each.feedback for each in goals if each.address.startswith(f"{arm}/jog_")), None)
         held_by = str(getattr(feedback, "held_by", ""))
         if held_by == self._held_by:

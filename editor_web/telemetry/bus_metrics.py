@@ -17,32 +17,32 @@ WINDOW_S = 4.0
 class BusMetrics:
     """Computes metrics between its own samples, at no cost for publishers."""
 
-    def __init__(self, desk: BusInspector) -> None:
-        self._desk = desk
+    def __init__(self, inspector: BusInspector) -> None:
+        self._inspector = inspector
         self._samples: deque[tuple[float, dict[str, TopicStatistics]]] = deque()
 
     def frame(self) -> BusMetricsFrame:
         """Take a sample and return the metrics."""
-        now_s, traffic = self._desk.now_s, self._desk.traffic()
+        now_s, traffic = self._inspector.now_s, self._inspector.traffic()
         while len(self._samples) > 1 and now_s - self._samples[0][0] > WINDOW_S:
             self._samples.popleft()
         then_s, then = self._samples[0] if self._samples else (now_s, {})
         self._samples.append((now_s, traffic))
-        goals = self._desk.goals()
+        goals = self._inspector.goals()
         return BusMetricsFrame(
-            shape=bus_fingerprint(self._desk),
+            shape=bus_fingerprint(self._inspector),
             topics={
                 name: _line(each, then.get(name), now_s=now_s, then_s=then_s) for name, each in sorted(traffic.items())
             },
-            leases=tuple(_lease(each, goals, now_s) for each in self._desk.leases()),
+            leases=tuple(_lease(each, goals, now_s) for each in self._inspector.leases()),
             # What a goal feeds back may be large, and is shown where the goal was sent.
             goals=tuple(replace(goal, feedback=None) for goal in goals),
         )
 
 
-def bus_fingerprint(desk: BusInspector) -> str:
+def bus_fingerprint(inspector: BusInspector) -> str:
     """Return a checksum of the topics, skills, parameters and parameter values."""
-    return f"{zlib.crc32(chr(10).join(desk.shape()).encode()):08x}"
+    return f"{zlib.crc32(chr(10).join(inspector.shape()).encode()):08x}"
 
 
 def _line(now: TopicStatistics, then: TopicStatistics | None, *, now_s: float, then_s: float) -> TopicMetrics:

@@ -22,14 +22,14 @@ PERIOD_S = 0.2
 class GoalStream(StreamingResponse):
     """Streams the progress of a goal; ends only when the goal has ended and its device is at rest."""
 
-    def __init__(self, desk: BusInspector, handle: GoalHandle[Any, Any]) -> None:
+    def __init__(self, inspector: BusInspector, handle: GoalHandle[Any, Any]) -> None:
         super().__init__(_nothing(), media_type="application/x-ndjson")
-        self._desk = desk
+        self._inspector = inspector
         self._handle = handle
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send until the goal ends or the client disconnects."""
-        ending = asyncio.create_task(self._desk.ended(self._handle), name=f"goal {self._handle.id}")
+        ending = asyncio.create_task(self._inspector.ended(self._handle), name=f"goal {self._handle.id}")
         gone = asyncio.create_task(wait_for_disconnect(receive), name="goal-client")
         try:
             await send({"type": "http.response.start", "status": 200, "headers": self.raw_headers})

@@ -52,11 +52,11 @@ class PageSubscriptions:
 
     def __init__(self, backend: Session, *, unix_s: Callable[[], float] = time.time) -> None:
         self._backend = backend
-        self._desk = backend.desk
+        self._inspector = backend.inspector
         self._unix_s = unix_s
         self._look = _NOTHING
         self._next_s: dict[str, float] = {}
-        self._meter = BusMetrics(self._desk)
+        self._meter = BusMetrics(self._inspector)
         self._curves: tuple[tuple[str, Path], ...] = ()
         self._rows: deque[tuple[float, tuple[float | None, ...]]] = deque()
         self._dropped = 0
@@ -92,7 +92,7 @@ class PageSubscriptions:
         messages: dict[str, object] = {}
         for topic, _ in self._curves:
             if topic not in messages:
-                messages[topic] = self._desk.latest(topic)
+                messages[topic] = self._inspector.latest(topic)
         if len(self._rows) >= KEPT_ROWS:
             self._rows.popleft()
             self._dropped += 1
@@ -114,7 +114,7 @@ class PageSubscriptions:
         return frames
 
     def _is_time(self, what: str, period_s: float) -> bool:
-        now_s = self._desk.now_s
+        now_s = self._inspector.now_s
         if now_s < self._next_s.get(what, 0.0):
             return False
         self._next_s[what] = now_s + period_s
@@ -132,10 +132,10 @@ class PageSubscriptions:
 
     def _message(self, name: str) -> list[DataFrame]:
         try:
-            topic = self._desk.topic(name)
+            topic = self._inspector.topic(name)
         except FlexcellError as error:
             return self._once("topic", (name, -1), MessageFrame(topic=name, at_s=self._unix_s(), problem=error.message))
-        latest = self._desk.latest(name)
+        latest = self._inspector.latest(name)
         if latest is None:
             empty = MessageFrame(topic=name, at_s=self._unix_s(), problem="no message was published on this topic yet")
             return self._once("topic", (name, 0), empty)
@@ -164,7 +164,7 @@ class PageSubscriptions:
         return [UserdataFrame(run=run, first=first, scopes=scopes)]
 
     def _goals_of(self, run: str) -> list[DataFrame]:
-        before, self._goals = self._goals, progress_by_node(self._desk.goals(run))
+        before, self._goals = self._goals, progress_by_node(self._inspector.goals(run))
         return [] if self._goals == before else [GoalsFrame(run=run, goals=self._goals)]
 
 

@@ -92,7 +92,7 @@ class DocumentRepository:
         self._project = project.resolve()
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
-        self._desk = DraftCache()
+        self._drafts = DraftCache()
         self.library = Library(self._project, catalogue)
         """The behaviors among them, read as the last saved files say."""
 
@@ -161,15 +161,15 @@ class DocumentRepository:
 
     def examine(self, document_id: str, text: str) -> DocumentAnalysis:
         """Build the graph and the findings of a text, as if it were the document's."""
-        return self._desk.examine(text, file=self.file_of(document_id), context=self.context(document_id))
+        return self._drafts.examine(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def draw(self, document_id: str, text: str) -> DocumentAnalysis:
         """Build the graph of a text, as if it were the document's; `examine` checks it."""
-        return self._desk.draw(text, file=self.file_of(document_id), context=self.context(document_id))
+        return self._drafts.draw(text, file=self.file_of(document_id), context=self.context(document_id))
 
     def findings(self, document_id: str, text: str) -> tuple[FindingView, ...]:
         """Check a text as if it were the document's, without building its graph again."""
-        return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
+        return self.examine(document_id, text).findings
 
     def edit(
         self, document_id: str, text: str, edits: Sequence[AnyEdit], *, check: bool = False, graph: str | None = None
@@ -179,7 +179,7 @@ class DocumentRepository:
         With `check` the findings are in the answer; with the hash `graph` of a text, the difference from its graph.
         """
         file, context = self.file_of(document_id), self.context(document_id)
-        return self._desk.edit(text, edits, file=file, context=context, check=check, graph=graph)
+        return self._drafts.edit(text, edits, file=file, context=context, check=check, graph=graph)
 
     def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
         """Return the writers and readers of each key of a text.

@@ -23,7 +23,6 @@ from engine.editing.graph_difference import GraphDifference, graph_difference
 from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError
-from engine.library.behavior_library import FindingView
 
 MAX_TEXTS = 6
 """Maximum number of texts kept: the last steps of a few pages; a text of 1,000 states takes about 10 MB."""
@@ -111,10 +110,6 @@ class DraftCache:
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
         return self.draw(text, file=file, context=context, check=True)
-
-    def findings(self, text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
-        """Check a text; a cached graph is reused."""
-        return self.draw(text, file=file, context=context, check=True).findings
 
     def _taken(self, file: Path, text: str) -> tuple[Draft | None, _CachedDraft | None]:
         """Return the draft of a text, and what else is known of it; the draft is taken out, to be changed."""

@@ -94,7 +94,7 @@ class Session:
         return LocalJsonBus(self.cell.bus)
 
     @property
-    def desk(self) -> BusInspector:
+    def inspector(self) -> BusInspector:
         """The cell's bus, for a person at a screen."""
         return BusInspector(self.cell.bus)
 

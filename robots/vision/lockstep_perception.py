@@ -54,7 +54,7 @@ class LockstepPerception(PerceptionDevice):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.status = DeviceStatus.DISCONNECTED
-        self.desk.fail("the cell is closed")
+        self.detections.fail("the cell is closed")
         eye, self._eye = self._eye, None
         if eye is not None:
             eye.close()

@@ -42,7 +42,7 @@ class PerceptionDevice:
         self._world = world
         slowest_s = max(1.0 / camera.rate_hz for camera in sight.cameras)
         self.map = LiveOccupancyMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
-        self.desk = DetectionService(sight.cameras)
+        self.detections = DetectionService(sight.cameras)
         self.known: KnownGeometry | None = None
         self.status = DeviceStatus.DISCONNECTED
         self.dropped = 0
@@ -99,7 +99,7 @@ class PerceptionDevice:
     @property
     def needed(self) -> bool:
         """Whether the map, an image or detections are in demand."""
-        return self._needs_images or self.desk.needed
+        return self._needs_images or self.detections.needed
 
     def next_look(self, due: tuple[CameraSpec, ...], *, now_s: float) -> PerceptionRequest | None:
         """Return the request for the present world state with the needed cameras among `due`.
@@ -108,7 +108,7 @@ class PerceptionDevice:
         """
         if self._world.lost_reason:
             return None
-        detecting = self.desk.due(due, now_s=now_s)
+        detecting = self.detections.due(due, now_s=now_s)
         wanted = self._wanted()
         is_mapped = self.sight.box is not None and self._needs_images
         names = tuple(camera.name for camera in due if is_mapped or camera.name in wanted)
@@ -144,7 +144,7 @@ class PerceptionDevice:
                 self._grids.publish(grid)
         for image in seen.images:
             self._depths[image.camera].publish(image)
-        self.desk.take_result(seen.detections)
+        self.detections.take_result(seen.detections)
 
     def fail(self, reason: str) -> None:
         """Report why no images arrive."""
@@ -152,7 +152,7 @@ class PerceptionDevice:
             _log.error("no camera images: %s", reason)
         self.status = DeviceStatus.FAULT
         self.map.lost(reason)
-        self.desk.fail(reason)
+        self.detections.fail(reason)
 
     def set_rendering(self, words: str) -> None:
         """Set the name of the rendering method."""
@@ -186,7 +186,7 @@ class PerceptionDevice:
             self._states = bus.topic("cell/occupancy_state", OccupancyState)
             self._states.provide(self._state)
             self.map.subscribe(self._publish_state)
-        self.desk.register(bus)
+        self.detections.register(bus)
         for camera in self.sight.cameras:
             self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
             bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(

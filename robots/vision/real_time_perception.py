@@ -52,7 +52,7 @@ class RealTimePerception(PerceptionDevice):
             task.cancel()
             await asyncio.wait((task,))
         self._process.end()
-        self.desk.fail("the cell is closed")
+        self.detections.fail("the cell is closed")
         self.status = DeviceStatus.DISCONNECTED
 
     async def _watch(self) -> None:

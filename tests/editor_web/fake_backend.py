@@ -104,7 +104,7 @@ class FakeBackend(Session):
         self._watchers: list[Callable[[str, Event], None]] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
         self.known_bus: JsonBus = TopicBus(self._topics)
-        self.known_desk: BusInspector | None = None
+        self.known_inspector: BusInspector | None = None
         self._topic_callbacks: dict[str, list[Callable[[object], None]]] = {}
         self.listeners_changed = asyncio.Event()
 
@@ -117,10 +117,10 @@ class FakeBackend(Session):
         return self.known_bus
 
     @property
-    def desk(self) -> BusInspector:
-        if self.known_desk is None:
-            self.known_desk = BusInspector(SkillBus(LoopClock()))
-        return self.known_desk
+    def inspector(self) -> BusInspector:
+        if self.known_inspector is None:
+            self.known_inspector = BusInspector(SkillBus(LoopClock()))
+        return self.known_inspector
 
     def behaviors(self) -> tuple[BehaviorView, ...]:
         return tuple(sorted(self._behaviors.values(), key=lambda b: b.id))

@@ -23,34 +23,34 @@ class DetectionService:
     """The detectors of a cell's cameras; ignores cameras without a detector."""
 
     def __init__(self, cameras: tuple[CameraSpec, ...]) -> None:
-        self._desks = {
+        self._detections = {
             camera.name: _CameraDetections(camera, camera.detector) for camera in cameras if camera.detector is not None
         }
 
     @property
     def needed(self) -> bool:
         """Whether any camera's detections are in demand."""
-        return any(desk.needed for desk in self._desks.values())
+        return any(camera_detections.needed for camera_detections in self._detections.values())
 
     def due(self, cameras: tuple[CameraSpec, ...], *, now_s: float) -> tuple[str, ...]:
         """Return those of `cameras`, which take an image now, whose detectors are due."""
-        desks = [self._desks[camera.name] for camera in cameras if camera.name in self._desks]
-        return tuple(desk.name for desk in desks if desk.begins(now_s))
+        found = [self._detections[camera.name] for camera in cameras if camera.name in self._detections]
+        return tuple(camera_detections.name for camera_detections in found if camera_detections.begins(now_s))
 
     def take_result(self, found: tuple[Detections, ...]) -> None:
         """Publish detections."""
         for each in found:
-            self._desks[each.camera].take_result(each)
+            self._detections[each.camera].take_result(each)
 
     def fail(self, reason: str) -> None:
         """Fail all waiting requests."""
-        for desk in self._desks.values():
-            desk.fail(reason)
+        for camera_detections in self._detections.values():
+            camera_detections.fail(reason)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the detections of each detector as topic and service, with its parameters."""
-        for desk in self._desks.values():
-            desk.register(bus)
+        for camera_detections in self._detections.values():
+            camera_detections.register(bus)
 
 
 class _CameraDetections:

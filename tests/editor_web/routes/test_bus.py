@@ -151,7 +151,7 @@ async def test_the_page_gets_what_there_is_with_words_and_forms(serve: Serve) ->
     """Docstrings, schemas, numbers to plot, parameters."""
     async with SkillBus(LoopClock()) as bus:
         backend, _ = wired(bus)
-        backend.known_desk = BusInspector(bus)
+        backend.known_inspector = BusInspector(bus)
         bus.parameters.declare("left/gain", Annotated[float, msgspec.Meta(ge=0)], 0.5, description="How stiff it is")
         async with serve(backend) as served:
             board = (await served.http.get("/api/v1/bus/board")).json()
@@ -184,7 +184,7 @@ async def test_a_goal_of_the_page_tells_its_course_and_can_be_cancelled(serve: S
     """The end comes when the device rests; the lease is given back."""
     async with SkillBus(LoopClock()) as bus:
         backend, device = wired(bus)
-        backend.known_desk = BusInspector(bus)
+        backend.known_inspector = BusInspector(bus)
         async with serve(backend) as served:
             body = {"address": "left/rest"}
             async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:
@@ -211,7 +211,7 @@ async def test_a_goal_whose_page_goes_is_cancelled_and_one_of_a_run_is_not_for_t
     """Closing the tab must not leave a robot moving."""
     async with SkillBus(LoopClock()) as bus:
         backend, device = wired(bus)
-        backend.known_desk = BusInspector(bus)
+        backend.known_inspector = BusInspector(bus)
         async with serve(backend) as served:
             body = {"address": "left/rest"}
             async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:

@@ -40,9 +40,9 @@ def joints(value: float) -> JointState:
 
 
 def backend_on(bus: SkillBus) -> FakeBackend:
-    """A backend whose desk is of this bus."""
+    """A backend whose inspector is of this bus."""
     backend = FakeBackend()
-    backend.known_desk = BusInspector(bus)
+    backend.known_inspector = BusInspector(bus)
     return backend
 
 

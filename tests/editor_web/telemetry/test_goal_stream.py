@@ -49,10 +49,10 @@ async def test_a_goal_ends_when_its_listener_cannot_be_told(told: int) -> None:
 
     async with SkillBus(LoopClock()) as bus:
         bus.advertise_action(Go, go, namespace="arm")
-        desk = BusInspector(bus)
-        handle = desk.send("arm/go", {})
+        inspector = BusInspector(bus)
+        handle = inspector.send("arm/go", {})
         async with asyncio.timeout(GUARD_S):
             with suppress(OSError):
-                await GoalStream(desk, handle)({"type": "http"}, silence, send)
+                await GoalStream(inspector, handle)({"type": "http"}, silence, send)
         assert handle.finished
         assert bus.leases.held() == ()

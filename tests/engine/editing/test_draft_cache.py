@@ -21,30 +21,30 @@ def context(tmp_path: Path) -> ProjectContext:
     return ProjectContext(load_states(), tmp_path, tmp_path)
 
 
-def test_edits_one_after_the_other_are_what_they_are_without_a_desk(tmp_path: Path, context: ProjectContext) -> None:
+def test_edits_one_after_the_other_are_what_they_are_without_a_cache(tmp_path: Path, context: ProjectContext) -> None:
     """Also after a step back, whose text was used up, and with the same text in another file."""
-    file, desk = tmp_path / "x.yaml", DraftCache(kept=2)
+    file, drafts = tmp_path / "x.yaml", DraftCache(kept=2)
     edits, _ = read_edits([{"edit": "duplicate", "paths": [NODE]}])
     text = TEXT
     for at in (file, file, file, tmp_path / "y.yaml"):
-        answer = desk.edit(text, edits, file=at, context=context)
+        answer = drafts.edit(text, edits, file=at, context=context)
         done, drawn = answer.result, answer.analysis
         alone = apply_edits(text, edits, file=str(at), context=context)
         assert (done.text, done.changed, done.refused) == (alone.text, alone.changed, None)
-        assert desk.examine(done.text, file=at, context=context) == analyze_text(done.text, file=at, context=context)
+        assert drafts.examine(done.text, file=at, context=context) == analyze_text(done.text, file=at, context=context)
         assert not drawn.checked
         text = done.text
-    again = desk.edit(TEXT, edits, file=file, context=context).result
+    again = drafts.edit(TEXT, edits, file=file, context=context).result
     assert again.text == apply_edits(TEXT, edits, file=str(file), context=context).text
 
 
 def test_a_refused_edit_leaves_the_text_as_it_was(tmp_path: Path, context: ProjectContext) -> None:
-    file, desk = tmp_path / "x.yaml", DraftCache()
-    desk.draw(TEXT, file=file, context=context)
+    file, drafts = tmp_path / "x.yaml", DraftCache()
+    drafts.draw(TEXT, file=file, context=context)
     removed, _ = read_edits(
         [{"edit": "remove_nodes", "paths": [NODE]}, {"edit": "remove_nodes", "paths": ["root/nowhere"]}]
     )
-    answer = desk.edit(TEXT, removed, file=file, context=context)
+    answer = drafts.edit(TEXT, removed, file=file, context=context)
     done, drawn = answer.result, answer.analysis
     assert (done.text, done.refused is None) == (TEXT, False)
     assert drawn.graph == analyze_text(TEXT, file=file, context=context).graph
@@ -53,10 +53,10 @@ def test_a_refused_edit_leaves_the_text_as_it_was(tmp_path: Path, context: Proje
 def test_findings_of_a_text_that_was_just_drawn_are_those_of_a_whole_look(
     tmp_path: Path, context: ProjectContext
 ) -> None:
-    file, desk = tmp_path / "x.yaml", DraftCache()
+    file, drafts = tmp_path / "x.yaml", DraftCache()
     text = TEXT.replace("state: flow.Decide", "state: flow.Nothing", 1)
-    drawn = desk.draw(text, file=file, context=context)
-    found = desk.findings(text, file=file, context=context)
+    drawn = drafts.draw(text, file=file, context=context)
+    found = drafts.examine(text, file=file, context=context).findings
     assert (drawn.findings, drawn.checked) == ((), False)
     assert found == analyze_text(text, file=file, context=context).findings
     assert [each.code for each in found] == ["unknown-state"]
@@ -64,12 +64,12 @@ def test_findings_of_a_text_that_was_just_drawn_are_those_of_a_whole_look(
 
 @pytest.mark.parametrize("text", ["flexcell: [", "- a list", ""])
 def test_a_text_that_cannot_be_read_says_so_in_every_way(text: str, tmp_path: Path, context: ProjectContext) -> None:
-    file, desk = tmp_path / "x.yaml", DraftCache()
+    file, drafts = tmp_path / "x.yaml", DraftCache()
     edits, _ = read_edits([{"edit": "duplicate", "paths": [NODE]}])
     expected: DocumentAnalysis = analyze_text(text, file=file, context=context)
-    assert desk.draw(text, file=file, context=context) == expected
-    assert desk.findings(text, file=file, context=context) == expected.findings
-    answer = desk.edit(text, edits, file=file, context=context)
+    assert drafts.draw(text, file=file, context=context) == expected
+    assert drafts.examine(text, file=file, context=context).findings == expected.findings
+    answer = drafts.edit(text, edits, file=file, context=context)
     done, drawn = answer.result, answer.analysis
     assert (done.text, drawn) == (text, expected)
     assert done.refused is not None

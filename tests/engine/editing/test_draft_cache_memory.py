@@ -27,9 +27,9 @@ def test_a_draft_has_no_cycles() -> None:
 
 def test_of_long_texts_only_the_last_are_kept(tmp_path: Path) -> None:
     """What they hold together is bounded."""
-    desk = DraftCache()
+    drafts = DraftCache()
     context = ProjectContext({}, tmp_path, tmp_path)
     for letter in "abc":
         text = f"{TEXT}{letter}}}\n" + "\n" * (MAX_ENTRIES // 2)
-        desk.draw(text, file=tmp_path / "x.yaml", context=context)
-    assert desk.kept_entries <= MAX_ENTRIES
+        drafts.draw(text, file=tmp_path / "x.yaml", context=context)
+    assert drafts.kept_entries <= MAX_ENTRIES

@@ -68,13 +68,13 @@ def test_any_edit_is_answered_with_what_a_look_from_scratch_says(
 ) -> None:
     """The difference applied to the old graph is the new graph, and the findings are those of the text alone."""
     text = Layout(chance).document(data)
-    desk, known = DraftCache(), context(FILE.parent)
-    drawn = desk.draw(text, file=FILE, context=known)
+    drafts, known = DraftCache(), context(FILE.parent)
+    drawn = drafts.draw(text, file=FILE, context=known)
     graph, base = _plain(drawn.graph), drawn.hash
     for _ in range(3):
         edits, problem = read_edits([draw.draw(any_edits(list(Outline(Draft(text, file="x.yaml").data).refs)))])
         assume(problem is None)
-        answer = desk.edit(text, edits, file=FILE, context=known, check=True, graph=base)
+        answer = drafts.edit(text, edits, file=FILE, context=known, check=True, graph=base)
         expected = analyze_text(answer.result.text, file=FILE, context=known)
         assert answer.analysis == expected
         if answer.result.refused is None:
@@ -87,15 +87,15 @@ def test_any_edit_is_answered_with_what_a_look_from_scratch_says(
 
 @pytest.mark.parametrize("subject", subjects(60), ids=lambda each: each.name)
 def test_edits_one_after_the_other_send_little(subject: Any) -> None:
-    desk, known, text = DraftCache(), context(FILE.parent), subject.text
+    drafts, known, text = DraftCache(), context(FILE.parent), subject.text
     place = subject.place if subject.name == "flat" else "root/area_0/step_0"
     nodes = ("s20", "s21") if subject.name == "flat" else subject.nodes
-    drawn = desk.draw(text, file=FILE, context=known)
+    drawn = drafts.draw(text, file=FILE, context=known)
     graph, base = _plain(drawn.graph), drawn.hash
     for name, make in edits_of(replace(subject, place=place, nodes=nodes)).items():
         for number in range(2):
             edits, _ = read_edits([make(number)])
-            answer = desk.edit(text, edits, file=FILE, context=known, check=True, graph=base)
+            answer = drafts.edit(text, edits, file=FILE, context=known, check=True, graph=base)
             assert answer.result.refused is None, (name, answer.result.refused)
             assert answer.analysis == analyze_text(answer.result.text, file=FILE, context=known)
             assert answer.difference is not None
@@ -107,9 +107,9 @@ def test_edits_one_after_the_other_send_little(subject: Any) -> None:
 
 def test_a_graph_that_the_server_does_not_know_is_answered_whole() -> None:
     text = subjects(20)[0].text
-    desk, known = DraftCache(), context(FILE.parent)
+    drafts, known = DraftCache(), context(FILE.parent)
     edits, _ = read_edits([{"edit": "rename_node", "path": "root/s3", "name": "other"}])
-    first = desk.edit(text, edits, file=FILE, context=known, graph=None)
+    first = drafts.edit(text, edits, file=FILE, context=known, graph=None)
     assert (first.difference, first.analysis.graph is None) == (None, False)
-    desk.draw(text, file=FILE, context=known)
-    assert desk.edit(text, edits, file=FILE, context=known, graph="0" * 64).difference is None
+    drafts.draw(text, file=FILE, context=known)
+    assert drafts.edit(text, edits, file=FILE, context=known, graph="0" * 64).difference is None
