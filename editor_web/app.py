@@ -56,11 +56,10 @@ from editor_web.sockets import live_stream as live
 from editor_web.sockets import teaching_stream as teaching
 from editor_web.teaching.jogging import Jogger
 from editor_web.transport.capacity import MAX_CONNECTIONS
-from engine.editing import DocumentConflict, NoSuchDocument
-from engine.editing.target_checks import TargetChecks
+from engine.editing import DocumentConflict, NoSuchDocument, TargetChecks
 from engine.errors import ControlError, FlexcellError
-from engine.project.session import Session
-from engine.runtime.history.resume import ResumeDecisionRequired
+from engine.project import Session
+from engine.runtime.history import ResumeDecisionRequired
 from engine.stop import StopEndpoint
 
 _TITLE = "flexcell"

@@ -25,7 +25,7 @@ from engine.editing import AnyEdit
 from engine.skills.entries import EntryHistory, EntryRecord
 from engine.skills.teaching import Capture, SaveCapture, TeachStatus
 from engine.skills.trigger_document import TriggerDocument
-from engine.stop.relay_messages import StopStatus
+from engine.stop import StopStatus
 
 HERE = Path(__file__).parent
 OPENAPI = HERE / "openapi.json"

@@ -21,7 +21,7 @@ from editor_web.transport.log_throttle import throttle_library_logs
 from editor_web.transport.timed_connection import PageWebSocket, PendingConnections, TimedConnection
 from engine.errors import FlexcellError
 from engine.host.loopback import bound_socket, host_in_url
-from engine.project.session import Session
+from engine.project import Session
 from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3

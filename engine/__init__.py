@@ -8,8 +8,7 @@ Importing the engine makes every module of the project prepare its message and d
 two threads that prepared a type at once would crash the process, see `engine.type_preparation`.
 """
 
-from importlib import import_module
-
+from engine.lazy_face import lazy_face
 from engine.type_preparation import prepare_on_import
 
 _HOMES = {
@@ -41,14 +40,6 @@ _HOMES = {
 }
 
 __all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`
-
-
-def __getattr__(name: str) -> object:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'engine' has no attribute {name!r}")
-    found: object = getattr(import_module(_HOMES[name]), name)
-    globals()[name] = found
-    return found
-
+__getattr__ = lazy_face(__name__, _HOMES)
 
 prepare_on_import("engine", "states", "robots", "editor_web", "behaviors")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind
+from engine.cell import RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.model.mechanics.link_names import link_names

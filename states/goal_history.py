@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from engine.runtime.record.nonfinite import decode_nonfinite
+from engine.runtime import decode_nonfinite
 from engine.skill import Action
 from engine.state import ActivationRecord, RequestRecord
 

@@ -13,7 +13,7 @@ from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.errors import RecordingError
 from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, OccupancyGrid, OccupancyState
-from engine.recording.indexed_recording import IndexedRecording
+from engine.recording import IndexedRecording
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
 from engine.skills.vision import Detections

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import LayerGroup
-from engine.bus.json_bus import JsonBus
+from engine.bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState

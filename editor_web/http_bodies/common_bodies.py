@@ -8,10 +8,10 @@ import msgspec
 from msgspec import Meta
 
 from editor_web.security.authentication import OPERATOR, Role
-from engine.cell.cell_connection import CellConnection
+from engine.cell import CellConnection
 from engine.event import AnyEvent
-from engine.library.behavior_library import BehaviorView
-from engine.runtime.history.resume import ResumeQuestion
+from engine.library import BehaviorView
+from engine.runtime.history import ResumeQuestion
 from engine.stop import StopEndpoint
 
 Name = Annotated[str, Meta(max_length=200)]

@@ -5,8 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from editor_web.http_bodies.common_bodies import Name, RequestBody
-from engine.runtime.control import AutonomyLevel, Breakpoint
-from engine.runtime.control.single_step import StepMode
+from engine.runtime.control import AutonomyLevel, Breakpoint, StepMode
 
 
 class StepBody(RequestBody, frozen=True, kw_only=True):

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from engine.library.behavior_library import FindingView
+from engine.library import FindingView
 from engine.skills.proposing import Proposal, ProposeBehavior
 
 

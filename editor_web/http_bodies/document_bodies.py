@@ -9,13 +9,18 @@ import msgspec
 from msgspec import Meta
 
 from editor_web.http_bodies.common_bodies import ErrorBody, RequestBody
-from engine.document.yaml_source import MAX_BYTES
-from engine.editing import DocumentAnalysis, StoredDocument
-from engine.editing.apply import EditRefusal
-from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView
-from engine.editing.graph_difference import GraphDifference
-from engine.editing.target_messages import TargetFindings
-from engine.editing.three_way_merge import MergeConflict
+from engine.document import MAX_BYTES
+from engine.editing import (
+    BehaviorReferenceView,
+    ContainerView,
+    DocumentAnalysis,
+    EditRefusal,
+    GraphDifference,
+    MergeConflict,
+    StateView,
+    StoredDocument,
+    TargetFindings,
+)
 
 Text = Annotated[str, Meta(max_length=MAX_BYTES)]
 Hash = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]

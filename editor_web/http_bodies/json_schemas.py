@@ -10,7 +10,7 @@ from typing import Any, get_args
 import msgspec
 from msgspec import inspect
 
-from engine.document.parameter_spec import any_value
+from engine.document import any_value
 
 Schema = dict[str, Any]
 _REFERENCE = "#/components/schemas/{name}"

@@ -6,7 +6,7 @@ import msgspec
 from msgspec.structs import asdict
 
 from engine.archive import PastRun
-from engine.library.behavior_library import BehaviorView
+from engine.library import BehaviorView
 
 
 class PastRunBody(PastRun, frozen=True, kw_only=True):

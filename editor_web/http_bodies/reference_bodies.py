@@ -10,7 +10,7 @@ from msgspec import Meta
 from editor_web.http_bodies.common_bodies import RequestBody
 from editor_web.http_bodies.document_bodies import DocumentBody, Id, Text
 from engine.editing.fixes import Fix
-from engine.library.behavior_library import FindingView
+from engine.library import FindingView
 
 
 class FixesBody(FindingView, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from editor_web.http_bodies.common_bodies import RequestBody
-from engine.project.run_request import RunPosition
+from engine.project import RunPosition
 from engine.runtime.control import AutonomyLevel, LossPolicy
 
 

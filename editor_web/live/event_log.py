@@ -1,4 +1,4 @@
-"""Lines of the log of the page; `engine.runtime.history.event_text` says what is in them."""
+"""Lines of the log of the page; `engine.runtime.history.event_texts` says what is in them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import msgspec
 
 from engine.cause_chain import links_from_root
 from engine.event import AnyEvent, Cause, Event
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history import event_text
 
 _KINDS = {kind: str(kind.__struct_config__.tag) for kind in get_args(AnyEvent)}
 

@@ -20,9 +20,9 @@ from editor_web.live.live_run import LOG_LINES, LiveRun, LiveRunChange
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
-from engine.project.session import Session
+from engine.project import Session
 from engine.runtime.control import ControlView
-from engine.runtime.history.run_state import NodeLive
+from engine.runtime.history import NodeLive
 
 KEPT_RUNS = 50
 

@@ -7,9 +7,9 @@ import msgspec
 from editor_web.cell_view import LayerGroup
 from editor_web.live.event_log import LogLine
 from editor_web.live.robot_status import RobotLive
-from engine.project.session_run import RunView
+from engine.project import RunView
 from engine.runtime.control import ControlView
-from engine.runtime.history.run_state import NodeLive
+from engine.runtime.history import NodeLive
 
 PROTOCOL_VERSION = 2
 

@@ -9,8 +9,7 @@ import msgspec
 
 from editor_web.live.event_log import LogLine, log_line
 from engine.event import Event
-from engine.runtime.history.run_reducer import RunReducer
-from engine.runtime.history.run_state import NodeLive, RunState
+from engine.runtime.history import NodeLive, RunReducer, RunState
 
 LOG_LINES = 1000
 

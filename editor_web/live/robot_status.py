@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import msgspec
 
-from engine.project.session import Session
+from engine.project import Session
 from engine.skills.arm_control import ArmStatus, SpeedOverride
 from engine.skills.planning import PathPreview
 

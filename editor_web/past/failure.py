@@ -10,8 +10,7 @@ from editor_web.live.event_log import LogLine, log_line
 from engine.cause_chain import links_from_root
 from engine.errors import FlexcellError
 from engine.event import Cause, Event
-from engine.runtime.history.run_reducer import RunReducer
-from engine.runtime.history.run_state import NodeStep
+from engine.runtime.history import NodeStep, RunReducer
 
 AROUND = 20
 _AROUND_KINDS = frozenset(

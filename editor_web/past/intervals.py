@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 
 from engine.event import Event
-from engine.runtime.history.run_state import NodeLive
+from engine.runtime.history import NodeLive
 
 MAX_INTERVALS = 12_000
 """Maximum number of intervals in one response; more are merged."""

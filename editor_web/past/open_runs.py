@@ -15,8 +15,8 @@ from editor_web.past.userdata_values import PastUserdata, UserdataCheckpoints
 from engine.archive import Archive, ArchivedRun
 from engine.errors import FlexcellError
 from engine.event import Event
-from engine.project.session import Session
-from engine.runtime.history.userdata_history import UserdataHistory
+from engine.project import Session
+from engine.runtime.history import UserdataHistory
 
 MAX_OPEN_RUNS = 6
 """Maximum number of open runs; 100,000 events take about 100 MB."""

@@ -11,8 +11,7 @@ import msgspec
 from editor_web.live.event_log import LogLine, log_line
 from editor_web.live.live_run import LOG_LINES
 from engine.event import Event
-from engine.runtime.history.run_reducer import RunReducer
-from engine.runtime.history.run_state import NodeLive, RunState, RunStateChange
+from engine.runtime.history import NodeLive, RunReducer, RunState, RunStateChange
 
 CHECKPOINT_INTERVAL = 512
 """Initial number of events between two checkpoints."""

@@ -8,7 +8,7 @@ import msgspec
 
 from editor_web.past.state_history import RunStateHistory
 from editor_web.telemetry.page_subscriptions import userdata_scope
-from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
+from engine.runtime.history import ScopeView, UserdataHistory
 
 _EVERY = 1024
 """Events between two checkpoints."""

@@ -8,7 +8,7 @@ from editor_web.http_bodies.common_bodies import BehaviorSummary, ErrorBody, sum
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.errors import FlexcellError
-from engine.library.behavior_library import BehaviorView
+from engine.library import BehaviorView
 
 router = WireRouter(prefix="/api/v1/behaviors", tags=["behaviors"])
 

@@ -19,8 +19,7 @@ from editor_web.telemetry.bus_metrics import bus_fingerprint
 from editor_web.telemetry.goal_stream import GoalStream, wait_for_disconnect
 from editor_web.telemetry.plot_signals import signal_fields
 from editor_web.telemetry.truncate import truncate_value
-from engine.bus import GoalEnd
-from engine.bus.bus import BusEntry
+from engine.bus import BusEntry, GoalEnd
 
 router = WireRouter(prefix="/api/v1/bus", tags=["bus"], responses={422: {"model": ErrorBody}})
 CLIENT_CLOSED_REQUEST = 499

@@ -8,7 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from editor_web.http_bodies.document_bodies import CatalogueBody, EntryName
 from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.editing.catalogue import container_views, state_views
+from engine.editing import container_views, state_views
 from engine.errors import FlexcellError
 from engine.skills.entries import EntryList
 

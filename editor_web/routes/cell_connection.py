@@ -5,7 +5,7 @@ from __future__ import annotations
 from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.cell.cell_connection import CellConnection
+from engine.cell import CellConnection
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 

@@ -10,7 +10,7 @@ from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.http_bodies.demonstration_bodies import DemonstrationBody, ProposalBody
 from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.editing.cell_references import cell_reference
+from engine.editing import cell_reference
 from engine.skills.proposing import Proposal, ProposeBehavior
 
 router = WireRouter(prefix="/api/v1/teach", tags=["teach"], responses={422: {"model": ErrorBody}})

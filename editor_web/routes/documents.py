@@ -32,10 +32,16 @@ from editor_web.http_bodies.document_bodies import (
 )
 from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.editing import DocumentAnalysis, StoredDocument, copy_nodes, read_edits
-from engine.editing.data_flow import KeyFlow
-from engine.editing.document_diff import DocumentDiff, compare_texts
-from engine.library.behavior_library import FindingView
+from engine.editing import (
+    DocumentAnalysis,
+    DocumentDiff,
+    KeyFlow,
+    StoredDocument,
+    compare_texts,
+    copy_nodes,
+    read_edits,
+)
+from engine.library import FindingView
 
 router = WireRouter(
     prefix="/api/v1/documents",

@@ -15,10 +15,15 @@ from editor_web.http_bodies.reference_bodies import (
 )
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.editing import DocumentAnalysis
-from engine.editing.document_diff import DocumentDiff, compare_texts
+from engine.editing import (
+    DocumentAnalysis,
+    DocumentDiff,
+    ReferringBehavior,
+    compare_texts,
+    move_with_references,
+    referrers,
+)
 from engine.editing.fixes import fixes_of
-from engine.editing.references import ReferringBehavior, move_with_references, referrers
 
 router = WireRouter(
     prefix="/api/v1",

@@ -15,8 +15,8 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import FlexcellError
 from engine.event import AnyEvent
-from engine.project.session_run import RunView
-from engine.runtime.run_options import RunOptions
+from engine.project import RunView
+from engine.runtime import RunOptions
 
 router = WireRouter(prefix="/api/v1/runs", tags=["runs"])
 KEPT_KEYS = 200

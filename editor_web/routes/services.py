@@ -13,9 +13,8 @@ from editor_web.cell_view import CellView
 from editor_web.live.hub import LiveHub
 from editor_web.security.authentication import AccessTokens, AttemptLimiter
 from editor_web.security.login_sessions import LoginSessions
-from engine.editing import DocumentRepository
-from engine.editing.target_checks import TargetChecks
-from engine.project.session import Session
+from engine.editing import DocumentRepository, TargetChecks
+from engine.project import Session
 from engine.stop import StopEndpoint
 
 

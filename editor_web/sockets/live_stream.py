@@ -16,8 +16,7 @@ from editor_web.routes.services import role_of, services_of
 from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, disconnect_page, read_message, send_message
 from engine.errors import FlexcellError
-from engine.project.session import Session
-from engine.project.session_operators import RunOperator
+from engine.project import RunOperator, Session
 
 router = APIRouter()
 PERIOD_S = 0.05

@@ -44,7 +44,7 @@ from editor_web.teaching.teaching_messages import (
 )
 from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
-from engine.project.session import Session
+from engine.project import Session
 from engine.skills.planning import PathPreview
 from engine.skills.teaching import TeachStatus
 

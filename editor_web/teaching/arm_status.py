@@ -9,7 +9,7 @@ from msgspec.structs import asdict
 from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
-from engine.project.session import Session
+from engine.project import Session
 from engine.skills.arm_control import ArmStatus
 
 _TOOLS = (GripperState, HandState, MagnetState)

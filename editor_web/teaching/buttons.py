@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from editor_web.teaching.teaching_messages import ButtonInput, RefusedFrame
-from engine.bus.json_bus import JsonBus
+from engine.bus import JsonBus
 from engine.errors import BusError
 
 MOST_BUTTONS = 64

@@ -23,7 +23,7 @@ from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription
 from engine.messages.pose_algebra import rotation_vector_between
-from engine.project.session import Session
+from engine.project import Session
 
 PERIOD_S = 0.05
 SILENCE_S = 0.2

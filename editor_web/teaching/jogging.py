@@ -10,8 +10,7 @@ from collections.abc import Callable
 
 from editor_web.teaching.goal_failure_text import goal_failure_text
 from editor_web.teaching.teaching_messages import JogStatus, RefusedFrame, StartJog
-from engine.bus import GoalStatus
-from engine.bus.json_bus import JsonBus
+from engine.bus import GoalStatus, JsonBus
 from engine.errors import FlexcellError
 
 WATCHDOG_S = 0.12

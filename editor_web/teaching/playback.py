@@ -9,8 +9,7 @@ import msgspec
 from editor_web.teaching.goal_failure_text import goal_failure_text
 from editor_web.teaching.taught_entries import TaughtData, read_taught, trace
 from editor_web.teaching.teaching_messages import PlaybackResult, PlayBody
-from engine.bus import GoalStatus
-from engine.bus.json_bus import JsonBus
+from engine.bus import GoalStatus, JsonBus
 from engine.errors import FlexcellError
 from engine.skills.dmp import LearnedCartDmp, LearnedJointDmp
 

@@ -9,7 +9,7 @@ from typing import cast, get_args
 import msgspec
 
 from editor_web.teaching.teaching_messages import EntryPage, PrimitiveComparison, TagsBody, TaughtReference
-from engine.bus.json_bus import JsonBus
+from engine.bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import Message
 from engine.skills.entries import EntryChanged, EntryHistory, EntryList, EntryRecord

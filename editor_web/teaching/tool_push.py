@@ -7,7 +7,7 @@ import math
 from editor_web.teaching.teaching_messages import PushToolBody
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, SceneDescription
-from engine.project.session import Session
+from engine.project import Session
 from engine.skills.arm_control import ArmStatus
 
 MOST_N = 60.0

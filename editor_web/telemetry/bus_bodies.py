@@ -9,7 +9,7 @@ import msgspec
 from editor_web.http_bodies.common_bodies import Name, RequestBody
 from editor_web.telemetry.plot_signals import SignalField
 from engine.bus import GoalEnd
-from engine.project.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
+from engine.project import ParameterInfo, SkillInfo, TopicInfo
 
 
 class BusListing(msgspec.Struct, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from editor_web.telemetry.data_frames import BusMetricsFrame, LeaseMetrics, TopicMetrics
 from engine.bus import Lease
-from engine.project.bus_inspector import BusInspector, GoalInfo, TopicStatistics
+from engine.project import BusInspector, GoalInfo, TopicStatistics
 
 WINDOW_S = 4.0
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
-from engine.project.bus_inspector import GoalInfo
-from engine.runtime.history.userdata_history import ScopeView
+from engine.project import GoalInfo
+from engine.runtime.history import ScopeView
 
 MAX_CURVES = 32
 

@@ -8,7 +8,7 @@ import msgspec
 
 from editor_web.telemetry.data_frames import GoalProgress
 from editor_web.telemetry.plot_signals import unit_of
-from engine.project.bus_inspector import GoalInfo
+from engine.project import GoalInfo
 
 _REST = ("remaining", "distance")
 _TEXT_FIELDS = ("phase", "reason")

@@ -14,7 +14,7 @@ from starlette.types import Receive, Scope, Send
 from editor_web.telemetry.bus_bodies import GoalEndLine, GoalProgressLine, GoalSentLine, GoalStreamLine
 from editor_web.telemetry.truncate import truncate_value
 from engine.bus import GoalHandle
-from engine.project.bus_inspector import BusInspector
+from engine.project import BusInspector
 
 PERIOD_S = 0.2
 

@@ -28,8 +28,8 @@ from editor_web.telemetry.goal_progress import progress_by_node
 from editor_web.telemetry.plot_signals import Path, number_at, path_of
 from editor_web.telemetry.truncate import truncate_value
 from engine.errors import FlexcellError
-from engine.project.session import Session
-from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
+from engine.project import Session
+from engine.runtime.history import ScopeView, UserdataHistory
 
 SAMPLE_S = 0.05
 MESSAGE_S = 0.2

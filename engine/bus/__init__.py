@@ -3,6 +3,7 @@
 from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, GoalStatus
 from engine.bus.bus import ANONYMOUS_HOLDER, BusEntry, SkillBus
 from engine.bus.handler_signature import expected_signature
+from engine.bus.json_bus import JsonBus
 from engine.bus.lease import Holder, Lease, LeaseTable
 from engine.bus.parameter_server import BusParameter, ParameterServer
 from engine.bus.topic import Subscription, Topic, TopicStream
@@ -16,6 +17,7 @@ __all__ = [
     "GoalHandle",
     "GoalStatus",
     "Holder",
+    "JsonBus",
     "Lease",
     "LeaseTable",
     "ParameterServer",

@@ -1,1 +1,17 @@
-"""An open cell: its devices and their connection, its store, and the names that behaviors may use."""
+"""An open cell: its devices and their connection, its store, and the names that behaviors may use.
+
+The check reads the names of a cell without opening one, so each name is imported with its first use.
+"""
+
+from engine.lazy_face import lazy_face
+
+_HOMES = {
+    "CellConnection": "engine.cell.cell_connection",
+    "OpenCell": "engine.cell.open_cell",
+    "RobotModels": "engine.cell.robot_models",
+    "RobotSummary": "engine.cell.robot_models",
+    "ToolKind": "engine.cell.robot_models",
+}
+
+__all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`
+__getattr__ = lazy_face(__name__, _HOMES)

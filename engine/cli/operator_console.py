@@ -17,7 +17,7 @@ from engine.event import Event
 from engine.recording.recorded_run import version_snapshot
 from engine.runtime.control import LEVELS, Breakpoint
 from engine.runtime.control.single_step import StepMode
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history.event_texts import event_text
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions

@@ -7,7 +7,7 @@ from rich.markup import escape
 
 from engine.cause_chain import describe_cause
 from engine.event import Event, GoalFinished
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history.event_texts import event_text
 from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.history.run_state import RunStateChange
 

@@ -28,7 +28,7 @@ from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import RunRecord, encode_event, list_runs
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history.event_texts import event_text
 from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
 from engine.runtime.plan import new_plan

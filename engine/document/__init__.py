@@ -37,10 +37,11 @@ from engine.document.node_spec import (
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
-from engine.document.yaml_source import DataPath, DocumentSource, load_source, parse_source
+from engine.document.yaml_source import MAX_BYTES, DataPath, DocumentSource, load_source, parse_source
 from engine.document.yaml_writer import write_yaml
 
 __all__ = [
+    "MAX_BYTES",
     "Behavior",
     "BehaviorDocument",
     "BehaviorSurvey",

@@ -4,19 +4,30 @@
 """
 
 from engine.editing.apply import EditRefusal, EditResult, apply_edits, copy_nodes, read_edits
+from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView, container_views, state_views
+from engine.editing.cell_references import cell_reference
+from engine.editing.data_flow import KeyFlow
 from engine.editing.diagnostics import DocumentAnalysis, analyze_text, text_hash
+from engine.editing.document_diff import DocumentDiff, compare_texts
 from engine.editing.document_graph import DocumentInfo, DocumentNode
 from engine.editing.document_repository import DocumentConflict, DocumentRepository, NoSuchDocument, StoredDocument
 from engine.editing.draft import Draft, EditRefused
 from engine.editing.edit import AnyEdit
+from engine.editing.graph_difference import GraphDifference
 from engine.editing.project_context import ProjectContext
+from engine.editing.references import ReferringBehavior, move_with_references, referrers
+from engine.editing.target_checks import TargetChecks
+from engine.editing.target_messages import TargetFindings
 from engine.editing.three_way_merge import MergeConflict, MergeResult, merge_texts
 from engine.editing.versions import DocumentVersion
 
 __all__ = [
     "AnyEdit",
+    "BehaviorReferenceView",
+    "ContainerView",
     "DocumentAnalysis",
     "DocumentConflict",
+    "DocumentDiff",
     "DocumentInfo",
     "DocumentNode",
     "DocumentRepository",
@@ -25,15 +36,27 @@ __all__ = [
     "EditRefusal",
     "EditRefused",
     "EditResult",
+    "GraphDifference",
+    "KeyFlow",
     "MergeConflict",
     "MergeResult",
     "NoSuchDocument",
     "ProjectContext",
+    "ReferringBehavior",
+    "StateView",
     "StoredDocument",
+    "TargetChecks",
+    "TargetFindings",
     "analyze_text",
     "apply_edits",
+    "cell_reference",
+    "compare_texts",
+    "container_views",
     "copy_nodes",
     "merge_texts",
+    "move_with_references",
     "read_edits",
+    "referrers",
+    "state_views",
     "text_hash",
 ]

@@ -6,6 +6,7 @@ its file never affects the run.
 
 from engine.recording.description import RecordingDescription
 from engine.recording.finalization import part_file, recovered_file
+from engine.recording.indexed_recording import IndexedRecording
 from engine.recording.recorded_documents import (
     RecordedDocuments,
     collect_documents,
@@ -17,6 +18,7 @@ from engine.recording.run_recording import DEFAULT_RATE_HZ, RecordingOptions, Ru
 
 __all__ = [
     "DEFAULT_RATE_HZ",
+    "IndexedRecording",
     "RecordedDocuments",
     "RecordedEvent",
     "Recording",

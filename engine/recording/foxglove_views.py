@@ -16,7 +16,7 @@ from engine.event import Event
 from engine.messages import FramePoses, JointState, SceneDescription
 from engine.recording.foxglove_scene import FoxgloveSceneUpdate, scene_update
 from engine.recording.foxglove_types import FoxgloveQuaternion, FoxgloveTime, FoxgloveVector3, time_of
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history.event_texts import event_text
 
 _LEVELS = {"debug": 1, "info": 2, "warning": 3, "error": 4}
 ROOT_FRAME = "world"

@@ -8,7 +8,7 @@ from itertools import islice
 
 from engine.event import Event
 from engine.replay.plain_event import plain_event, value_changes
-from engine.runtime.history.event_text import event_text
+from engine.runtime.history.event_texts import event_text
 
 CONTEXT = 10
 _SHOWN = 3

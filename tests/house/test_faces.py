@@ -1,52 +1,64 @@
-"""States and robots take names from the faces of the engine's rooms: what a room keeps inside it may change."""
+"""The wings take names from the faces of the engine's rooms: what a room keeps inside it may change."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-WINGS = ("states", "robots")
-"""The dashboard is not among them: the bodies of its requests and answers are the structs inside the rooms."""
+WINGS = ("states", "robots", "editor_web")
 SUBJECTS = ("host", "messages", "skills")
 """Rooms whose files are faces themselves, one for each subject: nobody loads all of them."""
-INNER_FACES = {
-    "engine.cell.robot_models": "the room has no face: a cell is opened by `engine.project`",
-    "engine.runtime.record.nonfinite": "`runtime` has no face: each of its rooms is loaded when it is needed",
-}
-"""What the wings may import from inside a room, with the reason."""
 
 
-def _inner_modules(path: Path) -> Iterator[str]:
-    """Yield the modules inside a room of the engine that a file imports from."""
+def _names_of(face: str) -> list[str]:
+    """Return the names that a package offers; none if it is a module or a package without a face."""
+    module = import_module(face)
+    return getattr(module, "__all__", []) if hasattr(module, "__path__") else []
+
+
+def _from_inside(path: Path) -> Iterator[str]:
+    """Yield what a file imports from a room of the engine and its face, or the face of a room in it, does not offer."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        names: list[str] = []
-        if isinstance(node, ast.ImportFrom) and node.module is not None and node.level == 0:
-            names = [node.module]
-        elif isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        for name in names:
-            parts = name.split(".")
-            if parts[0] == "engine" and len(parts) > 2 and parts[1] not in SUBJECTS:
-                yield name
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name.count(".") > 1 and _is_room(alias.name))
+        elif isinstance(node, ast.ImportFrom) and node.module is not None and node.level == 0 and _is_room(node.module):
+            offered = _names_of(node.module)
+            yield from (f"{node.module}.{alias.name}" for alias in node.names if alias.name not in offered)
 
 
-def _reached() -> dict[str, set[str]]:
-    """Return what each file of the wings imports from inside a room, other than the inner faces."""
-    files = (path for wing in WINGS for path in (ROOT / wing).rglob("*.py") if "node_modules" not in path.parts)
-    found = {path.relative_to(ROOT).as_posix(): set(_inner_modules(path)) - set(INNER_FACES) for path in files}
-    return {file: modules for file, modules in found.items() if modules}
+def _is_room(module: str) -> bool:
+    """Say whether a module is a room of the engine, or is inside one, whose files are not faces themselves."""
+    parts = module.split(".")
+    return (
+        parts[0] == "engine" and len(parts) > 1 and parts[1] not in SUBJECTS and (ROOT / "engine" / parts[1]).is_dir()
+    )
 
 
-def test_states_and_robots_import_from_faces() -> None:
+@pytest.mark.parametrize("wing", WINGS)
+def test_a_wing_imports_from_faces(wing: str) -> None:
     """Export a name from the room's `__init__` with `__all__` instead of reaching for its file."""
-    assert _reached() == {}
+    files = [path for path in (ROOT / wing).rglob("*.py") if "node_modules" not in path.parts]
+    found = {path.relative_to(ROOT).as_posix(): sorted(_from_inside(path)) for path in files}
+    assert {file: names for file, names in found.items() if names} == {}
 
 
-@pytest.mark.parametrize("module", INNER_FACES)
-def test_an_inner_face_is_still_needed(module: str) -> None:
-    files = (path for wing in WINGS for path in (ROOT / wing).rglob("*.py") if "node_modules" not in path.parts)
-    assert any(f"from {module} import" in path.read_text(encoding="utf-8") for path in files)
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("from engine.document import Behavior", []),
+        ("from engine.skills.motion import MoveTo", []),
+        ("from engine.clock import Clock", []),
+        ("from engine.document import yaml_source", ["engine.document.yaml_source"]),
+        ("from engine.document.yaml_source import MAX_BYTES", ["engine.document.yaml_source.MAX_BYTES"]),
+        ("import engine.project.session", ["engine.project.session"]),
+    ],
+)
+def test_only_what_a_face_offers_is_no_way_inside(tmp_path: Path, line: str, names: list[str]) -> None:
+    file = tmp_path / "wing.py"
+    file.write_text(line, encoding="utf-8")
+    assert list(_from_inside(file)) == names

@@ -30,7 +30,7 @@ NODE_EVENTS = frozenset(
 )
 """The events that say what happens in a node: the state of a run is made of them."""
 REDUCER = "engine/runtime/history/run_state_part.py"
-WORDS = "engine/runtime/history/event_text.py"
+WORDS = "engine/runtime/history/event_texts.py"
 EXCEPTIONS = {
     "engine/replay/entry_schedule.py": "finds the instants of entries in a recording, to repeat them; no state",
     "engine/replay/recorded_requests.py": "finds the requests of a recording and which were cancelled; no state",

@@ -1,4 +1,4 @@
-"""`from engine import …`: the same names at run time, for type checkers and in the reference; cheap, and no circle."""
+"""`from engine import …` and lazy faces of rooms: the same names for checkers as at run time; cheap, and no circle."""
 
 from __future__ import annotations
 
@@ -8,36 +8,63 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 import engine
+from engine.lazy_face import lazy_face
 
 ROOT = Path(__file__).resolve().parents[2]
+LAZY_FACES = [
+    ".".join(path.parent.relative_to(ROOT).parts)
+    for path in sorted((ROOT / "engine").rglob("__init__.py"))
+    if "lazy_face(" in path.read_text(encoding="utf-8")
+]
 
 
-def _stub() -> dict[str, str]:
+def _stub_tree(face: str) -> ast.Module:
+    return ast.parse((ROOT / face.replace(".", "/") / "__init__.pyi").read_text(encoding="utf-8"))
+
+
+def _stub(face: str) -> dict[str, str]:
     """The names of the stub, each with the module it comes from."""
-    tree = ast.parse((ROOT / "engine" / "__init__.pyi").read_text(encoding="utf-8"))
-    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module is not None]
+    imports = [node for node in _stub_tree(face).body if isinstance(node, ast.ImportFrom) and node.module is not None]
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 
 
-def _stub_exports() -> list[str]:
-    tree = ast.parse((ROOT / "engine" / "__init__.pyi").read_text(encoding="utf-8"))
-    (exports,) = (node.value for node in tree.body if isinstance(node, ast.Assign))
+def _stub_exports(face: str) -> list[str]:
+    (exports,) = (node.value for node in _stub_tree(face).body if isinstance(node, ast.Assign))
     found: list[str] = ast.literal_eval(exports)
     return found
 
 
-def test_type_checkers_see_the_names_that_can_be_imported() -> None:
-    assert _stub_exports() == engine.__all__
-    assert set(_stub()) == set(engine.__all__)
+@pytest.mark.parametrize("face", LAZY_FACES)
+def test_type_checkers_see_the_names_that_can_be_imported(face: str) -> None:
+    names = import_module(face).__all__
+    assert _stub_exports(face) == names
+    assert set(_stub(face)) == set(names)
 
 
-@pytest.mark.parametrize("name", engine.__all__)
-def test_a_name_is_what_its_stub_says(name: str) -> None:
-    assert getattr(engine, name) is getattr(import_module(_stub()[name]), name)
+@pytest.mark.parametrize(("face", "name"), [(face, name) for face in LAZY_FACES for name in _stub(face)])
+def test_a_name_is_what_its_stub_says(face: str, name: str) -> None:
+    assert getattr(import_module(face), name) is getattr(import_module(_stub(face)[name]), name)
+
+
+@pytest.mark.parametrize("face", LAZY_FACES)
+def test_no_module_of_a_room_takes_the_place_of_a_name(face: str) -> None:
+    """A module becomes an attribute of its package when it is loaded, by whomever."""
+    folder = ROOT / face.replace(".", "/")
+    modules = {path.stem for path in folder.iterdir() if path.suffix == ".py" or path.is_dir()}
+    assert modules & set(_stub(face)) == set()
+
+
+def test_a_lazy_name_is_looked_up_once() -> None:
+    package = ModuleType("engine_of_this_test")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, package.__name__, package)
+        assert lazy_face(package.__name__, {"Path": "pathlib"})("Path") is Path
+        assert vars(package)["Path"] is Path
 
 
 def test_another_name_is_refused_as_by_every_module() -> None:
@@ -51,6 +78,10 @@ def test_another_name_is_refused_as_by_every_module() -> None:
         ("import engine", ("msgspec", "asyncio", "engine.state", "engine.runtime", "engine.project")),
         ("from engine import State, Outcome, Context", ("engine.runtime", "engine.project", "engine.bus")),
         ("from engine import SkillBus, run_virtual", ("engine.runtime", "engine.project", "engine.journal")),
+        ("from engine.project import RunOperator", ("engine.project.session", "engine.bus", "engine.runtime.run")),
+        ("from engine.cell import RobotModels", ("engine.cell.open_cell", "engine.store")),
+        ("from engine.runtime import decode_nonfinite", ("engine.runtime.run", "engine.bus", "engine.document")),
+        ("from engine.runtime.history import ScopeView", ("engine.runtime.history.resume", "engine.runtime.run")),
     ],
 )  # fmt: skip
 def test_a_name_loads_only_its_own_room(statement: str, spared: tuple[str, ...]) -> None:

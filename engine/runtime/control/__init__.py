@@ -7,6 +7,7 @@ from engine.runtime.control.autonomy import LEVELS, AutonomyLevel
 from engine.runtime.control.breakpoint import Breakpoint, breakpoints_file, load_breakpoints, save_breakpoints
 from engine.runtime.control.control import Control, ControlView, LossPolicy
 from engine.runtime.control.gate import Gate, GateWait
+from engine.runtime.control.single_step import StepMode
 
 __all__ = [
     "LEVELS",
@@ -17,6 +18,7 @@ __all__ = [
     "Gate",
     "GateWait",
     "LossPolicy",
+    "StepMode",
     "breakpoints_file",
     "load_breakpoints",
     "save_breakpoints",

@@ -1,1 +1,22 @@
-"""State of a run derived from its events: its position, and what can be resumed, changed or undone."""
+"""State of a run derived from its events: its position, and what can be resumed, changed or undone.
+
+A run itself needs its checkpoints only, so each name is imported with its first use.
+"""
+
+from engine.lazy_face import lazy_face
+
+_HOMES = {
+    "NodeLive": "engine.runtime.history.run_state",
+    "NodeStep": "engine.runtime.history.run_state",
+    "ResumeDecisionRequired": "engine.runtime.history.resume",
+    "ResumeQuestion": "engine.runtime.history.resume",
+    "RunReducer": "engine.runtime.history.run_reducer",
+    "RunState": "engine.runtime.history.run_state",
+    "RunStateChange": "engine.runtime.history.run_state",
+    "ScopeView": "engine.runtime.history.userdata_history",
+    "UserdataHistory": "engine.runtime.history.userdata_history",
+    "event_text": "engine.runtime.history.event_texts",
+}
+
+__all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`
+__getattr__ = lazy_face(__name__, _HOMES)

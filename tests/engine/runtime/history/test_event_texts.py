@@ -23,7 +23,7 @@ from engine.event import (
     RunEnded,
     StopRequested,
 )
-from engine.runtime.history.event_text import EVENT_TEXTS, event_text
+from engine.runtime.history.event_texts import EVENT_TEXTS, event_text
 
 EVENTS: list[type[Event]] = list(get_args(AnyEvent))
 _SAMPLES: dict[str, object] = {

@@ -1,0 +1,13 @@
+# The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
+
+from engine.cell.cell_connection import CellConnection
+from engine.cell.open_cell import OpenCell
+from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind
+
+__all__ = [
+    "CellConnection",
+    "OpenCell",
+    "RobotModels",
+    "RobotSummary",
+    "ToolKind",
+]

@@ -1,0 +1,28 @@
+# The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
+
+from engine.project.bus_inspector import BusInspector, GoalInfo, ParameterInfo, SkillInfo, TopicInfo, TopicStatistics
+from engine.project.cell_runner import CellRunner, open_cell
+from engine.project.headless_run import CompletedRun
+from engine.project.project import Project
+from engine.project.run_request import RunPosition, RunRequest
+from engine.project.session import Session
+from engine.project.session_operators import RunOperator
+from engine.project.session_run import RunView
+
+__all__ = [
+    "BusInspector",
+    "CellRunner",
+    "CompletedRun",
+    "GoalInfo",
+    "ParameterInfo",
+    "Project",
+    "RunOperator",
+    "RunPosition",
+    "RunRequest",
+    "RunView",
+    "Session",
+    "SkillInfo",
+    "TopicInfo",
+    "TopicStatistics",
+    "open_cell",
+]

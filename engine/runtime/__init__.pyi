@@ -1,0 +1,12 @@
+# The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
+
+from engine.runtime.record.nonfinite import decode_nonfinite
+from engine.runtime.run import Run, RunResult
+from engine.runtime.run_options import RunOptions
+
+__all__ = [
+    "Run",
+    "RunOptions",
+    "RunResult",
+    "decode_nonfinite",
+]

@@ -1,0 +1,20 @@
+# The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
+
+from engine.runtime.history.event_texts import event_text
+from engine.runtime.history.resume import ResumeDecisionRequired, ResumeQuestion
+from engine.runtime.history.run_reducer import RunReducer
+from engine.runtime.history.run_state import NodeLive, NodeStep, RunState, RunStateChange
+from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
+
+__all__ = [
+    "NodeLive",
+    "NodeStep",
+    "ResumeDecisionRequired",
+    "ResumeQuestion",
+    "RunReducer",
+    "RunState",
+    "RunStateChange",
+    "ScopeView",
+    "UserdataHistory",
+    "event_text",
+]
