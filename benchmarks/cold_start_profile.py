@@ -20,8 +20,8 @@ from typing import Any
 
 STARTUP, IMPORTS, REST = "interpreter", "imports", "rest"
 SPANS = {
-    "engine.cli.run:read_valid_behavior": "read and check",
-    "engine.cli.run:new_plan": "plan",
+    "engine.cli.commands.run:read_valid_behavior": "read and check",
+    "engine.cli.commands.run:new_plan": "plan",
     "engine.cell.open_cell:OpenCell.__aenter__": "open the cell",
     "robots.sim.host.lockstep_host:LockstepHost.advance": "simulated seconds",
     "robots.arm.execution.arm_planner:ArmPlanner._run": "plan motions",

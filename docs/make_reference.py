@@ -12,8 +12,8 @@ from typer.main import get_command
 
 import engine
 from engine.check import CODES
+from engine.cli.commands.states import default_text, description, type_text
 from engine.cli.main import app
-from engine.cli.states import default_text, description, type_text
 from engine.document import KeySignature, StateSignature, read_signature
 from engine.registry import load_states
 

@@ -11,7 +11,7 @@ from pathlib import Path
 def main() -> None:
     """Run the command line; plain `flexcell stop` and `--version` run without loading the other commands."""
     if sys.argv[1:2] == ["stop"] and (options := _stop_options(sys.argv[2:])) is not None:
-        from engine.cli.stop import stop_cell
+        from engine.cli.commands.stop import stop_cell
 
         sys.exit(stop_cell(*options))
     if sys.argv[1:] == ["--version"]:
@@ -35,7 +35,7 @@ def _command_line() -> Callable[[], None]:
     """
     gc.disable()
     try:
-        from engine.cli.commands import preload
+        from engine.cli.command_group import preload
         from engine.cli.main import main as command_line
         from engine.host.garbage_collection import set_up_collector
 
@@ -49,7 +49,7 @@ def _command_line() -> Callable[[], None]:
 
 def _stop_options(arguments: list[str]) -> tuple[Path, str] | None:
     """Return state folder and reason; None for arguments that need the full command line, such as --help."""
-    from engine.cli.stop import REASON
+    from engine.cli.commands.stop import REASON
     from engine.host.state_folder_names import STATE_FOLDER
 
     given = {"--state": STATE_FOLDER, "--reason": REASON}

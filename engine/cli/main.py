@@ -11,9 +11,9 @@ from typing import Annotated
 
 import typer
 
-from engine.cli.commands import Commands
+from engine.cli.command_group import Commands
+from engine.cli.commands.stop import REASON, stop_cell
 from engine.cli.exit_code import ExitCode
-from engine.cli.stop import REASON, stop_cell
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.host.state_folder_names import STATE_FOLDER
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.cli.check import findings_of
+from engine.cli.commands.check import findings_of
 from engine.registry import load_states
 
 BEHAVIORS = Path(__file__).resolve().parents[2] / "behaviors"

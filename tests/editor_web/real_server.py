@@ -9,7 +9,7 @@ from editor_web.security.authentication import OPERATOR, Role
 from editor_web.security.login_sessions import LoginSessions
 from editor_web.server import Dashboard
 from engine.bus.remote_bus import ServerRecord
-from engine.cli.login import new_login_url
+from engine.cli.commands.login import new_login_url
 
 
 class ServerProcess(Dashboard):

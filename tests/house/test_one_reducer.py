@@ -104,9 +104,9 @@ def test_every_way_to_tell_them_apart_is_found(text: str, names: set[str]) -> No
     "path",
     [
         "editor_web/live/event_log.py",
-        "engine/cli/operator_console.py",
-        "engine/cli/progress_printer.py",
-        "engine/cli/runs.py",
+        "engine/cli/terminal/operator_console.py",
+        "engine/cli/output/progress_printer.py",
+        "engine/cli/commands/runs.py",
         "engine/recording/foxglove_views.py",
         "engine/replay/replay_difference.py",
     ],

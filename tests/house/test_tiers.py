@@ -16,7 +16,7 @@ from tests.tiers import ROOT, kinds_of
     [
         ("tests/editor_web/test_page.py", "browser"),
         ("tests/engine/journal/test_journal_durability.py", "process"),
-        ("tests/engine/cli/test_check.py", "process"),
+        ("tests/engine/cli/commands/test_check.py", "process"),
         ("tests/robots/arm/test_arm_in_physics.py", "physics"),
         ("tests/editor_web/cell_view/test_cell_view_of_real_cells.py", "physics"),
     ],

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from engine.check import Finding
-from engine.cli.check import TargetLevel, findings_of
+from engine.cli.commands.check import TargetLevel, findings_of
 from engine.document import yaml_source
 from engine.document.state_catalogue import find_state
 from engine.registry import load_states

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from engine.check import CODES, check_file
-from engine.cli.check import findings_of
+from engine.cli.commands.check import findings_of
 from engine.document import load_source
 from engine.registry import load_states
 from tests.engine.check.data_states import CATALOGUE as DATA_STATES

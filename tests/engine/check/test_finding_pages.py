@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.check import CODES, Finding
-from engine.cli.check import findings_of
+from engine.cli.commands.check import findings_of
 from engine.registry import load_states
 
 PAGES = Path(__file__).resolve().parents[3] / "docs" / "findings"

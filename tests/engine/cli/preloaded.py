@@ -1,7 +1,8 @@
 """The `flexcell` command with its imports done: forks for each line on stdin, `{args, cwd, env, out, err}` in JSON.
 
 Each command runs in a process of its own, from its arguments to its exit code, which is told on stdout; only the
-seconds that Python takes to import are not spent again. `tests/engine/cli/test_run.py` runs the installed script.
+seconds that Python takes to import are not spent again. The installed script is run by
+`tests/engine/cli/commands/test_run.py`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from engine.cli.main import main
 from engine.registry import load_states
 
 # A server is a program of its own, and brings the web with it.
-_NOT_HERE = ("engine.cli.serve", "engine.cli.entry")
+_NOT_HERE = ("engine.cli.commands.serve", "engine.cli.entry")
 
 
 def serve() -> None:

@@ -9,7 +9,7 @@ PROGRAM = """
 import gc, sys
 early = []
 def look(phase, info):
-    if not hasattr(sys.modules.get("engine.cli.run"), "refuse_errors"):
+    if not hasattr(sys.modules.get("engine.cli.commands.run"), "refuse_errors"):
         early.append(phase)
 gc.callbacks.append(look)
 sys.argv = ["flexcell", *{arguments!r}]

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from engine.bus import GoalStatus
 from engine.bus.json_bus import LocalJsonBus
-from engine.cli.bus import repeat
+from engine.cli.commands.bus import repeat
 from engine.cli.main import app
 from engine.skills.direct_control import SwitchDirectControl
 from engine.skills.jogging import JogTool

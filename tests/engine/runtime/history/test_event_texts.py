@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from editor_web.live.live_run import LiveRun
-from engine.cli.progress_printer import ProgressPrinter
+from engine.cli.output.progress_printer import ProgressPrinter
 from engine.event import (
     AnyEvent,
     Cause,

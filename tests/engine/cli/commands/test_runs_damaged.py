@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from engine.cli.runs import app
+from engine.cli.commands.runs import app
 from engine.errors import JournalError
 from engine.event import MessageLogged
 from engine.journal import Journal, RunOrigin

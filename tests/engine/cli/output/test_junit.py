@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.cli.junit import JunitCase, JunitProblem, JunitSuite, class_name, junit_xml, write_junit
+from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_name, junit_xml, write_junit
 from engine.errors import FlexcellError
 
 ALLOWED = {

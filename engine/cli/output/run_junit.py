@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from engine.cause_chain import describe_cause, link_text, links_from_root
-from engine.cli.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
+from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
 from engine.runtime.plan import Plan
 from engine.runtime.run import RunResult
 

@@ -25,7 +25,7 @@ from engine.check import (
     page_text,
 )
 from engine.cli.exit_code import ExitCode
-from engine.cli.findings import as_github, as_json, as_sarif
+from engine.cli.output.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import SECTIONS, load_entries
@@ -115,7 +115,7 @@ def check(
 
 def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], output: TextIO, *, likely: bool) -> bool:
     """Fix documents and print what was fixed; False if one could not be written."""
-    from engine.cli.check_fix import fix_file, fix_lines
+    from engine.cli.commands.check_fix import fix_file, fix_lines
 
     is_written = True
     for file in files:
@@ -184,7 +184,7 @@ def _load_python(file: Path) -> Behavior:
 
 
 def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
-    from engine.cli.check_store import stored_names
+    from engine.cli.commands.check_store import stored_names
 
     return stored_names(behavior, store)
 

@@ -81,7 +81,7 @@ def test_the_text_form_says_how_to_learn_more(tmp_path: Path) -> None:
         "1 checked: 1 errors, 0 warnings",
         "to explain a finding: flexcell check --explain unknown-state",
     ]
-    page = (Path(__file__).resolve().parents[3] / "docs" / "findings" / "unknown-state.md").read_text(encoding="utf-8")
+    page = (Path(__file__).resolve().parents[4] / "docs" / "findings" / "unknown-state.md").read_text(encoding="utf-8")
     explained = flexcell("check", "--explain", "unknown-state", cwd=tmp_path)
     assert (explained.code, explained.out) == (0, page)
 

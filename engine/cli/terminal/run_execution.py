@@ -14,9 +14,9 @@ from typing import Any, TypeVar
 from rich.console import Console
 
 from engine.cli.exit_code import ExitCode
-from engine.cli.interrupt_handling import InterruptHandler
-from engine.cli.operator_console import OperatorConsole
-from engine.cli.progress_printer import ProgressPrinter
+from engine.cli.output.progress_printer import ProgressPrinter
+from engine.cli.terminal.interrupt_handling import InterruptHandler
+from engine.cli.terminal.operator_console import OperatorConsole
 from engine.clock import VirtualLoop, VirtualTimeDeadlock, run_virtual
 from engine.document.cell import Cell
 from engine.errors import FlexcellError

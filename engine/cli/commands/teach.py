@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.bus.remote_bus import RemoteJsonBus
+from engine.cli.commands.teach_propose import propose
 from engine.cli.exit_code import ExitCode
-from engine.cli.teach_propose import propose
 from engine.errors import BusError
 from engine.skill import Service
 from engine.skills.entries import EntryRecord

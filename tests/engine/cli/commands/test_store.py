@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from engine.cli.store import app
+from engine.cli.commands.store import app
 from engine.errors import FlexcellError
 from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.store.mongod import RUNS_HERE, Mongod

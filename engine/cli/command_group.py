@@ -12,22 +12,22 @@ from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
 _IMPORT_PATHS = {
-    "run": "engine.cli.run:run",
-    "resume": "engine.cli.resume:resume",
+    "run": "engine.cli.commands.run:run",
+    "resume": "engine.cli.commands.resume:resume",
     "stop": "engine.cli.main:stop",
-    "runs": "engine.cli.runs:app",
-    "check": "engine.cli.check:check",
-    "replay": "engine.cli.replay:replay",
-    "export": "engine.cli.export:export",
-    "serve": "engine.cli.serve:serve",
-    "login": "engine.cli.login:login",
-    "coverage": "engine.cli.coverage:app",
-    "states": "engine.cli.states:app",
-    "store": "engine.cli.store:app",
-    "bus": "engine.cli.bus:app",
-    "cell": "engine.cli.cell:app",
-    "teach": "engine.cli.teach:app",
-    "schema": "engine.cli.schema:schema",
+    "runs": "engine.cli.commands.runs:app",
+    "check": "engine.cli.commands.check:check",
+    "replay": "engine.cli.commands.replay:replay",
+    "export": "engine.cli.commands.export:export",
+    "serve": "engine.cli.commands.serve:serve",
+    "login": "engine.cli.commands.login:login",
+    "coverage": "engine.cli.commands.coverage:app",
+    "states": "engine.cli.commands.states:app",
+    "store": "engine.cli.commands.store:app",
+    "bus": "engine.cli.commands.bus:app",
+    "cell": "engine.cli.commands.cell:app",
+    "teach": "engine.cli.commands.teach:app",
+    "schema": "engine.cli.commands.schema:schema",
 }
 """Import path of each command's function, or of the application of a command group."""
 

@@ -8,12 +8,12 @@ import pytest
 from typer.testing import CliRunner
 
 from engine.check import check_file
-from engine.cli.teach import app
+from engine.cli.commands.teach import app
 from engine.document import load_behavior
 from engine.errors import FlexcellError
 from engine.registry import load_states
 
-CELL = Path(__file__).parents[3] / "behaviors" / "cells" / "ur10.yaml"
+CELL = Path(__file__).parents[4] / "behaviors" / "cells" / "ur10.yaml"
 
 
 @pytest.fixture(autouse=True)

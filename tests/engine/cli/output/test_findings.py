@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.check import CODES, Finding
 from engine.check.finding import new_finding
-from engine.cli.findings import as_github, as_json, as_sarif
+from engine.cli.output.findings import as_github, as_json, as_sarif
 from engine.errors import Position
 
 SARIF: dict[str, Any] = {

@@ -11,7 +11,7 @@ import typer
 
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior
-from engine.cli.output_file import prepare, write
+from engine.cli.output.output_file import prepare, write
 from engine.coverage import CoverageCollector, merge, read_coverage
 from engine.coverage.coverage_file import BehaviorCoverage, percent
 from engine.coverage.event_logs import RunEventLog, read_logs

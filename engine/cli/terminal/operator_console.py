@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Self, cast
 
 from engine.cause_chain import describe_cause
-from engine.cli.line_input import LineInput
+from engine.cli.terminal.line_input import LineInput
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.recording.recorded_run import version_snapshot

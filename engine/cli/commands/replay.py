@@ -11,8 +11,8 @@ import msgspec
 import typer
 
 from engine.cli.exit_code import ExitCode
-from engine.cli.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
-from engine.cli.output_file import prepare
+from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
+from engine.cli.output.output_file import prepare
 from engine.document import load_behavior
 from engine.errors import FlexcellError
 from engine.recording import Recording, load_recording

@@ -10,8 +10,8 @@ import httpx
 import pytest
 
 from engine.bus.remote_bus import ServerRecord
-from engine.cli.login import login
-from engine.cli.serve import serve
+from engine.cli.commands.login import login
+from engine.cli.commands.serve import serve
 from engine.errors import BusError, FlexcellError
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import started

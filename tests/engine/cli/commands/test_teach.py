@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import started
 
-CELL = Path(__file__).parents[2] / "robots" / "arm" / "one_panda.yaml"
+CELL = Path(__file__).parents[3] / "robots" / "arm" / "one_panda.yaml"
 TRIGGERS = """
 - trig_name: Record joint state
   robot_ns: /

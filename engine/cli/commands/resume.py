@@ -13,10 +13,10 @@ import typer
 from engine.authoring.python_file import load_python_behavior
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_plan, reload_plan
-from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
-from engine.cli.output_file import prepare, write
-from engine.cli.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
-from engine.cli.run_report import print_json, print_result
+from engine.cli.output.output_file import prepare, write
+from engine.cli.output.run_report import print_json, print_result
+from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
+from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.document.cell import Cell, load_cell
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue

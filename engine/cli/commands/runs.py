@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from engine.cause_chain import describe_cause
-from engine.cli.run_report import cause_links, print_cause
+from engine.cli.output.run_report import cause_links, print_cause
 from engine.errors import DocumentError
 from engine.event import (
     Cause,

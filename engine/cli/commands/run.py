@@ -14,11 +14,11 @@ from engine.cell.open_cell import OpenCell
 from engine.check import Finding, check_given, check_stored
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, reload_plan
-from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
-from engine.cli.output_file import prepare, write
-from engine.cli.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
-from engine.cli.run_junit import write_run_junit
-from engine.cli.run_report import print_json, print_result
+from engine.cli.output.output_file import prepare, write
+from engine.cli.output.run_junit import write_run_junit
+from engine.cli.output.run_report import print_json, print_result
+from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
+from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.coverage import CoverageCollector
 from engine.document import Behavior
 from engine.document.cell import Cell, load_cell

@@ -15,7 +15,7 @@ import msgspec
 import pytest
 
 from engine.bus.remote_bus import ServerRecord
-from engine.cli.stop import stop_cell
+from engine.cli.commands.stop import stop_cell
 from engine.host.state_folder_names import SERVER_FILE
 from engine.stop import StopEndpoint, StopRelay
 from tests.engine.cli.command import flexcell

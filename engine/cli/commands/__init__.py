@@ -1,0 +1,1 @@
+"""The commands, one file each, and what one of them needs only for itself."""

@@ -1,0 +1,1 @@
+"""What commands write: progress, reports, findings in the formats of CI systems, JUnit files."""

@@ -1,0 +1,1 @@
+"""A run and its operator at the terminal: options, keys, interrupts."""
