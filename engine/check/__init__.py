@@ -2,9 +2,9 @@
 
 from engine.check.arm_target_checks import check_targets
 from engine.check.behavior_check import check_behavior, check_file, check_given, check_survey, read_beside
-from engine.check.cell_check import check_cell, check_entries_document
-from engine.check.cell_context import CellContext, cell_context
-from engine.check.entry_checks import check_stored, names_by_kind
+from engine.check.cell.cell_check import check_cell, check_entries_document
+from engine.check.cell.cell_context import CellContext, cell_context
+from engine.check.cell.entry_checks import check_stored, names_by_kind
 from engine.check.finding import CODES, Finding, Severity, finding_sort_key, invalid_document_finding, require_no_errors
 from engine.check.finding_pages import page_name, page_text
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from engine.cell.robot_models import robot_models
 from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_behaviors
 from engine.check.behavior_check import MAX_CHECK_STEPS
-from engine.check.cell_context import CellContext, cell_context
-from engine.check.entry_references import entries_written
+from engine.check.cell.cell_context import CellContext, cell_context
+from engine.check.cell.entry_references import entries_written
 from engine.check.finding import Finding, finding_sort_key, new_finding
-from engine.check.parameter_checks import default_values
 from engine.check.state_instances import UNKNOWN_PLACEHOLDER, given_values, try_make_state
+from engine.check.values.parameter_checks import default_values
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell
 from engine.document.entries_document import EntriesDocument, NamedAngles

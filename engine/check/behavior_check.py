@@ -7,27 +7,27 @@ from pathlib import Path
 
 from engine.cell.cell_names import cell_names
 from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_behaviors
-from engine.check.cell_context import CellContext, cell_context
-from engine.check.cell_name_checks import CellNameCheck
-from engine.check.conditions import check_conditions
-from engine.check.declaration import check_declarations, check_unused
-from engine.check.entry_references import Entries, add_written_entries, check_entries
+from engine.check.cell.cell_context import CellContext, cell_context
+from engine.check.cell.cell_name_checks import CellNameCheck
+from engine.check.cell.entry_references import Entries, add_written_entries, check_entries
 from engine.check.finding import Finding, finding_sort_key, invalid_document_finding, new_finding
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.key_reads import KeyRead, key_reads
 from engine.check.flow.type_inference import BehaviorDataFlows, TypeInference
 from engine.check.flow.userdata_flow import DataFlow
-from engine.check.instant_loops import check_loops
-from engine.check.magnitude import check_magnitudes
-from engine.check.parameter_checks import check_parameters
-from engine.check.policy_checks import check_policies
-from engine.check.reachability import check_reachability
-from engine.check.resources import check_resources
-from engine.check.transition_checks import check_transitions
-from engine.check.tree_checks import check_trees
-from engine.check.type_checks import check_types
-from engine.check.units import check_units
-from engine.check.userdata_checks import check_userdata
+from engine.check.structure.conditions import check_conditions
+from engine.check.structure.declaration import check_declarations, check_unused
+from engine.check.structure.instant_loops import check_loops
+from engine.check.structure.policy_checks import check_policies
+from engine.check.structure.reachability import check_reachability
+from engine.check.structure.resources import check_resources
+from engine.check.structure.transition_checks import check_transitions
+from engine.check.structure.tree_checks import check_trees
+from engine.check.values.magnitude import check_magnitudes
+from engine.check.values.parameter_checks import check_parameters
+from engine.check.values.type_checks import check_types
+from engine.check.values.units import check_units
+from engine.check.values.userdata_checks import check_userdata
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.expression_cost import MAX_STEPS

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import cast
 
 from engine.check.analyzed_behavior import Catalogue
-from engine.check.entry_references import Entries
+from engine.check.cell.entry_references import Entries
 from engine.document.concurrency_condition import ConcurrencyCondition, deciding, read_entry
 from engine.document.node_kind import MACHINES
 from engine.document.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES

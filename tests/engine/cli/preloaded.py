@@ -28,7 +28,7 @@ _NOT_HERE = ("engine.cli.commands.serve", "engine.cli.entry")
 
 def serve() -> None:
     """Fork until stdin ends; in a child, run the command and return."""
-    for module in pkgutil.iter_modules(engine.cli.__path__, "engine.cli."):
+    for module in pkgutil.walk_packages(engine.cli.__path__, "engine.cli."):
         if module.name not in _NOT_HERE:
             importlib.import_module(module.name)
     load_states()

@@ -8,7 +8,7 @@ from typing import Any
 from engine.cell.cell_names import CellNameKind, CellNames, cell_names
 from engine.cell.robot_models import RobotModels, robot_models
 from engine.check.finding import Finding, finding_sort_key, new_finding
-from engine.check.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
+from engine.check.values.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
 from engine.document.cell import Cell, CellDocument, RobotSpec
 from engine.document.entries_document import Entries, EntriesDocument, load_entries
 from engine.document.yaml_source import DataPath, DocumentSource

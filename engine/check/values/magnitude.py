@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
-from engine.check.annotated_values import annotated_lists, is_annotated
 from engine.check.finding import Finding, new_finding
-from engine.check.known_values import known_part
+from engine.check.values.annotated_values import annotated_lists, is_annotated
+from engine.check.values.known_values import known_part
 from engine.document.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from typing import cast
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
-from engine.check.annotated_values import annotated_lists, is_annotated
 from engine.check.finding import Finding
-from engine.check.known_values import known_part
-from engine.check.magnitude import MOST_TURNS_RAD
+from engine.check.values.annotated_values import annotated_lists, is_annotated
+from engine.check.values.known_values import known_part
+from engine.check.values.magnitude import MOST_TURNS_RAD
 from engine.document.signature import StateSignature
 
 JointRanges = Mapping[str, tuple[tuple[float, float], ...]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from engine.check.analyzed_behavior import Catalogue, analyze_behaviors
-from engine.check.entry_references import add_written_entries, check_entries
+from engine.check.cell.entry_references import add_written_entries, check_entries
 from engine.check.finding import Finding
 from engine.document.behavior import Behavior
 

@@ -8,14 +8,14 @@ from typing import Any, cast
 
 from engine.cell.cell_names import CellNameKind, CellNames, is_kind
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
-from engine.check.annotated_values import AnnotatedValue, annotated_values, is_annotated
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import only_name
 from engine.check.flow.type_inference import TypeInference
 from engine.check.flow.value_type import ConstantValue
-from engine.check.joint_targets import check_joint_targets
-from engine.check.known_values import UnknownValue, known_part
-from engine.check.parameter_checks import default_values
+from engine.check.values.annotated_values import AnnotatedValue, annotated_values, is_annotated
+from engine.check.values.joint_targets import check_joint_targets
+from engine.check.values.known_values import UnknownValue, known_part
+from engine.check.values.parameter_checks import default_values
 from engine.document.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import ExpressionError

@@ -9,10 +9,10 @@ from typing import Any, cast
 from msgspec import inspect
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
-from engine.check.annotated_values import annotated_values
 from engine.check.finding import Finding
-from engine.check.known_values import known_part
-from engine.check.parameter_checks import default_values, value_by_default
+from engine.check.values.annotated_values import annotated_values
+from engine.check.values.known_values import known_part
+from engine.check.values.parameter_checks import default_values, value_by_default
 from engine.suggestions import did_you_mean
 
 Entries = Mapping[str, Collection[str]]

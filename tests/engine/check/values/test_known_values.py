@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.check.analyzed_behavior import template
-from engine.check.known_values import UnknownValue, known_part
+from engine.check.values.known_values import UnknownValue, known_part
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.check.instant_loops import InstantOutcomes
+from engine.check.structure.instant_loops import InstantOutcomes
 from engine.document.expression import Template
 from engine.document.node_kind import SLOTS
 from engine.document.node_spec import TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from msgspec import Meta
 
-from engine.check.annotated_values import annotated_values
+from engine.check.values.annotated_values import annotated_values
 
 Metres = Annotated[float, Meta(extra_json_schema={"unit": "m"})]
 Named = Annotated[str, Meta(description="Which", extra_json_schema={"cell_name": "robot"})]

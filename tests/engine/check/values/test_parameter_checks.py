@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.check.entry_references import entry_fields
+from engine.check.cell.entry_references import entry_fields
 from engine.document import read_signature
 from engine.state import State
 from states.motion.move_joints import MoveJoints

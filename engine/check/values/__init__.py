@@ -1,0 +1,1 @@
+"""Findings about parameters and userdata: types, units, magnitudes, keys, joint targets."""
