@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-from engine.document.cel_expression import MAX_LENGTH
+from engine.document.expression.cel_expression import MAX_LENGTH
 
 _NAMES = ("a", "s", "m", "n", "rows")
 _ATOMS = ("1", "2.5", "'x'", "[1, 2, 3]", "[]", "{'k': 1}", "true", "null", "9223372036854775807")

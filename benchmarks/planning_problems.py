@@ -21,7 +21,7 @@ import msgspec
 import numpy as np
 
 from benchmarks.planning_scenes import ARM, Case, alone
-from engine.document.yaml_source import parse_source
+from engine.document.text.yaml_source import parse_source
 from engine.messages import Pose
 from engine.messages.shapes import Box, Cylinder, Obstacle, Shape, Solid, Sphere
 from robots.model.transform import RigidTransform

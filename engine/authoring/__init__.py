@@ -26,10 +26,10 @@ from engine.authoring.python_file import load_python_behavior
 from engine.authoring.steps import PartKeys, Step, StepKeys, TreePart
 from engine.authoring.tree_steps import *  # noqa: F403 - what it offers is listed there, once
 from engine.authoring.yaml_export import is_made_in_python, to_yaml, write_behavior
-from engine.document.node_kind import PostConditionsSpec as Post
-from engine.document.node_spec import GuardSpec as Guard
-from engine.document.node_spec import RetrySpec as Retry
-from engine.document.node_spec import TimeoutSpec as Timeout
+from engine.document.nodes.node_kind import PostConditionsSpec as Post
+from engine.document.nodes.node_spec import GuardSpec as Guard
+from engine.document.nodes.node_spec import RetrySpec as Retry
+from engine.document.nodes.node_spec import TimeoutSpec as Timeout
 
 __all__ = [
     "Guard",

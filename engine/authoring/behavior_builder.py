@@ -14,12 +14,12 @@ from engine.authoring.plain_data import to_plain_data
 from engine.authoring.source_location import calling_position
 from engine.authoring.steps import Step
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.decoding import decode_document
 from engine.document.loader import load_behavior
 from engine.document.semantic_hash import compute_semantic_hash
 from engine.document.state_catalogue import loaded_class
 from engine.document.structural_rules import require_structural_rules
-from engine.document.yaml_source import DocumentSource
+from engine.document.text.decoding import decode_document
+from engine.document.text.yaml_source import DocumentSource
 from engine.errors import DocumentError
 
 

@@ -9,7 +9,7 @@ from typing import Unpack
 from engine.authoring.plain_data import to_plain_data
 from engine.authoring.source_location import calling_position
 from engine.authoring.steps import Step, StepKeys, TreePart, given_keys, new_step
-from engine.document.concurrency_condition import PREEMPT, WHEN
+from engine.document.nodes.concurrency_condition import PREEMPT, WHEN
 
 Rule = tuple[str, Mapping[str, str | int]]
 """`("finished", {"left": "reached", "right": "reached"})`: outcome and required outcomes, at least `at_least`."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar, cast
 
 from engine.authoring.source_location import calling_position
-from engine.document.cel_expression import compile_expression
+from engine.document.expression.cel_expression import compile_expression
 from engine.errors import ExpressionError, Position
 
 T = TypeVar("T")

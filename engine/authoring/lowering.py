@@ -11,7 +11,7 @@ from typing import cast
 from engine.authoring.expression_values import Param
 from engine.authoring.steps import TreePart
 from engine.document.behavior import Behavior
-from engine.document.yaml_source import MAX_DEPTH, PositionTree
+from engine.document.text.yaml_source import MAX_DEPTH, PositionTree
 from engine.errors import DocumentError, Position
 
 

@@ -8,8 +8,8 @@ from typing import TypedDict, Unpack
 
 from engine.authoring.plain_data import to_plain_data
 from engine.authoring.source_location import calling_position
-from engine.document.node_kind import AutonomyLevel, PostConditionsSpec
-from engine.document.node_spec import GuardSpec, RetrySpec, TimeoutSpec
+from engine.document.nodes.node_kind import AutonomyLevel, PostConditionsSpec
+from engine.document.nodes.node_spec import GuardSpec, RetrySpec, TimeoutSpec
 from engine.errors import Position
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Literal, Unpack
 
 from engine.authoring.steps import NameKeys, PartKeys, TreePart, given_keys, new_part
-from engine.document.node_kind import SLOTS, Status
+from engine.document.nodes.node_kind import SLOTS, Status
 
 __all__ = [
     "condition",

@@ -9,8 +9,8 @@ import msgspec
 
 from engine.document.behavior import Behavior
 from engine.document.loader import load_behavior, parse_behavior
-from engine.document.node_spec import NodeSpec
-from engine.document.yaml_writer import write_yaml
+from engine.document.nodes.node_spec import NodeSpec
+from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError
 
 _FIRST = ("name", "description")

@@ -9,10 +9,10 @@ from engine.check.end_statuses import BOTH, Status, Statuses, closed_statuses, e
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import DocumentGaps
 from engine.document.behavior import Behavior
-from engine.document.concurrency_condition import deciding
-from engine.document.expression import Template, compile_template
-from engine.document.node_kind import WRAPPERS
-from engine.document.node_spec import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, NodeSpec
+from engine.document.expression.expression import Template, compile_template
+from engine.document.nodes.concurrency_condition import deciding
+from engine.document.nodes.node_kind import WRAPPERS
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, NodeSpec
 from engine.document.signature import StateSignature, read_signature
 from engine.document.state_catalogue import Catalogue, find_state
 from engine.errors import ExpressionError, FlexcellError, RegistryError, StateError

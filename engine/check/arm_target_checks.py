@@ -20,7 +20,7 @@ from engine.check.values.parameter_checks import default_values
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell
 from engine.document.entries_document import EntriesDocument, NamedAngles
-from engine.document.step_meter import METER
+from engine.document.expression.step_meter import METER
 from engine.errors import CellError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, StaticCell, ToolChange

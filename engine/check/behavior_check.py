@@ -30,9 +30,9 @@ from engine.check.values.units import check_units
 from engine.check.values.userdata_checks import check_userdata
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell, load_cell
-from engine.document.expression_cost import MAX_STEPS
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.document.loader import BehaviorSurvey, CircularReference, survey_behavior
-from engine.document.step_meter import METER
 from engine.errors import DocumentError
 
 MAX_CHECK_STEPS = 200 * MAX_STEPS

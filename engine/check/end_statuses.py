@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from engine.document.decorator_spec import DecoratorSpec
-from engine.document.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec
+from engine.document.nodes.decorator_spec import DecoratorSpec
+from engine.document.nodes.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec
 
 Status = Literal["success", "failure", "skipped"]
 Statuses = frozenset[Status]

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 
 from engine.check.finding import Finding
 from engine.document.behavior import Behavior
-from engine.document.node_kind import KINDS, WRAPPERS
-from engine.document.node_spec import TREE_KINDS
+from engine.document.nodes.node_kind import KINDS, WRAPPERS
+from engine.document.nodes.node_spec import TREE_KINDS
 from engine.document.partial_behavior import ANY_KEY
 
 _LEADING = ("transitions", "guard", "timeout", "on_error")

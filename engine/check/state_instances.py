@@ -9,7 +9,7 @@ from typing import Any, cast
 import msgspec
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import ExpressionError
 from engine.state import State

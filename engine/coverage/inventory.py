@@ -8,9 +8,9 @@ from functools import cached_property
 
 from engine.coverage.coverage_item import CoverageItem, ItemKind
 from engine.document.behavior import Behavior
-from engine.document.concurrency_condition import ConcurrencyCondition
-from engine.document.node_kind import WRAPPERS, TreeStatus
-from engine.document.node_spec import TREE_KINDS, TREE_OUTCOMES, NodeSpec
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition
+from engine.document.nodes.node_kind import WRAPPERS, TreeStatus
+from engine.document.nodes.node_spec import TREE_KINDS, TREE_OUTCOMES, NodeSpec
 from engine.errors import Position
 from engine.runtime.plan import Catalogue, Plan, new_plan
 

@@ -14,9 +14,7 @@ from engine.document.cell_perception import (
     Person,
     arm_reach_m,
 )
-from engine.document.concurrency_condition import ConcurrencyCondition
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.expression import Template, compile_template
+from engine.document.expression.expression import Template, compile_template
 from engine.document.loader import (
     BehaviorSurvey,
     CircularReference,
@@ -25,7 +23,8 @@ from engine.document.loader import (
     read_behavior,
     survey_behavior,
 )
-from engine.document.node_spec import (
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition
+from engine.document.nodes.node_spec import (
     ConcurrencySpec,
     ForEachSpec,
     GuardSpec,
@@ -37,8 +36,9 @@ from engine.document.node_spec import (
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
-from engine.document.yaml_source import MAX_BYTES, DataPath, DocumentSource, load_source, parse_source
-from engine.document.yaml_writer import write_yaml
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import MAX_BYTES, DataPath, DocumentSource, load_source, parse_source
+from engine.document.text.yaml_writer import write_yaml
 
 __all__ = [
     "MAX_BYTES",

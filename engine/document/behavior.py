@@ -10,12 +10,12 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel
-from engine.document.node_kind import OutcomeName
-from engine.document.node_spec import Key, NodeSpec
+from engine.document.nodes.node_kind import OutcomeName
+from engine.document.nodes.node_spec import Key, NodeSpec
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.substitutes import Substitutes
-from engine.document.yaml_source import DataPath, DocumentSource
+from engine.document.text.decoding import StrictModel
+from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import Position
 
 

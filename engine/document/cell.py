@@ -15,9 +15,9 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
-from engine.document.decoding import StrictModel, decode_document
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
-from engine.document.yaml_source import DataPath, DocumentSource, load_source
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 
 

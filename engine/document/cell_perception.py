@@ -6,8 +6,8 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement, PositionXyz
+from engine.document.text.decoding import StrictModel
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
 Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images per second")]

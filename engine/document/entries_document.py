@@ -32,9 +32,9 @@ from typing import Annotated, Literal, cast
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.yaml_source import DocumentSource, load_source
-from engine.document.yaml_writer import write_yaml
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DocumentSource, load_source
+from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError
 from engine.messages import Pose
 from engine.skills.entries import EntryRecord

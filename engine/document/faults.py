@@ -17,10 +17,10 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel, decode_document
 from engine.document.duration import Duration, seconds
 from engine.document.path_pattern import PathPattern
-from engine.document.yaml_source import DocumentSource, load_source, parse_source
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]

@@ -9,13 +9,13 @@ from pathlib import Path
 import msgspec
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.decoding import decode_document
-from engine.document.mistakes import MAX_MISTAKES
 from engine.document.partial_behavior import read_partial_behavior
 from engine.document.semantic_hash import compute_semantic_hash
 from engine.document.structural_rules import require_structural_rules
-from engine.document.text_recovery import RecoveredText, load_recovering, recover_text
-from engine.document.yaml_source import DocumentSource, load_source, parse_source
+from engine.document.text.decoding import decode_document
+from engine.document.text.mistakes import MAX_MISTAKES
+from engine.document.text.text_recovery import RecoveredText, load_recovering, recover_text
+from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 MAX_CHAIN = 64

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import UNSET, Meta
 
-from engine.document.decoding import StrictModel
+from engine.document.text.decoding import StrictModel
 from engine.errors import DocumentError
 from engine.messages import Pose
 from engine.suggestions import did_you_mean

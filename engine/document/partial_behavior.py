@@ -15,8 +15,11 @@ from typing import cast
 import msgspec
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.decoding import mistake_errors
-from engine.document.mistakes import (
+from engine.document.nodes.node_kind import KINDS, WRAPPERS
+from engine.document.nodes.node_spec import TREE_KINDS, NodeSpec
+from engine.document.structural_rules import RuleViolation, rule_violations
+from engine.document.text.decoding import mistake_errors
+from engine.document.text.mistakes import (
     MAX_MISTAKES,
     UNREADABLE,
     DocumentMistake,
@@ -24,10 +27,7 @@ from engine.document.mistakes import (
     Plain,
     with_corrected_keys,
 )
-from engine.document.node_kind import KINDS, WRAPPERS
-from engine.document.node_spec import TREE_KINDS, NodeSpec
-from engine.document.structural_rules import RuleViolation, rule_violations
-from engine.document.yaml_source import DataPath, DocumentSource
+from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
 
 ANY_KEY = ""

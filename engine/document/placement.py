@@ -7,7 +7,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel
+from engine.document.text.decoding import StrictModel
 from engine.messages import Pose, Quaternion, Vector3
 
 _METRES, _RADIANS = {"unit": "m"}, {"unit": "rad"}

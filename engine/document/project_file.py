@@ -16,8 +16,8 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.yaml_source import DocumentSource, load_source
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DocumentSource, load_source
 from engine.errors import Position
 
 PROJECT_FILE = "flexcell.yaml"

@@ -7,14 +7,21 @@ from dataclasses import dataclass
 from typing import cast
 
 from engine.document.behavior import Behavior
-from engine.document.cel_expression import RESERVED
-from engine.document.concurrency_condition import AT_LEAST, PREEMPT, WHEN
-from engine.document.decoding import combine_mistakes
 from engine.document.duration import seconds
-from engine.document.mistakes import MAX_MISTAKES
-from engine.document.node_kind import KINDS, WRAPPERS
-from engine.document.node_kinds import NODE_KINDS
-from engine.document.node_spec import GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, ConcurrencySpec, NodeSpec, ParallelSpec
+from engine.document.expression.cel_expression import RESERVED
+from engine.document.nodes.concurrency_condition import AT_LEAST, PREEMPT, WHEN
+from engine.document.nodes.node_kind import KINDS, WRAPPERS
+from engine.document.nodes.node_kinds import NODE_KINDS
+from engine.document.nodes.node_spec import (
+    GUARD_TARGETS,
+    TREE_KINDS,
+    TREE_OUTCOMES,
+    ConcurrencySpec,
+    NodeSpec,
+    ParallelSpec,
+)
+from engine.document.text.decoding import combine_mistakes
+from engine.document.text.mistakes import MAX_MISTAKES
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 

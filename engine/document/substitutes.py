@@ -19,11 +19,11 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel, decode_document
 from engine.document.duration import Duration, seconds
-from engine.document.node_spec import Key
+from engine.document.nodes.node_spec import Key
 from engine.document.path_pattern import PathPattern, matches
-from engine.document.yaml_source import DocumentSource, load_source, parse_source
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 

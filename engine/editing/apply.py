@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.document.decoding import explain_validation_error
+from engine.document.text.decoding import explain_validation_error
 from engine.editing import edit, grouping, ungrouping
 from engine.editing import field_edits as fields
 from engine.editing import node_edits as nodes

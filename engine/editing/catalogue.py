@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from engine.document.node_kinds import NODE_KINDS, KindField
+from engine.document.nodes.node_kinds import NODE_KINDS, KindField
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.state_catalogue import Catalogue
 from engine.errors import StateError

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import cast
 
-from engine.document.yaml_source import load_source
+from engine.document.text.yaml_source import load_source
 from engine.errors import DocumentError
 
 

@@ -10,7 +10,7 @@ import msgspec
 
 from engine.check import Finding, check_survey
 from engine.document.loader import survey_behavior
-from engine.document.yaml_source import DocumentSource
+from engine.document.text.yaml_source import DocumentSource
 from engine.editing.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
 from engine.editing.draft import Draft
 from engine.editing.draft_source import syntax_source

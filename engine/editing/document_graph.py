@@ -11,8 +11,8 @@ from typing import cast
 
 import msgspec
 
-from engine.document.concurrency_condition import ConcurrencyCondition
-from engine.document.node_kind import MACHINES, SLOTS
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition
+from engine.document.nodes.node_kind import MACHINES, SLOTS
 from engine.editing.draft import Draft
 from engine.editing.outline import NodeRef, Outline, Plain
 from engine.editing.project_context import NodeOutcomes, ProjectContext, rules, texts

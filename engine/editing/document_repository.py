@@ -17,7 +17,7 @@ from engine.cell.cell_names import CellNameKind, cell_names
 from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
-from engine.document.yaml_source import MAX_BYTES, parse_source
+from engine.document.text.yaml_source import MAX_BYTES, parse_source
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.data_flow import KeyFlow, data_flow
 from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
 
-from engine.document.yaml_source import DataPath, DocumentSource, PositionTree, parse_source
+from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree, parse_source
 from engine.editing.draft import Draft
 from engine.editing.syntax import Collection, Member, Syntax
 from engine.errors import Position

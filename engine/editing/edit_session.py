@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import cast
 
-from engine.document.concurrency_condition import AT_LEAST, PREEMPT, WHEN
-from engine.document.node_kind import MACHINES, NAMED, SLOTS
+from engine.document.nodes.concurrency_condition import AT_LEAST, PREEMPT, WHEN
+from engine.document.nodes.node_kind import MACHINES, NAMED, SLOTS
 from engine.editing.draft import Draft
 from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
 from engine.editing.project_context import NodeOutcomes, ProjectContext

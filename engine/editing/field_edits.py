@@ -9,10 +9,10 @@ from typing import cast
 import msgspec
 
 from engine.document.behavior import BehaviorDocument
-from engine.document.decoding import explain_validation_error
-from engine.document.node_kind import GROUPS, NAMED, SLOTS
-from engine.document.node_kinds import NODE_KINDS
-from engine.document.node_spec import NodeSpec
+from engine.document.nodes.node_kind import GROUPS, NAMED, SLOTS
+from engine.document.nodes.node_kinds import NODE_KINDS
+from engine.document.nodes.node_spec import NodeSpec
+from engine.document.text.decoding import explain_validation_error
 from engine.editing.draft import EditRefused
 from engine.editing.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
 from engine.editing.edit_session import EditSession, assign_child_roles, named_children, remove_entry

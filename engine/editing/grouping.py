@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 from typing import cast
 
-from engine.document.node_kind import GROUPS, MACHINES, SLOTS
+from engine.document.nodes.node_kind import GROUPS, MACHINES, SLOTS
 from engine.editing.draft import EditRefused
 from engine.editing.edit import CanvasPoint, GroupNodes, SetPositions
 from engine.editing.edit_session import EditSession, ReferenceUpdate, insert_key, named_children

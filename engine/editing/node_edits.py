@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from engine.document.node_kind import GROUPS, MACHINES, NAMED, SLOTS
+from engine.document.nodes.node_kind import GROUPS, MACHINES, NAMED, SLOTS
 from engine.editing.draft import EditRefused
 from engine.editing.edit import MoveNodes, RemoveNodes, RenameNode
 from engine.editing.edit_session import EditSession, ReferenceUpdate, assign_child_roles, named_children, rename_key

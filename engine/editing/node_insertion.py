@@ -6,9 +6,9 @@ import re
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node_kind import GROUPS, KINDS, MACHINES, NAMED, SLOTS, WRAPPERS
-from engine.document.node_kinds import NODE_KINDS
-from engine.document.node_spec import GUARD_TARGETS, TREE_KINDS
+from engine.document.nodes.node_kind import GROUPS, KINDS, MACHINES, NAMED, SLOTS, WRAPPERS
+from engine.document.nodes.node_kinds import NODE_KINDS
+from engine.document.nodes.node_spec import GUARD_TARGETS, TREE_KINDS
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AddNode, CanvasPoint, DuplicateNodes, PasteNodes, SetPositions, TransitionRef
 from engine.editing.edit_session import NAME, EditSession, ReferenceUpdate, insert_key, named_children

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import cast
 
-from engine.document.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
-from engine.document.node_spec import TREE_KINDS
+from engine.document.nodes.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
+from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.draft import EditRefused
 from engine.suggestions import did_you_mean
 

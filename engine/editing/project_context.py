@@ -9,11 +9,11 @@ from typing import cast
 
 from engine.check.analyzed_behavior import Catalogue
 from engine.check.cell.entry_references import Entries
-from engine.document.concurrency_condition import ConcurrencyCondition, deciding, read_entry
-from engine.document.node_kind import MACHINES
-from engine.document.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition, deciding, read_entry
+from engine.document.nodes.node_kind import MACHINES
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
-from engine.document.yaml_source import load_source
+from engine.document.text.yaml_source import load_source
 from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
 from engine.errors import DocumentError, StateError
 

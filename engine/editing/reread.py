@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass, field
 from typing import cast
 
-from engine.document.yaml_source import (
+from engine.document.text.yaml_source import (
     MAX_BYTES,
     MAX_DEPTH,
     MAX_EXPRESSION_TEXT,

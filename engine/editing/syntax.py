@@ -13,7 +13,7 @@ from typing import Protocol, cast
 import msgspec
 import yaml
 
-from engine.document.yaml_source import SURROGATE_PAIR, StrictReader
+from engine.document.text.yaml_source import SURROGATE_PAIR, StrictReader
 from engine.errors import DocumentError, Position
 
 _VALUES = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent)

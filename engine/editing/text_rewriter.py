@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import cast
 
-from engine.document.node_kind import KINDS
-from engine.document.node_spec import TREE_KINDS
+from engine.document.nodes.node_kind import KINDS
+from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.node_matching import EntryMatch, is_same_value, match_entries
 from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
 from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from engine.document.node_kind import MACHINES
+from engine.document.nodes.node_kind import MACHINES
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AutoConnect, ClearTransition, SetInitial, SetTransition
 from engine.editing.edit_session import EditSession

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from engine.document.node_kind import GROUPS, MACHINES, NAMED, SLOTS
+from engine.document.nodes.node_kind import GROUPS, MACHINES, NAMED, SLOTS
 from engine.editing.draft import EditRefused
 from engine.editing.edit import CanvasPoint, SetPositions, UngroupNode
 from engine.editing.edit_session import EditSession, ReferenceUpdate, named_children

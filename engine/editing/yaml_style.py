@@ -9,7 +9,7 @@ from typing import Any, cast
 import yaml
 from yaml.resolver import Resolver
 
-from engine.document.core_schema import plain_scalar
+from engine.document.text.core_schema import plain_scalar
 
 _PLAIN = re.compile(r"[\w./](?:[^\n:#,\[\]{}\"'`|>&*!%@?\\]|:(?=[^\s,\[\]{}])|(?<=\S)#)*", re.ASCII)
 _PLAIN_IN_BLOCK = re.compile(r"[\w./](?:[^\n:#\"`]|:(?=\S)|(?<=\S)#)*")

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import msgspec
 
 from engine.document.behavior import Behavior
-from engine.document.concurrency_condition import deciding
-from engine.document.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, NodeSpec
+from engine.document.nodes.concurrency_condition import deciding
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, NodeSpec
 from engine.runtime.plan import Catalogue
 
 

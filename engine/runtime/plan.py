@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from engine.document import behavior as document
-from engine.document import node_spec as nodes
-from engine.document.expression import Template, compile_template
+from engine.document.expression.expression import Template, compile_template
+from engine.document.nodes import node_spec as nodes
 from engine.document.parameter_spec import ParameterSpec, bind_parameters
 from engine.document.signature import read_signature
 from engine.document.state_catalogue import Catalogue, find_state

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from engine.document.yaml_writer import write_yaml
+from engine.document.text.yaml_writer import write_yaml
 from engine.errors import SkillFailed
 from engine.messages import Vector3
 from engine.skills.proposing import Proposal, ProposalOptions, TaughtStep, ToolName

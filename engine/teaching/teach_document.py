@@ -18,8 +18,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.yaml_source import DataPath, DocumentSource, load_source, parse_source
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import DataPath, DocumentSource, load_source, parse_source
 from engine.errors import DocumentError
 from engine.skills.teaching import Trigger
 

@@ -6,8 +6,8 @@ import random
 
 from benchmarks.hostile_documents import base_documents, expression_document, mutated_document
 from benchmarks.hostile_inputs import PROJECT, HostileInputProbe, hostile_catalogue
-from engine.document.cel_expression import MAX_TEXT
-from engine.document.step_meter import METER
+from engine.document.expression.cel_expression import MAX_TEXT
+from engine.document.expression.step_meter import METER
 
 
 def test_hostile_expressions_go_through_check_editor_and_run() -> None:

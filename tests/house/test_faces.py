@@ -53,8 +53,8 @@ def test_a_wing_imports_from_faces(wing: str) -> None:
         ("from engine.document import Behavior", []),
         ("from engine.skills.motion import MoveTo", []),
         ("from engine.clock import Clock", []),
-        ("from engine.document import yaml_source", ["engine.document.yaml_source"]),
-        ("from engine.document.yaml_source import MAX_BYTES", ["engine.document.yaml_source.MAX_BYTES"]),
+        ("from engine.document import placement", ["engine.document.placement"]),
+        ("from engine.document.text.yaml_source import MAX_BYTES", ["engine.document.text.yaml_source.MAX_BYTES"]),
         ("import engine.project.session", ["engine.project.session"]),
     ],
 )

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from engine.document.node_kind import WRAPPERS
-from engine.document.node_kinds import NODE_KINDS, NodeKind
+from engine.document.nodes.node_kind import WRAPPERS
+from engine.document.nodes.node_kinds import NODE_KINDS, NodeKind
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "editor_web" / "frontend" / "src"
@@ -22,7 +22,7 @@ ORDINARY_WORDS = {
 }
 """Keys that are used for other things as well: of these kinds only the names of their classes are counted."""
 MODELS, RUNTIME, AUTHORING = (
-    "engine/document/node_spec.py",
+    "engine/document/nodes/node_spec.py",
     "engine/runtime/tree/decorators.py",
     "engine/authoring/tree_steps.py",
 )

@@ -11,7 +11,7 @@ from engine.check.finding import Finding, finding_sort_key, new_finding
 from engine.check.values.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
 from engine.document.cell import Cell, CellDocument, RobotSpec
 from engine.document.entries_document import Entries, EntriesDocument, load_entries
-from engine.document.yaml_source import DataPath, DocumentSource
+from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import DRIVERS, registered_names
 from engine.suggestions import did_you_mean

@@ -16,7 +16,7 @@ from engine.check.values.annotated_values import AnnotatedValue, annotated_value
 from engine.check.values.joint_targets import check_joint_targets
 from engine.check.values.known_values import UnknownValue, known_part
 from engine.check.values.parameter_checks import default_values
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import ExpressionError
 

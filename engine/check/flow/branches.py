@@ -13,8 +13,8 @@ from engine.check.analyzed_behavior import NodeAt
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.effect import Effect, join_effects
 from engine.check.flow.flow_graph import FlowEdge
-from engine.document.concurrency_condition import deciding, preemptable
-from engine.document.node_spec import shared_keys
+from engine.document.nodes.concurrency_condition import deciding, preemptable
+from engine.document.nodes.node_spec import shared_keys
 
 EdgesByNode = Mapping[str, Sequence[FlowEdge]]
 

@@ -11,9 +11,9 @@ from engine.check.analyzed_behavior import NodeAt
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.effect import Effect
 from engine.check.graph_components import strong_components
-from engine.document.decorator_spec import DecoratorSpec
-from engine.document.node_kind import TreeStatus
-from engine.document.node_spec import NodeSpec
+from engine.document.nodes.decorator_spec import DecoratorSpec
+from engine.document.nodes.node_kind import TreeStatus
+from engine.document.nodes.node_spec import NodeSpec
 
 Target = int | str
 """The number of a child, or the name of an outcome."""

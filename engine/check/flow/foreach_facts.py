@@ -9,7 +9,7 @@ from engine.check.analyzed_behavior import NodeAt
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.effect import NO_EFFECT, Effect, combine_effects, join_effects, write_effect
 from engine.check.flow.flow_graph import FlowEdge
-from engine.document.node_spec import FOREACH_OUTCOMES, ForEachSpec
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES, ForEachSpec
 
 EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 

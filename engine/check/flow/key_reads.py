@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, template
-from engine.document.cel_expression import Expression
-from engine.document.expression import Template, split_text
+from engine.document.expression.cel_expression import Expression
+from engine.document.expression.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 

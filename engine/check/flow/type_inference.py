@@ -24,8 +24,8 @@ from engine.check.flow.value_type import (
     type_of_expression,
     without_value,
 )
-from engine.document.cel_expression import Expression
-from engine.document.expression import Template, split_text
+from engine.document.expression.cel_expression import Expression
+from engine.document.expression.expression import Template, split_text
 from engine.document.parameter_spec import ParameterSpec
 from engine.errors import ExpressionError
 

@@ -18,7 +18,7 @@ from engine.check.flow.flow_graph import FlowEdge, FlowGraph, machine_graph, tre
 from engine.check.flow.foreach_facts import collect_effect, foreach_facts
 from engine.check.flow.key_reads import KeyRead
 from engine.check.flow.post_condition_effects import PostConditionEffects, post_condition_fact
-from engine.document.node_spec import shared_keys
+from engine.document.nodes.node_spec import shared_keys
 
 BEHAVIOR = ""
 """The path of the declarations of the behavior itself: its parameters and its initial userdata."""

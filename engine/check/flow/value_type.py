@@ -11,9 +11,9 @@ from typing import Any, cast
 import msgspec
 from msgspec import inspect
 
-from engine.document.cel_environment import ValueType
-from engine.document.cel_expression import as_text
-from engine.document.decoding import explain_validation_error
+from engine.document.expression.cel_environment import ValueType
+from engine.document.expression.cel_expression import as_text
+from engine.document.text.decoding import explain_validation_error
 
 
 @dataclass(frozen=True)

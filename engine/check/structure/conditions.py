@@ -9,7 +9,14 @@ from typing import Any, NamedTuple
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.document.concurrency_condition import PREEMPT, WHEN, ConcurrencyCondition, deciding, preemptable, preempting
+from engine.document.nodes.concurrency_condition import (
+    PREEMPT,
+    WHEN,
+    ConcurrencyCondition,
+    deciding,
+    preemptable,
+    preempting,
+)
 from engine.suggestions import did_you_mean
 
 MAX_STEPS = 20_000

@@ -13,8 +13,8 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import KeyRead, assignments
 from engine.check.graph_components import strong_components
-from engine.document.concurrency_condition import deciding
-from engine.document.node_spec import FOREACH_OUTCOMES, ConcurrencySpec, NodeSpec
+from engine.document.nodes.concurrency_condition import deciding
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES, ConcurrencySpec, NodeSpec
 
 _SHOWN = 6
 

@@ -8,7 +8,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import conditions
 from engine.document.count import whole_number
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.errors import ExpressionError
 from engine.suggestions import did_you_mean
 

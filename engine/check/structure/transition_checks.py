@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, targets
 from engine.check.finding import Finding
-from engine.document.node_spec import NodeSpec
+from engine.document.nodes.node_spec import NodeSpec
 from engine.errors import FlexcellError, ModuleNotAllowed
 from engine.suggestions import did_you_mean
 

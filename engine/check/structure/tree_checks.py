@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.check.structure.instant_loops import InstantOutcomes
-from engine.document.expression import Template
-from engine.document.node_kind import SLOTS
-from engine.document.node_spec import TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec
+from engine.document.expression.expression import Template
+from engine.document.nodes.node_kind import SLOTS
+from engine.document.nodes.node_spec import TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec
 from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.suggestions import did_you_mean

@@ -8,7 +8,7 @@ from typing import cast
 
 from engine.check.analyzed_behavior import template
 from engine.check.flow.key_reads import only_name
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.errors import ExpressionError
 
 

@@ -11,7 +11,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding, new_finding
 from engine.check.values.annotated_values import annotated_lists, is_annotated
 from engine.check.values.known_values import known_part
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 
 

@@ -11,10 +11,10 @@ import msgspec
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import assignments, conditions
-from engine.document.decoding import explain_validation_error
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.signature import StateSignature
+from engine.document.text.decoding import explain_validation_error
 from engine.errors import ExpressionError
 from engine.suggestions import did_you_mean
 

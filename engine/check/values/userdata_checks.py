@@ -12,7 +12,7 @@ from engine.check.flow.definition_sites import DefinitionSite
 from engine.check.flow.key_reads import KeyRead, assignments
 from engine.check.flow.userdata_flow import DataFlow
 from engine.check.flow.witness_path import format_witness_path, witness_path
-from engine.document.node_spec import shared_keys
+from engine.document.nodes.node_spec import shared_keys
 from engine.suggestions import did_you_mean
 
 _MOST_ROUTES = 100

@@ -32,7 +32,7 @@ from engine.document.entries_document import SECTIONS, load_entries
 from engine.document.project_file import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import Catalogue
-from engine.document.text_recovery import load_recovering
+from engine.document.text.text_recovery import load_recovering
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import load_states
 

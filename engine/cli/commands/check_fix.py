@@ -8,7 +8,7 @@ from pathlib import Path
 
 from engine.check.analyzed_behavior import Catalogue
 from engine.document.python_name import is_python_name
-from engine.document.yaml_source import MAX_BYTES, load_source
+from engine.document.text.yaml_source import MAX_BYTES, load_source
 from engine.editing.fixes.auto_fix import FixResult, fix_text
 from engine.editing.project_context import ProjectContext
 from engine.editing.versions import write_atomically

@@ -16,7 +16,7 @@ from rich.table import Table
 from engine.cli.inputs import read_json
 from engine.cli.store_access import Cell, Place, Who, Why, author_name, chosen_store, opened_store, with_store
 from engine.cli.store_formats import exported, imported
-from engine.document.yaml_writer import write_yaml
+from engine.document.text.yaml_writer import write_yaml
 from engine.errors import StoreError
 from engine.store import EntryChange, Store, migrate
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import cast
 
-from engine.document.node_kind import MACHINES
+from engine.document.nodes.node_kind import MACHINES
 from engine.editing.edit import AnyEdit
 from engine.editing.edit_session import EditSession
 from engine.editing.outline import NodeRef, Plain

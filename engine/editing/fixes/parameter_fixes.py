@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import cast
 
-from engine.document.yaml_source import load_source
+from engine.document.text.yaml_source import load_source
 from engine.editing.edit import AnyEdit, ClearParameter, SetDocument, SetField, SetParameter
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_names
 from engine.editing.outline import Plain

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import cast
 
-from engine.document.concurrency_condition import PREEMPT, deciding, read_entry
+from engine.document.nodes.concurrency_condition import PREEMPT, deciding, read_entry
 from engine.editing.edit import (
     AnyEdit,
     ClearTransition,

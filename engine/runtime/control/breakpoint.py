@@ -11,10 +11,10 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel, decode_document
-from engine.document.expression import Template, compile_template
-from engine.document.yaml_source import load_source
-from engine.document.yaml_writer import write_yaml
+from engine.document.expression.expression import Template, compile_template
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.yaml_source import load_source
+from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError, ExpressionError
 
 GatePoint = Literal["before", "after"]

@@ -9,8 +9,8 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
 
 from engine.cause_chain import cause_of, describe_cause
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.errors import FlexcellError
 from engine.event import GatePassed, GateReached, OutcomeRequested, OutcomeWithdrawn
 from engine.node_path import is_inside

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from engine.document.node_spec import FOREACH_OUTCOMES
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES
 from engine.errors import DocumentError
 from engine.event import (
     BehaviorChanged,

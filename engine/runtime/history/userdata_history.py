@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import msgspec
 
-from engine.document.node_spec import FOREACH_OUTCOMES
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES
 from engine.event import (
     Event,
     NodeEntered,

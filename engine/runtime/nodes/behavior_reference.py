@@ -9,7 +9,7 @@ from typing import Protocol
 
 import msgspec
 
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node import Node

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 from engine.cause_chain import wrap_cause
-from engine.document.concurrency_condition import ConcurrencyCondition, deciding, preempting
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition, deciding, preempting
 from engine.errors import StateError
 from engine.event import BranchesPreempted, Cause
 from engine.preemption import BackgroundPreemptions, preempt, raise_failure

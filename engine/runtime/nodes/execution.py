@@ -11,8 +11,8 @@ from typing import Any, Protocol, TypeVar
 from engine.bus import SkillBus
 from engine.clock import Clock, OneTurn
 from engine.document.duration import LONGEST_S
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.errors import StateError
 from engine.event import NodeAbandoned, UserdataAppended, UserdataWritten
 from engine.runtime.control.gate import Gate

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import cast
 
 from engine.document.count import whole_number
-from engine.document.expression import Template
-from engine.document.node_spec import FOREACH_OUTCOMES
+from engine.document.expression.expression import Template
+from engine.document.nodes.node_spec import FOREACH_OUTCOMES
 from engine.errors import StateError, UserdataError
 from engine.event import Cause, TransitionTaken
 from engine.runtime.nodes.diagnosis import Diagnosis, explain_exit

@@ -12,7 +12,7 @@ import msgspec
 
 from engine.bus import Holder
 from engine.cause_chain import storable_cause
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import FlexcellError, StateError, UserdataError
 from engine.runtime.nodes.context import ActivationContext

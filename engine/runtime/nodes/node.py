@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Protocol
 
 from engine.cause_chain import cause_of, describe_cause, wrap_cause
 from engine.document.duration import LONGEST_S
-from engine.document.expression_cost import MAX_STEPS
+from engine.document.expression.expression_cost import MAX_STEPS
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, NodeRetried
 from engine.preemption import OverduePolicy, being_cancelled, preempt, raise_failure, take_order_preemption

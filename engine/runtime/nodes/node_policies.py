@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 
 
 @dataclass(frozen=True, kw_only=True)

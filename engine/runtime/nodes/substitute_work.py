@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
-from engine.document.expression import compile_template
+from engine.document.expression.expression import compile_template
 from engine.document.signature import read_signature
 from engine.document.state_catalogue import Catalogue, find_state
 from engine.document.substitutes import Substitute, SubstituteEnding, Substitutes

@@ -9,8 +9,8 @@ from py_trees import decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, Status
 
-from engine.document import node_spec as nodes
 from engine.document.duration import seconds
+from engine.document.nodes import node_spec as nodes
 from engine.errors import StateError
 from engine.event import Cause
 from engine.runtime.tree.guard_decorator import Guard, guard_condition, holds_in

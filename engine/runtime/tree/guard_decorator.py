@@ -8,7 +8,7 @@ from functools import partial
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
 from engine.errors import ExpressionError, StateError
 from engine.runtime.tree.scope_access import ScopeAccess
 from engine.runtime.tree.skipped_nodes import SkippedNodes

@@ -8,7 +8,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from engine.cause_chain import cause_of, wrap_cause
-from engine.document.node_spec import RetrySpec
+from engine.document.nodes.node_spec import RetrySpec
 from engine.errors import FlexcellError, JournalError, NotStopped
 from engine.event import Cause
 from engine.runtime.tree.timers import TreeTimers

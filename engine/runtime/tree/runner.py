@@ -11,8 +11,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from engine.cause_chain import cause_of, describe_cause
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.errors import FlexcellError, StateError
 from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.node_path import is_inside

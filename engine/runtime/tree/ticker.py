@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from py_trees.behaviour import Behaviour
 
 from engine.clock import OneTurn
-from engine.document.expression_cost import MAX_STEPS
+from engine.document.expression.expression_cost import MAX_STEPS
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.scheduling.eager_task_runner import EagerTaskRunner, Piece

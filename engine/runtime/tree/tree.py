@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from engine.document.node_spec import TREE_OUTCOMES
+from engine.document.nodes.node_spec import TREE_OUTCOMES
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry

@@ -10,8 +10,8 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 
-from engine.document import node_spec as nodes
-from engine.document.node_kind import SLOTS
+from engine.document.nodes import node_spec as nodes
+from engine.document.nodes.node_kind import SLOTS
 from engine.errors import StateError
 from engine.event import Cause, NodeRetried
 from engine.runtime.nodes.execution import Execution

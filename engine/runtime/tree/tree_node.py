@@ -8,8 +8,8 @@ from functools import cached_property
 
 from py_trees.behaviour import Behaviour
 
-from engine.document import node_spec as nodes
-from engine.document.expression import Template
+from engine.document.expression.expression import Template
+from engine.document.nodes import node_spec as nodes
 from engine.runtime.nodes.node import Node
 
 

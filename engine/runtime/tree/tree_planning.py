@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import msgspec
 from py_trees.behaviour import Behaviour as PyTreesBehaviour
 
-from engine.document import node_spec as nodes
 from engine.document.behavior import Behavior
 from engine.document.duration import seconds
-from engine.document.expression import Template, compile_template
-from engine.document.node_kind import KINDS, PostConditionsSpec
+from engine.document.expression.expression import Template, compile_template
+from engine.document.nodes import node_spec as nodes
+from engine.document.nodes.node_kind import KINDS, PostConditionsSpec
 from engine.document.state_catalogue import Catalogue
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.runtime.nodes.leaf import Leaf

@@ -12,7 +12,7 @@ import copy
 from collections.abc import Iterator, Mapping, Sized
 from typing import cast
 
-from engine.document.step_meter import METER
+from engine.document.expression.step_meter import METER
 from engine.errors import UserdataError
 from engine.runtime.userdata.append_only_lists import AppendOnlyLists
 from engine.runtime.userdata.userdata_value import is_immutable

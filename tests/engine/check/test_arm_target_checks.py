@@ -8,8 +8,8 @@ import pytest
 
 from engine.check import Finding
 from engine.cli.commands.check import TargetLevel, findings_of
-from engine.document import yaml_source
 from engine.document.state_catalogue import find_state
+from engine.document.text import yaml_source
 from engine.registry import load_states
 
 CATALOGUE = load_states()

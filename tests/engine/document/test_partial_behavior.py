@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.check import check_survey
 from engine.document import load_behavior, parse_behavior, survey_behavior
-from engine.document.mistakes import MAX_MISTAKES
+from engine.document.text.mistakes import MAX_MISTAKES
 from engine.errors import DocumentError, Position
 from tests.engine.fake_states import CATALOGUE
 

@@ -7,9 +7,9 @@ from typing import Any, get_args, get_type_hints
 import msgspec
 from hypothesis import strategies as st
 
-from engine.document import node_spec
-from engine.document.node_kind import KINDS, WRAPPERS
-from engine.document.node_spec import TREE_KINDS
+from engine.document.nodes import node_spec
+from engine.document.nodes.node_kind import KINDS, WRAPPERS
+from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.edit import AnyEdit, GroupNodes
 from engine.editing.outline import NodeRef, Outline
 from tests.engine.editing.layouts import Plain

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from engine.document.yaml_source import parse_source
+from engine.document.text.yaml_source import parse_source
 from engine.editing.draft import Draft
 from tests.engine.editing.layouts import Layout, Plain, chances, documents, scalars, trees
 from tests.engine.editing.random_changes import at, leaves, mappings, mutate, set_at

@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from engine.document import parse_behavior
-from engine.document.yaml_source import parse_source
+from engine.document.text.yaml_source import parse_source
 from engine.editing import Draft, apply_edits, copy_nodes, read_edits
 from engine.editing.outline import Outline
 from tests.engine.check.random_behaviors import behaviors

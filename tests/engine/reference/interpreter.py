@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal, cast
 
 from engine.document import Behavior, NodeSpec
-from engine.document.concurrency_condition import ConcurrencyCondition
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition
 from engine.document.parameter_spec import bind_parameters
 from tests.engine.reference.schedule import Children, Deadline, End, Preempted, Schedule, Sleep, Steps, Task
 from tests.engine.reference.scope import Failed, Scope

@@ -24,7 +24,7 @@ from engine.authoring import (
     to_yaml,
 )
 from engine.document import Behavior
-from engine.document.node_spec import shared_keys
+from engine.document.nodes.node_spec import shared_keys
 from tests.engine.reference.act import Act
 
 KEYS = st.sampled_from(["n", "n", "m", "n", "m", "xs"])

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.core_schema import plain_scalar
-from engine.document.yaml_source import MAX_BYTES, load_source, parse_source
+from engine.document.text.core_schema import plain_scalar
+from engine.document.text.yaml_source import MAX_BYTES, load_source, parse_source
 from engine.errors import DocumentError, Position
 from tests.engine.json_values import json_values
 

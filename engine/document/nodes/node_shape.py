@@ -8,9 +8,9 @@ from typing import Self, cast
 
 from msgspec import Struct
 
-from engine.document.decoding import StrictModel
-from engine.document.decorator_spec import DecoratorSpec
-from engine.document.node_kind import COMMON_KEYS, NAMED, WRAPPERS, numbered
+from engine.document.nodes.decorator_spec import DecoratorSpec
+from engine.document.nodes.node_kind import COMMON_KEYS, NAMED, WRAPPERS, numbered
+from engine.document.text.decoding import StrictModel
 
 Keys = tuple[str | int, ...]
 _STATE = "state"

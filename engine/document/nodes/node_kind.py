@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.decoding import StrictModel
+from engine.document.text.decoding import StrictModel
 
 KINDS = ("state", "machine", "concurrency", "priority", "tree", "foreach", "behavior")
 """Kinds that are allowed everywhere; all others are parts of trees."""

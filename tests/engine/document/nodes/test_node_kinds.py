@@ -7,9 +7,9 @@ from typing import cast
 import pytest
 
 from engine.document import parse_behavior
-from engine.document.node_kind import KINDS, WRAPPERS
-from engine.document.node_kinds import NODE_KINDS, KindField
-from engine.document.node_spec import TREE_KINDS
+from engine.document.nodes.node_kind import KINDS, WRAPPERS
+from engine.document.nodes.node_kinds import NODE_KINDS, KindField
+from engine.document.nodes.node_spec import TREE_KINDS
 
 HEAD = "flexcell: 1\nname: t\noutcomes: [success, failure]\nroot:\n  tree:\n    "
 

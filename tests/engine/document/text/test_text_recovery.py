@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.check import check_survey
 from engine.document import survey_behavior
-from engine.document.text_recovery import recover_text
+from engine.document.text.text_recovery import recover_text
 from tests.engine.document.test_partial_behavior import HEAD, KINDS, behavior_of, lines_of
 from tests.engine.fake_states import CATALOGUE
 

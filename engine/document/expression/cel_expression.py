@@ -13,7 +13,7 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.document.cel_environment import (
+from engine.document.expression.cel_environment import (
     ALIAS,
     MAX_NAMES,
     NameUse,
@@ -24,10 +24,10 @@ from engine.document.cel_environment import (
     error_type,
     word_for,
 )
-from engine.document.cel_syntax import ParsedExpression, Syntax, read_parsed
-from engine.document.expression_cost import MAX_STEPS, Sizes, cost_of
-from engine.document.text_cache import TextCache
-from engine.document.value_size import SCALAR, SMALL, measure_value
+from engine.document.expression.cel_syntax import ParsedExpression, Syntax, read_parsed
+from engine.document.expression.expression_cost import MAX_STEPS, Sizes, cost_of
+from engine.document.expression.text_cache import TextCache
+from engine.document.expression.value_size import SCALAR, SMALL, measure_value
 from engine.errors import ExpressionError
 
 MAX_LENGTH = 1_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.document.pattern_cost import pattern_weight
+from engine.document.expression.pattern_cost import pattern_weight
 
 
 @pytest.mark.parametrize(

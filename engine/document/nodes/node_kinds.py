@@ -12,9 +12,9 @@ from typing import Annotated, Literal, get_args, get_origin
 from msgspec import Struct
 from msgspec.structs import fields
 
-from engine.document.decorator_spec import DecoratorSpec
-from engine.document.node_kind import KINDS, WRAPPERS, FormField
-from engine.document.node_spec import (
+from engine.document.nodes.decorator_spec import DecoratorSpec
+from engine.document.nodes.node_kind import KINDS, WRAPPERS, FormField
+from engine.document.nodes.node_spec import (
     TREE_KINDS,
     CompositeSpec,
     ConcurrencySpec,

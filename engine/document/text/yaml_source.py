@@ -19,8 +19,8 @@ from typing import NoReturn, Protocol, cast
 import msgspec
 import yaml
 
-from engine.document.chunked_text import ChunkedText
-from engine.document.core_schema import plain_scalar, shorten_scalar
+from engine.document.text.chunked_text import ChunkedText
+from engine.document.text.core_schema import plain_scalar, shorten_scalar
 from engine.errors import DocumentError, Position
 
 MAX_BYTES = 2_000_000

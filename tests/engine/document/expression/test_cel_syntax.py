@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from engine.document.cel_environment import environment
-from engine.document.cel_syntax import (
+from engine.document.expression.cel_environment import environment
+from engine.document.expression.cel_syntax import (
     CelCall,
     CelComprehension,
     CelIdentifier,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.document.chunked_text import ChunkedText
+from engine.document.text.chunked_text import ChunkedText
 
 
 def test_portions_together_are_the_text() -> None:

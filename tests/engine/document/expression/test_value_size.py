@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.value_size import MAX_WEIGHT, SCALAR, ValueSize, either_size, joined_size, measure_value, text_size
+from engine.document.expression.value_size import (
+    MAX_WEIGHT,
+    SCALAR,
+    ValueSize,
+    either_size,
+    joined_size,
+    measure_value,
+    text_size,
+)
 from engine.errors import ExpressionError
 from engine.messages import Pose
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from engine.document.yaml_source import DataPath, DocumentSource, LineMistake, PositionTree, load_text, parse_source
+from engine.document.text.yaml_source import (
+    DataPath,
+    DocumentSource,
+    LineMistake,
+    PositionTree,
+    load_text,
+    parse_source,
+)
 from engine.errors import DocumentError
 
 _MOST_BLOCKS = 20

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from engine.document.cel_syntax import (
+from engine.document.expression.cel_syntax import (
     CelCall,
     CelComprehension,
     CelIdentifier,
@@ -21,8 +21,8 @@ from engine.document.cel_syntax import (
     CelSelect,
     Syntax,
 )
-from engine.document.pattern_cost import pattern_weight
-from engine.document.value_size import SCALAR, ValueSize, either_size, joined_size, list_size, text_size
+from engine.document.expression.pattern_cost import pattern_weight
+from engine.document.expression.value_size import SCALAR, ValueSize, either_size, joined_size, list_size, text_size
 from engine.errors import ExpressionError
 
 MAX_STEPS = 10_000.0

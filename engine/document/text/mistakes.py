@@ -14,7 +14,7 @@ from typing import Annotated, Any, Final, Literal, Union, cast, get_args, get_or
 import msgspec
 from msgspec.structs import FieldInfo
 
-from engine.document.yaml_source import DataPath, DocumentSource, PositionTree
+from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree
 from engine.suggestions import close_names
 
 MAX_MISTAKES = 100

@@ -9,11 +9,11 @@ from typing import cast
 import pytest
 
 from benchmarks.hostile_expressions import hostile_data, hostile_text
-from engine.document.cel_environment import environment
-from engine.document.cel_expression import MAX_TEXT
-from engine.document.expression import MAX_PER_TEXT, MAX_PER_VALUE, compile_template
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
+from engine.document.expression.cel_environment import environment
+from engine.document.expression.cel_expression import MAX_TEXT
+from engine.document.expression.expression import MAX_PER_TEXT, MAX_PER_VALUE, compile_template
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.errors import ExpressionError
 
 NUMBERS = list(range(1_000))

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import yaml
 
-from engine.document.core_schema import plain_scalar
+from engine.document.text.core_schema import plain_scalar
 
 _LINE = 80
 """Maximum line length of plain values."""

@@ -14,7 +14,7 @@ from typing import cast
 
 import msgspec
 
-from engine.document.cel_expression import (
+from engine.document.expression.cel_expression import (
     MAX_TEXT,
     Expression,
     Variables,
@@ -22,9 +22,9 @@ from engine.document.cel_expression import (
     shorten_text,
     too_much_text,
 )
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
-from engine.document.value_size import SMALL, measure_value
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
+from engine.document.expression.value_size import SMALL, measure_value
 from engine.errors import ExpressionError
 
 MAX_PER_TEXT = 100

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.cel_expression import RESERVED
-from engine.document.expression import compile_template
+from engine.document.expression.cel_expression import RESERVED
+from engine.document.expression.expression import compile_template
 from engine.errors import ExpressionError
 from engine.messages import Pose
 

@@ -8,7 +8,7 @@ from typing import Annotated, cast
 import msgspec
 from msgspec import Meta
 
-from engine.document.node_kind import Count, NodeName, OutcomeName
+from engine.document.nodes.node_kind import Count, NodeName, OutcomeName
 
 AT_LEAST = "at_least"
 """Key among the children of a condition, with a number instead of an outcome."""

@@ -8,8 +8,8 @@ import pytest
 
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
-from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
+from engine.document.expression.expression_cost import MAX_STEPS
+from engine.document.expression.step_meter import METER
 from engine.event import NodeEntered
 from engine.runtime.run import Run, RunResult
 from tests.engine.run_document import ObservedRun, plan_of, run_document

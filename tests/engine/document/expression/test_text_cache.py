@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.document.text_cache import TextCache
+from engine.document.expression.text_cache import TextCache
 
 
 def test_what_was_asked_for_longest_ago_goes_first() -> None:

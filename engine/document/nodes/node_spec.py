@@ -14,11 +14,10 @@ from typing import Annotated, ClassVar, Literal, cast
 
 from msgspec import Meta
 
-from engine.document.concurrency_condition import ConcurrencyCondition, ConditionEntry, read_entry
-from engine.document.decoding import StrictModel
-from engine.document.decorator_spec import MAY_FAIL, DecoratorSpec, Turns
 from engine.document.duration import Duration, seconds
-from engine.document.node_kind import (
+from engine.document.nodes.concurrency_condition import ConcurrencyCondition, ConditionEntry, read_entry
+from engine.document.nodes.decorator_spec import MAY_FAIL, DecoratorSpec, Turns
+from engine.document.nodes.node_kind import (
     KINDS,
     AutonomyLevel,
     Expression,
@@ -32,7 +31,8 @@ from engine.document.node_kind import (
     TreeStatus,
     derived_name,
 )
-from engine.document.node_shape import NodeShape, kind_keys
+from engine.document.nodes.node_shape import NodeShape, kind_keys
+from engine.document.text.decoding import StrictModel
 
 
 class TimeoutSpec(DecoratorSpec, frozen=True, kw_only=True):

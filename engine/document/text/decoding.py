@@ -10,8 +10,8 @@ from typing import TypeVar, cast
 import msgspec
 from msgspec import inspect
 
-from engine.document.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
-from engine.document.yaml_source import DataPath, DocumentSource
+from engine.document.text.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
+from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from engine.document.decoding import StrictModel
-from engine.document.node_kind import TreeStatus
+from engine.document.nodes.node_kind import TreeStatus
+from engine.document.text.decoding import StrictModel
 
 Turns = Mapping[TreeStatus, tuple[TreeStatus, ...]]
 """The statuses that a decorator may show, by the status of its child; `running` after an end runs the child again."""

@@ -1,0 +1,1 @@
+"""Expressions in documents: syntax, cost, compilation and evaluation."""
