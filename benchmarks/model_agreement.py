@@ -20,7 +20,7 @@ from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.physics import mujoco
-from tests.robots.model.test_irb4600 import TABLE_4
+from tests.robots.arms.test_irb4600 import TABLE_4
 
 ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 STATES = 1000

@@ -10,10 +10,11 @@ from tests.tiers import kinds_of
 
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = ROOT / "tests"
-MIRRORED = ("engine", "states", "editor_web", "benchmarks")
+MIRRORED = ("engine", "states", "robots", "editor_web", "benchmarks")
 """Packages whose tree the tests repeat; `behaviors`, `house` and `replay` test documents, the repository and runs."""
 JOURNEYS = {
     "engine/reference": "a second, simpler interpreter, and the engine compared with it",
+    "robots/teaching": "an arm is led by hand; what it did is captured, learned, and executed again",
     "engine/test_defects_of_peers.py": "known defects of other engines, whatever part of ours they would be in",
 }
 """Tests of no single module or room, each with what it is instead. Those in a browser are journeys too."""

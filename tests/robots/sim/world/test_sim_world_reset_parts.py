@@ -15,7 +15,7 @@ from engine.skills.motion import JointTrapVel
 from engine.skills.simulated_world import ResetParts
 from tests.robots.sim.sim_cell import box, opened, part_xyz, two_arms
 
-CELL = Path(__file__).resolve().parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
+CELL = Path(__file__).resolve().parents[4] / "behaviors" / "cells" / "dual_panda.yaml"
 AWAY = JointTrapVel(joints=(0.5, -0.5, 0.0, -2.2, 0.0, 1.7, 0.8), speed=0.5)
 
 

@@ -11,7 +11,7 @@ from engine.bus import GoalStatus
 from engine.skills.people import CountContacts, Reach
 from tests.robots.workspace.free_cell import ACROSS, REST_RAD_S, THERE, free, free_cell
 
-CELL = Path(__file__).parents[1] / "workspace" / "seen_cell.yaml"
+CELL = Path(__file__).parents[2] / "workspace" / "seen_cell.yaml"
 
 
 @pytest.mark.virtual

@@ -35,7 +35,7 @@ from tests.robots.sim.sim_cell import (
     until,
 )
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 SCENE = one_arm(box("part"))
 # The part is carried over the table by turning the base.
 ACROSS = LIFTED + np.array([0.9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -173,7 +173,7 @@ def test_another_process_goes_on_with_the_same_bits(carried: Carried, tmp_path: 
         "import sys\n"
         "from pathlib import Path\n"
         "from engine.clock import run_virtual\n"
-        "from tests.robots.sim.test_restore import continued\n"
+        "from tests.robots.sim.world.test_sim_world_restore import continued\n"
         "print(run_virtual(continued(Path(sys.argv[1]).read_bytes())))\n"
     )
     done = subprocess.run(

@@ -16,7 +16,7 @@ from engine.errors import CellError, FlexcellError
 from engine.messages import JointState, RobotDescription, SceneDescription
 from engine.skills.motion import JointTrapVel
 
-EXAMPLES = Path(__file__).parents[3] / "docs" / "how-to" / "examples"
+EXAMPLES = Path(__file__).parents[2] / "docs" / "how-to" / "examples"
 
 
 @pytest.fixture(name="cell_file")

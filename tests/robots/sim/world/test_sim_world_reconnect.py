@@ -27,7 +27,7 @@ from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, box, grasp, move, one_arm, part_xyz, smooth, until
 
 WHY = "the world's process was ended by SIGKILL"
-SERVO_CELL = Path(__file__).parents[3] / "behaviors" / "cells" / "servo_arm.yaml"
+SERVO_CELL = Path(__file__).parents[4] / "behaviors" / "cells" / "servo_arm.yaml"
 
 
 class MortalHost(LockstepHost):
