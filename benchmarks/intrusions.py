@@ -67,7 +67,7 @@ class UndisturbedMotions:
         return self.back if number % 2 else self.there
 
 
-async def _ways(document: Cell, speed: float) -> UndisturbedMotions:
+async def _undisturbed(document: Cell, speed: float) -> UndisturbedMotions:
     async with intruded_cell(document, speed=speed) as cell:
         left = await cell.free(MotionTarget(pose=_ENDS[1]))
         right = await cell.free(MotionTarget(pose=_ENDS[0]))
@@ -166,7 +166,7 @@ def main() -> None:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
     options = parser.parse_args()
     document = _with_people_on_both_sides(load_cell(options.cell))
-    ways = run_virtual(_ways(document, options.speed))
+    ways = run_virtual(_undisturbed(document, options.speed))
     drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + ways.stopping_s)
     random = np.random.default_rng(options.seed)
     drawn = [(number, drawer.draw(ways.of(number), random)) for number in range(options.runs)]

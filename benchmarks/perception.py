@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.perception_scene import Stage, document, inside, scene_with, sight_of
+from benchmarks.perception_scene import Stage, document, inside, perception_setup, scene_with
 from benchmarks.process_cpu import cpu_s
 from benchmarks.realtime import Reactions
 from benchmarks.swinging_arms import CELL as SWINGING_CELL
@@ -61,7 +61,7 @@ async def times(cameras: int, looks: int, kind: str) -> str:
     render: list[float] = []
     mapping: list[float] = []
     whole: list[float] = []
-    await process.start(sight_of(cell, scene))
+    await process.start(perception_setup(cell, scene))
     try:
         pid, used_s = process.pid, 0.0
         for number in range(looks + _WARM_UP_LOOKS):
@@ -86,7 +86,7 @@ def robot_voxels(postures: int) -> str:
     """Return how many voxels the robot leaves behind in random configurations, and what the margin covers."""
     cell = document(cameras=2)
     scene = scene_with(cell, person=False)
-    sight = sight_of(cell, scene)
+    sight = perception_setup(cell, scene)
     stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
     body, shells = ArmBody(scene.arms[0]), list[tuple[float, float]]()
     random = np.random.default_rng(1)
@@ -111,7 +111,7 @@ def arm_seen(cameras: int, postures: int) -> str:
     """Return a row: the share of a person's arm's surface that is in the map or in a voxel beside it, by one image."""
     cell = document(cameras=cameras)
     scene = scene_with(cell, person=True)
-    sight = sight_of(cell, scene)
+    sight = perception_setup(cell, scene)
     stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
     random = np.random.default_rng(2)
     shares: list[float] = []

@@ -40,7 +40,7 @@ def document(*, cameras: int) -> CellDocument:
     return msgspec.structs.replace(made, cameras=seen_by, occupancy=box)
 
 
-def sight_of(cell: CellDocument, scene: SimScene) -> PerceptionSetup:
+def perception_setup(cell: CellDocument, scene: SimScene) -> PerceptionSetup:
     """Return what is looked at."""
     assert cell.occupancy is not None
     named = tuple(camera_of(name, camera) for name, camera in cell.cameras.items())

@@ -60,7 +60,7 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
             runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_path
         ),
         "first check of a way that was not planned here": _spent(
-            runs, lambda k: _other_way(way, k), planner.check_path
+            runs, lambda k: _other_path(way, k), planner.check_path
         ),
         "answer with trajectory, new voxels, all of it": _spent(runs, replan, planner.plan),
         "look": _spent(runs, lambda _: look, planner.look),
@@ -128,7 +128,7 @@ def _known(planner: ScenePlanner, request: PathCheckRequest) -> PathCheckRequest
     return request
 
 
-def _other_way(request: PathCheckRequest, number: int) -> PathCheckRequest:
+def _other_path(request: PathCheckRequest, number: int) -> PathCheckRequest:
     rows = request.trajectory.position_rad + 1e-9 * (number + 1)
     return msgspec.structs.replace(request, trajectory=replace(request.trajectory, position_rad=rows))
 

@@ -75,7 +75,7 @@ async def _drawing(file: Path, moments: int) -> None:
     loop = asyncio.get_running_loop()
     told: asyncio.Queue[PastViewState] = asyncio.Queue()
 
-    def tell(state: PastViewState) -> None:
+    def report(state: PastViewState) -> None:
         loop.call_soon_threadsafe(told.put_nowait, state)
 
     async with viser_page(view, "one") as page:
@@ -84,7 +84,7 @@ async def _drawing(file: Path, moments: int) -> None:
         until_s = 1.0
         for _ in range(moments):
             began_s = time.perf_counter()
-            view.show_past("one", "run", chance.uniform(0.0, until_s), tell=tell)
+            view.show_past("one", "run", chance.uniform(0.0, until_s), tell=report)
             state = await told.get()
             took_s.append(time.perf_counter() - began_s)
             until_s = state.until_s

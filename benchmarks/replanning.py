@@ -206,7 +206,7 @@ def _arm_across(point: Vector3) -> np.ndarray:
     return taken
 
 
-async def bench(rounds: int) -> tuple[list[Round], list[tuple[str, Punctuality, list[float]]]]:
+async def measured(rounds: int) -> tuple[list[Round], list[tuple[str, Punctuality, list[float]]]]:
     """Measure the rounds, and how punctual the world and the engine are without maps and meanwhile."""
     scene = build_scene(load_cell(CELL).document)
     clock, cameras, host = new_clock(), Cameras(), ProcessHost(scene)
@@ -338,7 +338,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=100)
     arguments = parser.parse_args()
-    print(table(*asyncio.run(bench(arguments.rounds))))
+    print(table(*asyncio.run(measured(arguments.rounds))))
 
 
 if __name__ == "__main__":

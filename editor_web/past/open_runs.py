@@ -100,7 +100,7 @@ class OpenRunCache:
             further = self._backend.events(run_id, after=after)
         except FlexcellError:
             return None
-        return known or self._entry(key, run_id, self._book(run_id)), further
+        return known or self._entry(key, run_id, self._userdata_history(run_id)), further
 
     def keeps(self, run_id: str) -> bool:
         """Return whether a run of the journal is open."""
@@ -146,7 +146,7 @@ class OpenRunCache:
                 self._opened.move_to_end(key)
             return known
 
-    def _book(self, run_id: str) -> UserdataHistory | None:
+    def _userdata_history(self, run_id: str) -> UserdataHistory | None:
         try:
             return self._backend.userdata(run_id)
         except FlexcellError:

@@ -63,7 +63,7 @@ async def list_past_runs(
 @router.get("/runs/{run_id}/past", responses=_PROBLEMS)
 async def open_past_run(run_id: str, services: ServicesOf, request: Request) -> OpenRunBody:
     """Open a run of the journal, with the behavior as of its start."""
-    opened = await asyncio.to_thread(_of_journal, _pasts(request), run_id, fresh=True)
+    opened = await asyncio.to_thread(_of_journal, _open_runs(request), run_id, fresh=True)
     recording = services.backend.archive.recording_of(run_id)
     return _opened_body(opened, recording=recording)
 
@@ -112,7 +112,7 @@ async def recording_timeline(
     path: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
 ) -> Response:
     """Return the timeline of a recording."""
-    return await asyncio.to_thread(_of_recording, _pasts(request), path, _timeline(from_s, until_s, after))
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, _timeline(from_s, until_s, after))
 
 
 @router.get("/recordings/{path:path}/at", responses=_found(PastRunState))
@@ -120,25 +120,25 @@ async def recording_moment(
     path: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
 ) -> Response:
     """Return the state of a recorded run at a time or after an event."""
-    return await asyncio.to_thread(_of_recording, _pasts(request), path, _moment(time_s, seq, known, lines))
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, _moment(time_s, seq, known, lines))
 
 
 @router.get("/recordings/{path:path}/failure", responses=_found(RunFailure | None))
 async def recording_failure(path: str, request: Request) -> Response:
     """Return the failure of a recorded run; null if it did not fail."""
-    return await asyncio.to_thread(_of_recording, _pasts(request), path, _failure(None))
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, _failure(None))
 
 
 @router.get("/recordings/{path:path}/userdata", responses=_found(PastUserdata))
 async def recording_values(path: str, request: Request, seq: Seq = None) -> Response:
     """Return the userdata of a recorded run after an event."""
-    return await asyncio.to_thread(_of_recording, _pasts(request), path, lambda opened: opened.values(seq=seq))
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, lambda opened: opened.values(seq=seq))
 
 
 @router.get("/recordings/{path:path}", responses=_PROBLEMS)
 async def open_recording(path: str, request: Request) -> OpenRunBody:
     """Open a recording, with the behavior that it contains."""
-    opened = await asyncio.to_thread(_recording, _pasts(request), path)
+    opened = await asyncio.to_thread(_recording, _open_runs(request), path)
     return _opened_body(opened, recording=path)
 
 
@@ -165,13 +165,13 @@ def _failure(is_failed: bool | None) -> RunReader:
     return read
 
 
-def _pasts(request: Request) -> OpenRunCache:
+def _open_runs(request: Request) -> OpenRunCache:
     return request.app.state.pasts
 
 
 async def _of_run(request: Request, run_id: str, read: RunReader, *, fresh: bool = False) -> Response:
     """Read a run of this server, else of the journal, on a thread that does not block the engine."""
-    pasts = _pasts(request)
+    pasts = _open_runs(request)
     known = pasts.of_server(run_id)
     if known is None:
         return await asyncio.to_thread(lambda: _response(read(_of_journal(pasts, run_id, fresh=fresh))))

@@ -178,7 +178,7 @@ class _Page:
             case ButtonInput():
                 await self._buttons.take(request)
 
-    async def news(self) -> list[ToPage]:
+    async def pending_messages(self) -> list[ToPage]:
         """Return the pending messages to the page."""
         messages: list[ToPage] = list(self._waiting)
         self._waiting.clear()
@@ -261,7 +261,7 @@ async def _receive(socket: WebSocket, page: _Page) -> None:
 
 async def _stream(socket: WebSocket, page: _Page) -> None:
     while True:
-        for message in await page.news():
+        for message in await page.pending_messages():
             await send_message(socket, message)
         # Limit of the frame rate; changes in between are coalesced.
         await asyncio.sleep(PERIOD_S)

@@ -72,7 +72,7 @@ def _missing(coverage: BehaviorCoverage, anchors: dict[str, str]) -> str:
         return f"{title}\n<p>Nothing: everything is covered by {runs}.</p>"
     rows = [
         f'<tr><th scope="row"><code>{escape(path)}</code></th>'
-        f"<td><ul>{''.join(_missed_way(item, anchors) for item in items)}</ul></td></tr>"
+        f"<td><ul>{''.join(_missed_item(item, anchors) for item in items)}</ul></td></tr>"
         for path, items in missing.items()
     ]
     return f"{title}\n" + _table(
@@ -80,7 +80,7 @@ def _missing(coverage: BehaviorCoverage, anchors: dict[str, str]) -> str:
     )
 
 
-def _missed_way(item: CoverageItem, anchors: dict[str, str]) -> str:
+def _missed_item(item: CoverageItem, anchors: dict[str, str]) -> str:
     link = f"#{anchors[item.file]}-{item.line}"
     return f'<li>{escape(item.label)}, <a href="{link}">line {item.line}</a></li>'
 

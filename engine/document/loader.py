@@ -164,9 +164,9 @@ class _Reading:
         self.mistakes += partial.mistakes
         if partial.behavior is None:
             raise (*recovered.mistakes, *partial.mistakes)[0]
-        return self._complete(self._without_stray_cell(partial.behavior), file, chain)
+        return self._complete(self._without_outside_cell(partial.behavior), file, chain)
 
-    def _without_stray_cell(self, behavior: Behavior) -> Behavior:
+    def _without_outside_cell(self, behavior: Behavior) -> Behavior:
         """Return the behavior without a cell outside of the folder."""
         if behavior.cell_file is None or not self._is_outside(behavior.cell_file):
             return behavior

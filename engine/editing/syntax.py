@@ -174,7 +174,7 @@ class _Reader:
         start = self._span(event)[0]
         if not event.flow_style:
             start = block_start(self._text, start, event.start_mark.column)
-        data = cast("dict[str, object] | list[object]", self._reading.said)
+        data = cast("dict[str, object] | list[object]", self._reading.latest)
         made = Collection(self._origin, start, start, event.flow_style, event.start_mark.column, data)
         while True:
             event = self._next()
@@ -219,7 +219,7 @@ class _Reader:
             kept = "+" in self._text[start : self._text.find("\n", start)]
             shown = self._text[start:end]
             end = start + len(shown[:-1] if kept and shown.endswith("\n") else shown.rstrip("\n"))
-        return Scalar(start, end, self._reading.said, style)
+        return Scalar(start, end, self._reading.latest, style)
 
     def _explicit(self, at: int, previous: int) -> int:
         """Return the position of a `? ` before a key, else of the key."""

@@ -169,7 +169,7 @@ class GroupCommitWriter:
         with self._lock:
             items = [self.queue.popleft() for _ in range(len(self.queue))]
             waiters = [item for item in items if isinstance(item, CommitWaiter)]
-            taken = {ledger: ledger.take() for ledger in dict.fromkeys(map(_ledger_of, items))}
+            taken = {ledger: ledger.take() for ledger in dict.fromkeys(map(_queue_of, items))}
             self._requeue(taken)
             groups = {ledger: group for ledger, group in taken.items() if group.events or group.world is not None}
             healthy = [ledger for ledger in groups if ledger.failure is None]
@@ -228,7 +228,7 @@ class GroupCommitWriter:
             ledger.fail(error)
 
 
-def _ledger_of(item: RunWriteQueue | CommitWaiter) -> RunWriteQueue:
+def _queue_of(item: RunWriteQueue | CommitWaiter) -> RunWriteQueue:
     return item.ledger if isinstance(item, CommitWaiter) else item
 
 

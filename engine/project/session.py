@@ -357,7 +357,7 @@ class Session:
         """Prepare a recording before its run exists, whose clock starts then; None if it is not recorded."""
         return await self._recordings.prepare(behavior, cell=self.cell) if self._recordings is not None else None
 
-    def _tell(self, run_id: str, event: Event) -> None:
+    def _publish(self, run_id: str, event: Event) -> None:
         self._runs[run_id].events.append(event)
         for callback in self._callbacks:
             callback(run_id, event)
@@ -366,7 +366,7 @@ class Session:
         run = prepared.run
         started = SessionRun(behavior_id, prepared, self.cell.bus.clock.now_s(), events=events)
         self._runs[run.id] = started
-        run.watch(lambda event: self._tell(run.id, event))
+        run.watch(lambda event: self._publish(run.id, event))
         started.task = asyncio.create_task(started.execute(), name=f"session run {run.id}")
         self._forget_oldest()
         return run.id

@@ -81,7 +81,7 @@ class IndexedRecording:
         Raises:
             RecordingError: it cannot be read, or is damaged.
         """
-        with _told(path):
+        with _as_recording_error(path):
             stream = path.open("rb")
             try:
                 lock_against_removal(stream)
@@ -128,7 +128,7 @@ class IndexedRecording:
             RecordingError: it is damaged.
         """
         if self._growing:
-            with _told(self.path):
+            with _as_recording_error(self.path):
                 self._scan()
 
     def at(self, topic: str, time_s: float) -> StoredMessage | None:
@@ -139,7 +139,7 @@ class IndexedRecording:
         """
         if self._zero_ns is None:
             return None
-        with _told(self.path):
+        with _as_recording_error(self.path):
             track = self._track(f"/{topic}")
             if track is None:
                 return None
@@ -284,7 +284,7 @@ def _is_other(topic: str) -> bool:
 
 
 @contextmanager
-def _told(path: Path) -> Generator[None]:
+def _as_recording_error(path: Path) -> Generator[None]:
     try:
         yield
     except RecordingError:

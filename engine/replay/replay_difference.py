@@ -54,8 +54,8 @@ def event_difference(
         number=known.seq,
         time_s=known.time_s,
         path=path,
-        recorded=_said(recorded, path),
-        replayed=_said(replayed, path),
+        recorded=_quoted(recorded, path),
+        replayed=_quoted(replayed, path),
         detail=why or _detail(recorded, replayed),
         before=tuple(
             f"{event.seq} {event.time_s:.3f} s {_path(event)} {event_text(event).text}" for event in before[-CONTEXT:]
@@ -63,7 +63,7 @@ def event_difference(
     )
 
 
-def _said(event: Event | None, path: str) -> str:
+def _quoted(event: Event | None, path: str) -> str:
     if event is None:
         return _NOTHING
     elsewhere = _path(event)

@@ -402,7 +402,7 @@ class Run:
             committing.result()
         except JournalError as error:
             end = msgspec.structs.replace(end, status="errored", outcome=None, cause=_unrecorded(error, end))
-        self._recorder.tell(end)
+        self._recorder.publish(end)
         return end
 
 

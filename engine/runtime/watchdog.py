@@ -119,7 +119,7 @@ class LoopWatchdog:
             has_advanced = id(frame) != self._last_frame_id
             self._last_frame_id = id(frame)
             return self._threshold_s if has_advanced else self._idle_look_s
-        turn = self._turn = self._turn or _Turn(frame=frame, since_s=self._began_s(frame))
+        turn = self._turn = self._turn or _Turn(frame=frame, since_s=self._started_s(frame))
         turn.blocked_s = time.monotonic() - turn.since_s
         if turn.blocked_s < self._threshold_s:
             return self._threshold_s - turn.blocked_s
@@ -127,7 +127,7 @@ class LoopWatchdog:
             self._report(turn, innermost)
         return _BLOCKED_LOOK_S
 
-    def _began_s(self, frame: FrameType) -> float:
+    def _started_s(self, frame: FrameType) -> float:
         """Return the start time of an iteration: its own variable where it has one, else now."""
         now_s = time.monotonic()
         start_s = None if isinstance(self._loop, VirtualLoop) else frame.f_locals.get("end_time")

@@ -173,7 +173,7 @@ class HelpingHand:
             self._due.put_nowait((trigger, lambda: self._do(trigger)))
         elif held and trigger.trig_callback == "grav_comp":
             self._due.put_nowait((trigger, lambda: self._guide(trigger, on=False)))
-        self._tell()
+        self._publish_status()
 
     async def _do(self, trigger: Trigger) -> None:
         robot = self._robot_of(trigger)
@@ -259,7 +259,7 @@ class HelpingHand:
     def _listen(self, triggers: Sequence[Trigger]) -> None:
         self._deafen()
         self._listening = [self._listen_to(trigger) for trigger in triggers]
-        self._tell()
+        self._publish_status()
 
     def _listen_to(self, trigger: Trigger) -> _TriggerSubscription:
         listening = _TriggerSubscription(trigger=trigger)
@@ -294,9 +294,9 @@ class HelpingHand:
     def _say(self, words: str) -> None:
         self._said = words
         _log.info("%s", words)
-        self._tell()
+        self._publish_status()
 
-    def _tell(self) -> None:
+    def _publish_status(self) -> None:
         self._status.publish(self.status)
 
     async def _read_status(self, _request: ReadTeachStatus) -> TeachStatus:
@@ -362,7 +362,7 @@ class HelpingHand:
 
     async def _discard_capture(self, request: DiscardCapture) -> TeachStatus:
         self._buffer.discard(request.id)
-        self._tell()
+        self._publish_status()
         return self.status
 
     async def _propose(self, request: ProposeBehavior) -> Proposal:

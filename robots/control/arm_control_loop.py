@@ -99,7 +99,7 @@ class ArmControlLoop:
         self._load.forget_motion()
         self._untold.clear()
         self._reflex.reason = "it had stopped before" if reflex else ""
-        self._law = self._wanted_law()
+        self._law = self._selected_law()
         self._blend.forget()
 
     def configure(self, settings: ArmSettings) -> None:
@@ -170,7 +170,7 @@ class ArmControlLoop:
 
         `feedforward_nm` is gravity and Coriolis of the arm's model now, and its inertia along the set point.
         """
-        law = self._wanted_law()
+        law = self._selected_law()
         if law is not self._law:
             self._law.terminate()
             self._law = law
@@ -181,7 +181,7 @@ class ArmControlLoop:
         torque = law.step(self.state, self.motion, feedforward_nm=bearing_nm)
         return self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
 
-    def _wanted_law(self) -> Controller:
+    def _selected_law(self) -> Controller:
         if not self.motion.leads:
             return self._floating
         return self._yielding if self.reflex else self._holding[self.settings.controller]

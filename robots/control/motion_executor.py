@@ -87,7 +87,7 @@ class MotionExecutor:
         if following and following.ending is not MotionEnd.FAILED:
             following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
 
-    def tell(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
+    def receive(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
         """Pass on values sent to a stream `age_s` ago; ignored without such a stream."""
         following = self._following
         if following and following.number == number and isinstance(following.generator, StreamGenerator):

@@ -121,11 +121,11 @@ class GripperServer:
     ) -> None:
         """Move the fingers and return when they are at rest, also when cancelled."""
 
-        def tell() -> None:
+        def report() -> None:
             handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))
 
         await self._motion.carry_out(
-            lambda: self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n), handle, tell
+            lambda: self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n), handle, report
         )
 
 

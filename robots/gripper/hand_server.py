@@ -47,10 +47,10 @@ class HandServer:
         return hand_state(self._port.sample(), max_force_n=self._port.max_force_n)
 
     async def _close_to(self, percent: float, time_s: float, handle: ActiveGoal[HandFeedback]) -> HandResult:
-        def tell() -> None:
+        def report() -> None:
             handle.feedback(HandFeedback(closed_percent=100.0 * self._port.sample().closed_share))
 
-        await self._motion.carry_out(lambda: self._port.close_to(share=percent / 100.0, time_s=time_s), handle, tell)
+        await self._motion.carry_out(lambda: self._port.close_to(share=percent / 100.0, time_s=time_s), handle, report)
         sample = self._port.sample()
         holding = check_hand_grasp(sample, max_force_n=self._port.max_force_n)
         return HandResult(

@@ -37,10 +37,10 @@ class MagnetServer:
     async def _switch(self, goal: MagnetSwitch, handle: ActiveGoal[MagnetFeedback]) -> MagnetResult:
         handle.accept()
 
-        def tell() -> None:
+        def report() -> None:
             handle.feedback(MagnetFeedback(pull_n=self._port.sample().pull_n))
 
-        await self._motion.carry_out(lambda: self._port.switch(on=goal.on), handle, tell)
+        await self._motion.carry_out(lambda: self._port.switch(on=goal.on), handle, report)
         sample = self._port.sample()
         reason = check_magnet_grasp(sample, max_force_n=self._port.max_force_n)
         return MagnetResult(

@@ -54,7 +54,7 @@ def plan_joints(
         raise RobotError(f"the speed cannot be {speed:g}", hint=f"give a share from {_SLOWEST_SHARE:g} to 1")
     farthest = float(np.abs(goal - start).max())
     if farthest < _NO_WAY_RAD:
-        return _standing(start, goal)
+        return _resting(start, goal)
     shares = np.abs(goal - start) / farthest
     request = profiles.InputParameter(1)
     request.current_position, request.target_position = [0.0], [farthest]
@@ -78,7 +78,7 @@ def _slowest(limits: tuple[float, ...], shares: Array) -> float:
     return float(np.min(np.array(limits)[moving] / shares[moving]))
 
 
-def _standing(start: Array, goal: Array) -> JointTrajectory:
+def _resting(start: Array, goal: Array) -> JointTrajectory:
     return JointTrajectory(
         dt_s=_SAMPLE_S, position_rad=np.array([start, goal]), velocity_rad_s=np.zeros((2, len(start)))
     )

@@ -74,7 +74,7 @@ class EngineMonitor:
             self._brake(now_s)
         else:
             self._is_heard = True
-        self._tell_rest(now_s)
+        self._report_rest(now_s)
 
     def engine_is_gone(self) -> None:
         """Brake permanently from the next look on: the connection to the engine has ended."""
@@ -87,7 +87,7 @@ class EngineMonitor:
         self._is_heard = False
         self._devices.brake(cause)
 
-    def _tell_rest(self, now_s: float) -> None:
+    def _report_rest(self, now_s: float) -> None:
         at_rest = self._devices.at_rest
         if at_rest != self._was_at_rest:
             self._was_at_rest = at_rest

@@ -109,7 +109,7 @@ class PerceptionDevice:
         if self._world.lost_reason:
             return None
         detecting = self.detections.due(due, now_s=now_s)
-        wanted = self._wanted()
+        wanted = self._requested_depths()
         is_mapped = self.sight.box is not None and self._needs_images
         names = tuple(camera.name for camera in due if is_mapped or camera.name in wanted)
         if not names and not detecting:
@@ -205,9 +205,9 @@ class PerceptionDevice:
     @property
     def _needs_images(self) -> bool:
         read = self._grids is not None and self._grids.subscriber_count > 0
-        return self.map.required > 0 or read or bool(self._wanted())
+        return self.map.required > 0 or read or bool(self._requested_depths())
 
-    def _wanted(self) -> tuple[str, ...]:
+    def _requested_depths(self) -> tuple[str, ...]:
         return tuple(name for name, topic in self._depths.items() if topic.subscriber_count > 0)
 
     def _publish_state(self) -> None:

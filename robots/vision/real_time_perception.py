@@ -75,7 +75,7 @@ class RealTimePerception(PerceptionDevice):
     def _has_started(self) -> None:
         """Mark the start as finished, successful or not."""
         self.map.starting = False
-        self.map.tell()
+        self.map.notify()
 
     async def _look_on(self) -> None:
         """Send requests whenever they are due; raises RobotError once the process is lost."""
@@ -83,7 +83,7 @@ class RealTimePerception(PerceptionDevice):
         while True:
             now_s = loop.time()
             await asyncio.sleep(self._fastest_s - now_s % self._fastest_s)
-            self.map.tell()
+            self.map.notify()
             if not self.needed:
                 continue
             if self.known is not None and self.known is not sent:
@@ -117,7 +117,7 @@ class RealTimePerception(PerceptionDevice):
             while not answer.done() and waited_s < _PATIENCE_S:
                 await asyncio.wait((answer,), timeout=_LOOK_AFTER_S)
                 waited_s += _LOOK_AFTER_S
-                self.map.tell()
+                self.map.notify()
             if not answer.done():
                 raise RobotError(
                     f"the camera process has not answered within {_PATIENCE_S:g} s", hint="a new one is started"

@@ -31,7 +31,7 @@ async def test_a_span_counts_without_those_inside_it(monkeypatch: pytest.MonkeyP
     assert spans.total() == {STARTUP: 1.0, REST: 2.0 + 6.0, "around": 3.0 + 5.0, "inside": 4.0}
 
 
-def test_the_spans_of_a_command_are_told_after_what_it_prints(tmp_path: Path) -> None:
+def test_the_spans_of_a_command_are_reported_after_what_it_prints(tmp_path: Path) -> None:
     """A check imports and does the rest; it opens no cell."""
     behavior = tmp_path / "b.yaml"
     behavior.write_text(
@@ -47,7 +47,7 @@ def test_the_spans_of_a_command_are_told_after_what_it_prints(tmp_path: Path) ->
     assert all(cpu_s > 0 for cpu_s in spans.values())
 
 
-def test_a_row_that_fails_is_told(tmp_path: Path) -> None:
+def test_a_row_that_fails_is_reported(tmp_path: Path) -> None:
     rows = commands(str(tmp_path / "missing.yaml"))
     with pytest.raises(RuntimeError, match=r"missing\.yaml"):
         cost(rows["`flexcell check`, two states"], {"PYTHONPATH": str(ROOT)})

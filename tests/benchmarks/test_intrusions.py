@@ -28,7 +28,7 @@ def _cell() -> CellModel:
     return build_cell(build_scene(DOCUMENT.document))
 
 
-def _way(duration_s: float = 3.0) -> UndisturbedMotion:
+def _motion(duration_s: float = 3.0) -> UndisturbedMotion:
     s = np.linspace(0.0, 1.0, round(duration_s / STEP_S) + 1)[:, None]
     share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
     return UndisturbedMotion(
@@ -38,7 +38,7 @@ def _way(duration_s: float = 3.0) -> UndisturbedMotion:
 
 def _drawn(cell: CellModel, *, count: int, seed: int = 0) -> list[Intrusion]:
     drawer, random = IntrusionDrawer(cell, stopping_s=STOPPING_S), np.random.default_rng(seed)
-    return [drawer.draw(_way(), random) for _ in range(count)]
+    return [drawer.draw(_motion(), random) for _ in range(count)]
 
 
 def test_a_seed_draws_the_same_again_and_another_seed_others(cell: CellModel) -> None:
@@ -49,7 +49,7 @@ def test_a_seed_draws_the_same_again_and_another_seed_others(cell: CellModel) ->
 
 def test_drawn_hands_get_into_the_way_but_not_to_where_the_arm_is_before_it_can_have_stopped(cell: CellModel) -> None:
     """In the physics: an arm that is put where it would be until then is not touched, one farther on is."""
-    way = _way()
+    way = _motion()
     for intrusion in _drawn(cell, count=2):
         stopped = round((intrusion.noticeable_s + STOPPING_S) / STEP_S)
         assert not _touched(cell, intrusion, way, until_row=stopped)
@@ -91,7 +91,7 @@ def test_the_control_group_drives_into_the_hand() -> None:
     async def main() -> IntrusionResult:
         async with intruded_cell(DOCUMENT, speed=0.3) as cell:
             await cell.free(MotionTarget(joints=RIGHT))
-            return await cell.intruded(_way(), in_the_way, adapts=False)
+            return await cell.intruded(_motion(), in_the_way, adapts=False)
 
     ended = run_virtual(main())
     assert ended.contacts > 0

@@ -31,12 +31,12 @@ class FakeArm:
         self._speed = bus.topic(f"{name}/speed_override", SpeedOverride)
         bus.advertise_service(SetSpeedOverride, self._set_speed, namespace=name)
         bus.advertise_service(RecoverFromError, self._recover, namespace=name)
-        self._tell()
+        self._publish()
 
     def become(self, mode: ArmMode, *, activity: str = "", error: str = "") -> None:
         """Say that it does this now."""
         self.mode, self.activity, self.error = mode, activity, error
-        self._tell()
+        self._publish()
 
     def _settings(self) -> ControlSettings:
         return ControlSettings(
@@ -65,7 +65,7 @@ class FakeArm:
             wrench=_STILL,
         )
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         self._status.publish(self._now())
 
     def _set_speed(self, request: SetSpeedOverride) -> ControlSettings:

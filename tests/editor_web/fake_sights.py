@@ -67,7 +67,7 @@ def tool_at(arm: str, joints: tuple[float, ...]) -> Vector3:
     return (ARMS[arm][0] + out * math.cos(yaw), out * math.sin(yaw), up)
 
 
-def way(
+def planned_path(
     arm: str, state: Literal["none", "proposed", "moving", "blocked"] = "proposed", *, reason: str = ""
 ) -> PathPreview:
     """A swing over the table."""

@@ -15,11 +15,11 @@ from engine.recording.channel_schema import channel_schema
 from engine.recording.finalization import EVENT_TOPIC, finalize_recording
 from engine.recording.live_file import LiveFile
 
-Said = Mapping[str, Sequence[tuple[float, Message]]]
+RecordedMessages = Mapping[str, Sequence[tuple[float, Message]]]
 """By topic: at which time of the run it said what."""
 
 
-def write_recording(path: Path, said: Said, *, finished: bool = True, since_s: float = 0.0) -> Path:
+def write_recording(path: Path, said: RecordedMessages, *, finished: bool = True, since_s: float = 0.0) -> Path:
     """Write it, as a run since `since_s` does that began at 1000 s of the file's clock; return the file."""
     live = LiveFile.open(part_file(path), inline=True)
     channel = live.channel(EVENT_TOPIC, "flexcell.Event", channel_schema(AnyEvent, title="flexcell.Event"), metadata={})

@@ -94,7 +94,7 @@ class StopProcess:
         return Handler
 
 
-def tell_of_stop(page: Page, stop: StopProcess) -> None:
+def connect_stop(page: Page, stop: StopProcess) -> None:
     """Let the page of an operator know the stop process, as its server will: in the session and in its policy."""
 
     def session(route: Route) -> None:
@@ -119,6 +119,6 @@ def stop_button(page: Page) -> Locator:
     return page.get_by_role("button", name="Stop the cell")
 
 
-def stop_news(page: Page) -> Locator:
+def stop_status(page: Page) -> Locator:
     """State of the stop."""
     return page.get_by_role("status", name="State of the stop")

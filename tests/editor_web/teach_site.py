@@ -139,14 +139,14 @@ class TeachSite:
         """Wait until no joint moves for a tenth of a second, and return the first measurement of that."""
         rests: list[JointState] = []
 
-        def rests_still(state: JointState) -> bool:
+        def is_still(state: JointState) -> bool:
             if fastest(state) >= RESTS_RAD_S:
                 rests.clear()
             else:
                 rests.append(state)
             return bool(rests) and state.time_s > rests[0].time_s + 0.1
 
-        await self.seen(rests_still)
+        await self.seen(is_still)
         return rests[0]
 
     async def last_moving(self) -> JointState:
@@ -156,12 +156,12 @@ class TeachSite:
         """
         moving: list[JointState] = []
 
-        def rests_still(state: JointState) -> bool:
+        def is_still(state: JointState) -> bool:
             if fastest(state) >= RESTS_RAD_S or not moving:
                 moving.append(state)
             return state.time_s > moving[-1].time_s + 0.1
 
-        await self.seen(rests_still)
+        await self.seen(is_still)
         return moving[-1]
 
     async def let_go(self) -> None:

@@ -33,7 +33,7 @@ from tests.editor_web.fake_sights import (
     occupancy,
     planning_scene,
     scene_with_a_person,
-    way,
+    planned_path,
 )
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.viser_page import opened_view
@@ -142,7 +142,7 @@ def test_no_public_tunnel_can_be_asked_for() -> None:
         urllib.request.urlopen(f"http://127.0.0.1:{view.port}/", timeout=1)
 
 
-async def test_a_viewer_that_was_away_gets_the_newest_poses_and_not_all_that_it_missed(serve: Serve) -> None:
+async def test_a_viewer_that_was_away_gets_the_latest_poses_and_not_all_that_it_missed(serve: Serve) -> None:
     """Thousands of frames while it reads nothing wait nowhere: only the newest ones are kept for it."""
     async with (
         serve(cell_view=True) as served,
@@ -176,7 +176,7 @@ def sighted() -> FakeBackend:
     backend.publish("cell/frames", frames_with_a_person(0.0))
     backend.publish("cell/planning_scene", planning_scene())
     backend.publish("cell/occupancy", occupancy())
-    backend.publish("left/planned_path", way("left"))
+    backend.publish("left/planned_path", planned_path("left"))
     backend.publish("above/camera_info", camera())
     backend.publish("above/depth", depth())
     backend.publish("above/detections", detections())
@@ -184,7 +184,7 @@ def sighted() -> FakeBackend:
 
 
 @asynccontextmanager
-async def looking(view: CellView, *, page: str = "") -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
+async def viewer(view: CellView, *, page: str = "") -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
     """A page that is connected to a view, and has told viser of its camera as a browser does."""
     async with websockets.asyncio.client.connect(
         f"ws://127.0.0.1:{view.port}/",
@@ -227,7 +227,7 @@ async def until(backend: FakeBackend, condition: Callable[[], bool]) -> None:
 
 async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
     """Each in its group; the bodies of people are none of the cell's."""
-    async with opened_view(sighted()) as view, looking(view) as socket:
+    async with opened_view(sighted()) as view, viewer(view) as socket:
         await read(
             socket,
             "/voxels/occupied",
@@ -247,20 +247,20 @@ async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them
     backend = sighted()
     costly = ("cell/occupancy", "above/depth", "above/detections")
 
-    def followed() -> list[bool]:
+    def subscribed() -> list[bool]:
         return [backend.listeners(topic) > 0 for topic in costly]
 
     async with opened_view(backend) as view:
-        assert followed() == [False, False, False]
-        async with looking(view, page="one"):
-            await until(backend, lambda: followed() == [True, False, True])
+        assert subscribed() == [False, False, False]
+        async with viewer(view, page="one"):
+            await until(backend, lambda: subscribed() == [True, False, True])
             view.show("one", frozenset[LayerGroup]({"cameras"}))
-            await until(backend, lambda: followed() == [False, True, False])
-            async with looking(view, page="two"):
-                await until(backend, lambda: followed() == [True, True, True])
+            await until(backend, lambda: subscribed() == [False, True, False])
+            async with viewer(view, page="two"):
+                await until(backend, lambda: subscribed() == [True, True, True])
                 view.show("two", frozenset())
-                await until(backend, lambda: followed() == [False, True, False])
-        await until(backend, lambda: followed() == [False, False, False])
+                await until(backend, lambda: subscribed() == [False, True, False])
+        await until(backend, lambda: subscribed() == [False, False, False])
         assert view.shown == frozenset()
     assert [backend.listeners(topic) for topic in ("cell/frames", "left/planned_path")] == [0, 0]
 
@@ -269,9 +269,9 @@ async def test_a_topic_that_is_made_later_is_followed_with_the_next_page() -> No
     """As that of an arm which plans for the first time."""
     backend = FakeBackend()
     async with opened_view(backend) as view:
-        backend.publish("left/planned_path", way("left"))
+        backend.publish("left/planned_path", planned_path("left"))
         assert backend.listeners("left/planned_path") == 0
-        async with looking(view):
+        async with viewer(view):
             await until(backend, lambda: backend.listeners("left/planned_path") == 1)
 
 

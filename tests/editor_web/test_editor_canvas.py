@@ -33,7 +33,7 @@ def saved(page: Page, shop: Workshop, behavior_id: str = SHIFT_ID) -> Behavior:
     return load_behavior(shop.project / behavior_id)
 
 
-def ways(behavior: Behavior, name: str) -> dict[str, str]:
+def transitions(behavior: Behavior, name: str) -> dict[str, str]:
     """Where a child of the root leads."""
     return dict(behavior.root.children[name].transitions)
 
@@ -69,8 +69,8 @@ def test_outcomes_are_led_elsewhere_by_dragging_from_port_to_node_and_outcome(br
         )
         drag(page, port(page, "root/first", "b"), pill(page, "root", "good"))
         behavior = saved(page, shop)
-    assert ways(behavior, "set") == {"done": "rest"}
-    assert ways(behavior, "first") == {"a": "set", "b": "good", "c": "bad"}
+    assert transitions(behavior, "set") == {"done": "rest"}
+    assert transitions(behavior, "first") == {"a": "set", "b": "good", "c": "bad"}
 
 
 def test_an_arrow_dropped_in_the_open_asks_what_comes_there(browser: Browser, shop: Workshop) -> None:
@@ -82,7 +82,7 @@ def test_an_arrow_dropped_in_the_open_asks_what_comes_there(browser: Browser, sh
         page.keyboard.press("Enter")
         expect(card(page, "root/log")).to_be_visible()
         behavior = saved(page, shop)
-    assert ways(behavior, "first")["c"] == "log"
+    assert transitions(behavior, "first")["c"] == "log"
     assert behavior.root.children["log"].state == "flow.Log"
 
 
@@ -106,7 +106,7 @@ def test_a_state_is_inserted_on_an_arrow_by_its_plus_and_by_dropping(browser: Br
         )
         expect(card(page, "root/wait")).to_be_visible()
         behavior = saved(page, shop)
-    assert [ways(behavior, name)[out] for name, out in (("first", "a"), ("log", "done"), ("wait", "done"))] == [
+    assert [transitions(behavior, name)[out] for name, out in (("first", "a"), ("log", "done"), ("wait", "done"))] == [
         "log",
         "wait",
         "set",
@@ -126,7 +126,7 @@ def test_an_arrow_is_deleted_and_its_end_drawn_elsewhere(browser: Browser, shop:
         drag(page, head, card(page, "root/rest"))
         behavior = saved(page, shop)
     assert file_text(shop, SHIFT_ID) != behavior_text
-    assert ways(behavior, "first")["a"] == "rest"
+    assert transitions(behavior, "first")["a"] == "rest"
 
 
 def test_several_are_chosen_by_a_box_grouped_and_ungrouped(browser: Browser, shop: Workshop) -> None:
@@ -153,7 +153,7 @@ def test_several_are_chosen_by_a_box_grouped_and_ungrouped(browser: Browser, sho
     assert set(grouped.root.children["group"].children) == {"first", "set"}
     assert set(grouped.root.children) == {"group", "both", "rest"}
     assert set(again.root.children) == {"first", "set", "both", "rest"}
-    assert ways(again, "set") == {"done": "both"}
+    assert transitions(again, "set") == {"done": "both"}
 
 
 def test_nodes_are_copied_within_and_into_another_behavior(browser: Browser, shop: Workshop) -> None:

@@ -107,7 +107,7 @@ def test_a_named_entry_is_chosen_from_those_of_its_kind_and_added_from_the_libra
     assert "entry: home" in text
 
 
-def test_a_file_that_changes_elsewhere_is_taken_where_nothing_is_unsaved_and_told_where_something_is(
+def test_a_file_that_changes_elsewhere_is_taken_where_nothing_is_unsaved_and_reported_where_something_is(
     browser: Browser, shop: Workshop
 ) -> None:
     """Without a reload, when one comes back to the page at the latest."""

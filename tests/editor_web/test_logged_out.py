@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, expect
 from tests.editor_web.browsing import opened_page, require_accessible
 from tests.editor_web.fake_behaviors import TRANSFER
 from tests.editor_web.site import Site
-from tests.editor_web.stop_process import StopProcess, stop_button, stop_news, tell_of_stop
+from tests.editor_web.stop_process import StopProcess, connect_stop, stop_button, stop_status
 
 ADDRESS = f"/behaviors/{TRANSFER.id}"
 
@@ -73,11 +73,11 @@ def test_stop_works_from_a_page_that_is_logged_out(browser: Browser, site: Site,
         StopProcess(host=loopback, origin=origin) as stop,
         opened_page(browser, site.running, ADDRESS, quiet=False) as page,
     ):
-        tell_of_stop(page, stop)
+        connect_stop(page, stop)
         renew(site)
         expect(page.get_by_role("dialog", name="You are logged out")).to_be_visible()
         stop_button(page).click()
-        expect(stop_news(page)).to_contain_text("All arms at rest")
+        expect(stop_status(page)).to_contain_text("All arms at rest")
         assert len(stop.stops()) == 1
         assert stop.stops()[0].body["token"] == stop.token
 
@@ -88,7 +88,7 @@ def test_the_stop_token_is_kept_nowhere_but_in_memory(browser: Browser, site: Si
         StopProcess(host=loopback, origin=site.running.url.rstrip("/")) as stop,
         opened_page(browser, site.running, ADDRESS) as page,
     ):
-        tell_of_stop(page, stop)
+        connect_stop(page, stop)
         kept = page.evaluate("JSON.stringify([{...localStorage}, {...sessionStorage}, document.cookie])")
         assert stop.token not in kept
         assert not re.search(stop.token, page.content())

@@ -143,7 +143,7 @@ class Wire:
         self._dead |= set(self._open)
         self._whole.clear()
 
-    def mend(self) -> None:
+    def restore(self) -> None:
         """Let new connections pass; those that were cut stay so."""
         self._whole.set()
 
@@ -203,7 +203,7 @@ def test_a_cut_wire_is_noticed_on_both_sides(
         expect(page.get_by_role("alert")).to_have_count(0)
         page.clock.fast_forward(12_000)
         expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
-        wire.mend()
+        wire.restore()
         page.clock.fast_forward(5_000)
         expect(page.get_by_role("alert")).to_have_count(0)
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused, everything rests")

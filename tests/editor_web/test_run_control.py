@@ -43,7 +43,7 @@ def command(page: Page, name: str) -> Locator:
     return page.get_by_role("button", name=name, exact=True)
 
 
-def standing(page: Page) -> Locator:
+def run_state(page: Page) -> Locator:
     """How the run stands, in words."""
     return page.get_by_role("status", name="State of the run")
 
@@ -59,7 +59,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         page.get_by_role("button", name="Operation").click()
         switch(page.get_by_label("Begin paused"))
         page.get_by_role("button", name="Start").click()
-        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused, everything rests")
         expect(command(page, "Resume")).to_be_enabled()
         waits = page.get_by_role("list", name="Nodes that wait")
         expect(waits).to_have_text("root before its entry: paused")
@@ -79,9 +79,9 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         expect(waits).to_have_text("root/both with finished: paused")
         command(page, "Resume").click()
         expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
-        expect(standing(page)).to_have_text("Running")
+        expect(run_state(page)).to_have_text("Running")
         command(page, "Pause").click()
-        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused, everything rests")
         page.get_by_role("button", name="Stop", exact=True).click()
         expect(page.locator(".page-head .badge")).to_have_text("stopped")
         expect(command(page, "Pause")).to_be_disabled()
@@ -113,7 +113,7 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
     shop.start(supervision=RunOptions(start_paused=True))
     file = shop.project / SHIFT_ID
     with at_shift(browser, shop, quiet=False) as page:
-        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused, everything rests")
         file.write_text(
             SHIFT.replace("value: 1}", "value: 2}").replace("set: {", "put: {").replace("a: set", "a: put"),
             encoding="utf-8",
@@ -142,7 +142,7 @@ def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Brow
     with at_shift(browser, shop, quiet=False) as page:
         expect(node(page, "root/first")).to_have_attribute("data-status", "active")
         command(page, "Pause").click()
-        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused, everything rests")
         other = "{state: flow.Wait, with: {duration_s: 0}, transitions: {done: set}}"
         given = '{state: test.Give, with: {after_s: "${dwell}"}, transitions: {a: set, b: bad, c: bad}}'
         assert given in slow
@@ -160,7 +160,7 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
     """A sheet lists them; nothing happens while somebody writes."""
     run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop) as page:
-        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused, everything rests")
         page.get_by_role("searchbox").or_(page.get_by_label("Find in the log")).first.fill("pp")
         assert shop.on_loop(lambda: shop.session.control(run).view().paused)
         page.locator("h1").click()
@@ -192,7 +192,7 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
         expect(page.get_by_role("dialog")).to_have_count(0)
         assert len(shop.events(run)) == before
         page.keyboard.press("p")
-        expect(standing(page)).not_to_have_text("Paused, everything rests")
+        expect(run_state(page)).not_to_have_text("Paused, everything rests")
         page.keyboard.press("Shift+S")
         expect(page.locator(".page-head .badge")).to_have_text("stopped")
 

@@ -40,7 +40,7 @@ def command(place: Locator, name: str) -> Locator:
     return place.get_by_role("button", name=name, exact=True)
 
 
-def standing(place: Locator, name: str) -> Locator:
+def run_state(place: Locator, name: str) -> Locator:
     """How a run stands, in words."""
     return place.get_by_role("status", name=f"State of {name}")
 
@@ -60,17 +60,17 @@ def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Worksh
     with opened_page(browser, shop.running, "/runs") as page:
         nap, shift, night = (card(page, name) for name in ("nap", "shift", "night"))
         command(nap, "Pause").click()
-        expect(standing(nap, "nap")).to_have_text("Paused, everything rests")
+        expect(run_state(nap, "nap")).to_have_text("Paused, everything rests")
         left, right = (
             shift.get_by_role("listitem", name=f"Question of root/both/{side}") for side in ("left", "right")
         )
         command(left, "Agree: a").click()
-        expect(standing(shift, "shift")).to_have_text("Asks for an answer")
+        expect(run_state(shift, "shift")).to_have_text("Asks for an answer")
         command(right, "Agree: a").click()
         expect(shift.get_by_role("list", name="Active nodes")).to_contain_text("rest")
-        expect(standing(night, "night")).to_have_text("Paused, everything rests")
+        expect(run_state(night, "night")).to_have_text("Paused, everything rests")
         command(nap, "Resume").click()
-        expect(standing(nap, "nap")).to_have_text("Running")
+        expect(run_state(nap, "nap")).to_have_text("Running")
         command(night, "Stop").click()
         expect(night).to_have_count(0)
         ended = page.get_by_role("list", name="Runs that ended last").get_by_role("listitem")
@@ -155,7 +155,7 @@ def test_both_pages_are_accessible(browser: Browser, shop: Workshop, scheme: Sch
     runs = three_runs(shop)
     with opened_page(browser, shop.running, "/runs", scheme=scheme) as page:
         expect(page.get_by_role("button", name="Agree: a")).to_have_count(2)
-        expect(standing(card(page, "night"), "night")).to_have_text("Paused, everything rests")
+        expect(run_state(card(page, "night"), "night")).to_have_text("Paused, everything rests")
         require_accessible(page, "all runs")
     with opened_page(browser, shop.running, f"/beside/{runs['shift']}/{runs['nap']}", scheme=scheme) as page:
         expect(page.get_by_role("button", name="Agree: a")).to_have_count(2)
@@ -194,7 +194,7 @@ def test_a_card_whose_connection_is_lost_comes_back(browser: Browser, shop: Work
         page.route_web_socket("**/api/v1/live", through)
         page.goto(f"{shop.running.url}runs")
         nap = card(page, "nap")
-        expect(standing(nap, "nap")).to_have_text("Running")
+        expect(run_state(nap, "nap")).to_have_text("Running")
         is_cut = True
         for socket in sockets:
             socket.close()
@@ -203,5 +203,5 @@ def test_a_card_whose_connection_is_lost_comes_back(browser: Browser, shop: Work
         require_accessible(page, "all runs without a server")
         shop.on_loop(lambda: shop.session.control(runs["nap"]).pause())
         is_cut = False
-        expect(standing(nap, "nap")).to_have_text("Paused, everything rests")
+        expect(run_state(nap, "nap")).to_have_text("Paused, everything rests")
         expect(command(nap, "Resume")).to_be_enabled()

@@ -16,7 +16,7 @@ import hatch_build
 from engine.event import StopRequested
 from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, until
 from tests.editor_web.real_server import dashboard_of
-from tests.editor_web.stop_process import StopProcess, stop_button, stop_news, tell_of_stop
+from tests.editor_web.stop_process import StopProcess, connect_stop, stop_button, stop_status
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
 from tests.engine.cli.process import started
 from tests.tiers import nightly
@@ -37,7 +37,7 @@ def served_page(
             StopProcess(host=loopback, origin=served.url.rstrip("/")) as stop,
             opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page,
         ):
-            tell_of_stop(page, stop)
+            connect_stop(page, stop)
             require_live(page)
             yield page, stop, server
 
@@ -54,17 +54,17 @@ def test_stop_goes_through_while_the_engine_is_frozen(browser: Browser, tmp_path
         server.send_signal(signal.SIGSTOP)
         try:
             stop_button(page).click()
-            expect(stop_news(page)).to_contain_text("Stop acknowledged")
-            expect(stop_news(page)).to_contain_text("rest: world")
+            expect(stop_status(page)).to_contain_text("Stop acknowledged")
+            expect(stop_status(page)).to_contain_text("rest: world")
             until(page, lambda: any(each.path == "/stop/status" for each in stop.asked))
             stop.at_rest = True
-            expect(stop_news(page)).to_contain_text("All arms at rest")
-            expect(stop_news(page)).to_contain_text("Engine does not answer (silent since ")
-            expect(stop_news(page)).to_contain_text("arms are stopped by their controller")
+            expect(stop_status(page)).to_contain_text("All arms at rest")
+            expect(stop_status(page)).to_contain_text("Engine does not answer (silent since ")
+            expect(stop_status(page)).to_contain_text("arms are stopped by their controller")
             require_accessible(page, "a stop without the engine", part=".stop")
         finally:
             os.kill(server.pid, signal.SIGCONT)
-        expect(stop_news(page)).not_to_contain_text("Engine does not answer")
+        expect(stop_status(page)).not_to_contain_text("Engine does not answer")
     first = stop.stops()[0]
     assert (first.method, first.content_type) == ("POST", "text/plain")
     assert first.body == {"token": stop.token, "reason": "the cell was stopped in the dashboard"}
@@ -83,11 +83,11 @@ def test_the_relay_of_a_frozen_server_answers_its_page(browser: Browser, tmp_pat
             server.send_signal(signal.SIGSTOP)
             try:
                 stop_button(page).click()
-                expect(stop_news(page)).to_contain_text("All arms at rest")
-                expect(stop_news(page)).to_contain_text("Engine does not answer (silent since ")
+                expect(stop_status(page)).to_contain_text("All arms at rest")
+                expect(stop_status(page)).to_contain_text("Engine does not answer (silent since ")
             finally:
                 os.kill(server.pid, signal.SIGCONT)
-            expect(stop_news(page)).not_to_contain_text("Engine does not answer")
+            expect(stop_status(page)).not_to_contain_text("Engine does not answer")
 
 
 def test_stop_goes_through_after_the_engine_has_died(browser: Browser, tmp_path: Path, loopback: str) -> None:
@@ -97,12 +97,12 @@ def test_stop_goes_through_after_the_engine_has_died(browser: Browser, tmp_path:
         expect(page.get_by_text("The server does not answer", exact=True)).to_be_visible()
         expect(stop_button(page)).to_be_enabled()
         stop_button(page).click()
-        expect(stop_news(page)).to_contain_text("All arms at rest")
-        expect(stop_news(page)).to_contain_text("Engine does not answer")
+        expect(stop_status(page)).to_contain_text("All arms at rest")
+        expect(stop_status(page)).to_contain_text("Engine does not answer")
         assert len(stop.stops()) == 1
         stop.end()
         stop_button(page).click()
-        alarm = stop_news(page).get_by_role("alert")
+        alarm = stop_status(page).get_by_role("alert")
         expect(alarm).to_contain_text("STOP has failed")
         expect(alarm).to_contain_text("Press the emergency stop at the cell")
         require_accessible(page, "a stop that failed", part=".stop")
@@ -116,7 +116,7 @@ def test_a_page_that_is_left_before_the_answer_gives_stop_again(
         StopProcess(host=loopback, origin=shop.running.url.rstrip("/")) as stop,
         opened_page(browser, shop.running) as page,
     ):
-        tell_of_stop(page, stop)
+        connect_stop(page, stop)
         stop.answers.clear()
         try:
             stop_button(page).click()
@@ -135,9 +135,9 @@ def test_stop_by_the_engine_alone_ends_every_run(browser: Browser, shop: Worksho
     run = shop.start()
     with opened_page(browser, shop.running, "/teach") as page:
         stop_button(page).click()
-        expect(stop_news(page)).to_contain_text("All arms at rest")
+        expect(stop_status(page)).to_contain_text("All arms at rest")
         page.get_by_role("button", name="Put the words about the stop away").click()
-        expect(stop_news(page)).to_have_text("")
+        expect(stop_status(page)).to_have_text("")
     assert [each.reason for each in shop.events(run) if isinstance(each, StopRequested)] == [
         "the cell was stopped in the dashboard"
     ]
@@ -204,7 +204,7 @@ def test_a_3d_view_that_hangs_holds_up_neither_stop_nor_the_page(
             }"""
         )
         stop_button(page).click()
-        expect(stop_news(page)).to_contain_text("All arms at rest")
+        expect(stop_status(page)).to_contain_text("All arms at rest")
         assert page.evaluate("Date.now()") < hangs_until_ms
 
 
@@ -222,7 +222,7 @@ def test_the_key_of_stop_works_in_the_3d_view_and_for_nobody_else(
         page.evaluate("() => new Promise(requestAnimationFrame)")
         assert stops == []
         view_of(page).locator("body").press(KEY)
-        expect(stop_news(page)).to_contain_text("All arms at rest")
+        expect(stop_status(page)).to_contain_text("All arms at rest")
         assert len(stops) == 1
 
 

@@ -156,7 +156,7 @@ def test_the_keyboard_reaches_every_moment(browser: Browser, sorted_shop: tuple[
         expect(page.locator(".past-line")).to_have_count(0)
 
 
-def test_zooming_keeps_the_cursor_in_sight_and_rows_close(browser: Browser, sorted_shop: tuple[Workshop, str]) -> None:
+def test_zooming_keeps_the_cursor_visible_and_rows_close(browser: Browser, sorted_shop: tuple[Workshop, str]) -> None:
     """By keys and by the wheel; the names are a tree."""
     shop, run = sorted_shop
     with at_timeline(browser, shop, f"/runs/{run}") as page:
@@ -224,7 +224,7 @@ def test_the_present_goes_on_while_the_past_is_shown(browser: Browser, shop: Wor
         expect(node(page, "root/rest")).to_have_attribute("data-status", "stopped")
 
 
-def test_the_3d_view_is_told_the_moment(browser: Browser, tmp_path: Path, loopback: str) -> None:
+def test_the_3d_view_gets_the_moment(browser: Browser, tmp_path: Path, loopback: str) -> None:
     """Where this server has one."""
     with Workshop(host=loopback, project=tmp_path, cell_view=True) as shop:
         run = shop.start(NAP_ID)

@@ -24,7 +24,7 @@ class ObservedRun:
     events: tuple[Event, ...]
 
     @property
-    def story(self) -> list[str]:
+    def lines(self) -> list[str]:
         """What happened, a word an event: `+path`, `-path outcome`, `!message`."""
         lines: list[str] = []
         for event in self.events:

@@ -29,7 +29,7 @@ def test_a_stop_asked_for_before_the_start_is_honoured() -> None:
     """SMACH forgets a preempt that comes before `execute`."""
     told = run_document("root: {state: test.Give}", stop_first=True)
     assert told.result.status == "stopped"
-    assert told.story == []
+    assert told.lines == []
 
 
 def test_the_stop_of_one_run_does_not_leak_into_the_next_of_the_same_plan() -> None:
@@ -75,8 +75,8 @@ def test_a_container_that_is_entered_again_after_a_preemption_starts_afresh() ->
         """
     )
     assert told.result.outcome == "good"
-    assert told.story.count("-root/both/long preempted") == 1
-    assert told.story.count("-root/both/long a") == 1
+    assert told.lines.count("-root/both/long preempted") == 1
+    assert told.lines.count("-root/both/long a") == 1
 
 
 def test_an_empty_container_is_an_error_of_loading() -> None:

@@ -33,6 +33,6 @@ def test_a_sibling_that_is_not_done_cleaning_up_is_an_error_of_its_container() -
     told = operate(text, {}, supervision=RunOptions(abandon_after_s=10))
     assert told.result.status == "errored"
     assert told.result.abandoned == ("root/deaf",)
-    assert next(line for line in told.story if line.startswith("!")) == (
+    assert next(line for line in told.lines if line.startswith("!")) == (
         "!root/deaf asked to stop 5 s ago and still cleaning up"
     )

@@ -32,14 +32,14 @@ root:
 
 
 @dataclass(frozen=True)
-class Said:
+class PytestOutput:
     """What pytest printed and its exit code."""
 
     code: int
     out: str
 
 
-def run_pytest(project: Path, *arguments: str) -> Said:
+def run_pytest(project: Path, *arguments: str) -> PytestOutput:
     """Run pytest in a project, with nothing of this one but what is installed."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "COV"))}
     done = subprocess.run(
@@ -51,7 +51,7 @@ def run_pytest(project: Path, *arguments: str) -> Said:
         timeout=100,
         check=False,
     )
-    return Said(done.returncode, done.stdout + done.stderr)
+    return PytestOutput(done.returncode, done.stdout + done.stderr)
 
 
 def record(project: Path, name: str) -> None:

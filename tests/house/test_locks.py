@@ -106,7 +106,7 @@ def test_the_demo_runs_on_the_versions_that_are_tested(python: str) -> None:
     ],
     ids=["a version", "an extra", "the build"],
 )
-def test_a_changed_requirement_is_told(tmp_path: Path, before: str, after: str, capsys: Any) -> None:
+def test_a_changed_requirement_is_reported(tmp_path: Path, before: str, after: str, capsys: Any) -> None:
     """By name of the lock, and with what to do."""
     text = bootstrap.PROJECT.read_text(encoding="utf-8")
     assert before in text
@@ -128,7 +128,7 @@ def test_a_change_of_anything_else_asks_for_no_new_lock(tmp_path: Path) -> None:
         bootstrap.require_current_lock(changed, lock)
 
 
-def test_a_lock_that_is_missing_is_told(tmp_path: Path) -> None:
+def test_a_lock_that_is_missing_is_reported(tmp_path: Path) -> None:
     """And nothing is installed without one."""
     with pytest.raises(SystemExit):
         bootstrap.require_current_lock(bootstrap.PROJECT, tmp_path / "none.lock")

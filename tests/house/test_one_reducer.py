@@ -76,7 +76,7 @@ def _interpreters() -> dict[str, set[str]]:
     return found
 
 
-def test_only_the_reducer_and_the_words_tell_node_events_apart() -> None:
+def test_only_the_reducer_and_the_words_distinguish_node_events() -> None:
     """A second fold would come to disagree with the first."""
     found = _interpreters()
     assert found.pop(REDUCER) == NODE_EVENTS
@@ -95,7 +95,7 @@ def test_only_the_reducer_and_the_words_tell_node_events_apart() -> None:
         ("record(NodeExited(seq, time_s))", set[str]()),
     ],
 )
-def test_every_way_to_tell_them_apart_is_found(text: str, names: set[str]) -> None:
+def test_every_way_to_distinguish_them_is_found(text: str, names: set[str]) -> None:
     """Making one is none."""
     assert NODE_EVENTS & set(_matched(ast.parse(text))) == names
 

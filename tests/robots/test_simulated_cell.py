@@ -15,7 +15,7 @@ from robots.simulated_cell import new_world
 CELL = Path(__file__).parents[2] / "behaviors" / "cells" / "dual_panda.yaml"
 
 
-async def story(seed: int) -> tuple[str, str, str]:
+async def scenario(seed: int) -> tuple[str, str, str]:
     """Move one arm and one gripper of the shipped cell; return in words all that was measured at the end."""
     async with SkillBus(new_clock()) as bus, new_world(load_cell(CELL), bus=bus, virtual=True, seed=seed) as world:
         world.register(bus)
@@ -30,8 +30,8 @@ async def story(seed: int) -> tuple[str, str, str]:
 
 
 def test_the_robots_of_a_cell_answer_their_skills_and_the_same_seed_gives_the_same_numbers() -> None:
-    arm, fingers, parts = run_virtual(story(5))
-    assert (arm, fingers, parts) == run_virtual(story(5))
-    assert parts != run_virtual(story(6))[2]
+    arm, fingers, parts = run_virtual(scenario(5))
+    assert (arm, fingers, parts) == run_virtual(scenario(5))
+    assert parts != run_virtual(scenario(6))[2]
     assert "succeeded" in arm.lower()
     assert "touch nothing" in fingers

@@ -26,7 +26,7 @@ def _cell_file(tmp_path: Path) -> Path:
     return Path(shutil.copy(EXAMPLES / "lifter_cell.yaml", tmp_path / "cell.yaml"))
 
 
-async def story(cell_file: Path) -> tuple[JointState, RobotDescription, SceneDescription]:
+async def scenario(cell_file: Path) -> tuple[JointState, RobotDescription, SceneDescription]:
     """Move the arm and return where it stands and what is said of it."""
     async with OpenCell(load_cell(cell_file)) as cell:
         end = await cell.bus.send_goal(JointTrapVel(joints=(0.8, -0.4), speed=0.5), to="lifter").result()
@@ -41,7 +41,7 @@ async def story(cell_file: Path) -> tuple[JointState, RobotDescription, SceneDes
 
 
 def test_a_folder_beside_the_cell_is_a_robot_that_moves(cell_file: Path) -> None:
-    state, description, scene = run_virtual(story(cell_file))
+    state, description, scene = run_virtual(scenario(cell_file))
     assert np.allclose(state.position_rad, (0.8, -0.4), atol=0.01)
     assert (description.model, description.licence) == ("lifter", "CC0-1.0")
     assert (description.tool, description.tool_kind) == ("servo_claw", "claw")
@@ -66,11 +66,11 @@ def test_what_is_wrong_with_it_is_said_when_the_cell_is_opened(
     changed = cell_file.parent / file
     changed.write_text(changed.read_text().replace(old, new))
     with pytest.raises(FlexcellError, match=words):
-        run_virtual(story(cell_file))
+        run_virtual(scenario(cell_file))
 
 
 def test_a_calibration_beside_the_cell_is_applied(cell_file: Path) -> None:
     """And one for an arm that knows none is refused."""
     cell_file.write_text(cell_file.read_text().replace("driver: sim", "driver: sim\n    calibration: ./mine.yaml"))
     with pytest.raises(CellError, match="lifter does not support calibration files"):
-        run_virtual(story(cell_file))
+        run_virtual(scenario(cell_file))

@@ -98,14 +98,14 @@ class _Counting:
 
     def added(self, node: CelComprehension, inside: Sizes) -> ValueSize | None:
         """Return the size of the values that a round adds, adding its cost; each nested node counts once."""
-        growth = _growth(node)
-        if growth is None:
+        appended = _appended(node)
+        if appended is None:
             self.size(node.step, inside)
             return None
         if isinstance(node.step, CelCall) and _is_conditional(node.step):
             self.size(node.step.arguments[0], inside)
             self.steps += _ADD
-        return self.size(growth, inside)
+        return self.size(appended, inside)
 
     def _items(self, items: tuple[Syntax, ...], sizes: Sizes) -> ValueSize:
         weight, item = 1.0, None
@@ -146,7 +146,7 @@ class _Counting:
         return self.size(node.result, {**sizes, node.accumulator: made})
 
 
-def _growth(node: CelComprehension) -> Syntax | None:
+def _appended(node: CelComprehension) -> Syntax | None:
     """Return the expression that a round adds to the accumulator; None if it is a truth value."""
     step = node.step
     if isinstance(step, CelCall) and _is_conditional(step):

@@ -64,7 +64,7 @@ class ConcurrencyCondition(msgspec.Struct, frozen=True, kw_only=True):
         return self.outcome if self.decides else f"{PREEMPT} {', '.join(self.preempt)}"
 
     @property
-    def said(self) -> str:
+    def text(self) -> str:
         """The condition as text, its identifier in a run."""
         return f"{self.consequence} when {self}"
 

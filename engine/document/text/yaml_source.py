@@ -119,8 +119,8 @@ def parse_source(content: bytes | str, *, file: str) -> DocumentSource:
 class StrictReader:
     """Reads a text event by event, for callers that need more than its data: iterate, then read `source`.
 
-    `said` is the value that the last event completed or started. Iterating raises the errors of `parse_source`. Without
-    `places` the source has no positions of list items, which take as much memory as their values.
+    `latest` is the value that the last event completed or started. Iterating raises the errors of `parse_source`.
+    Without `places` the source has no positions of list items, which take as much memory as their values.
     """
 
     def __init__(self, content: bytes | str, *, file: str, places: bool = True) -> None:
@@ -129,9 +129,9 @@ class StrictReader:
         self._builder = _Builder(file, places=places)
 
     @property
-    def said(self) -> object:
+    def latest(self) -> object:
         """The last scalar, or the dict or list that was started."""
-        return self._builder.said
+        return self._builder.latest
 
     def source(self) -> DocumentSource:
         """Return the document after the iteration is complete."""
@@ -259,7 +259,7 @@ class _Builder:
         self._nodes = 0
         self._expressions = 0
         self._expression_text = 0
-        self.said: object = None
+        self.latest: object = None
         self._root: list[object] = []
         self._root_place = PositionTree(0, 0, 0, 0)
         # One row per open container: the container, its position, and the pending key of a mapping.
@@ -324,7 +324,7 @@ class _Builder:
             return
         if "${" in value:
             self._count_expressions(event, value)
-        resolved = self.said = self._resolve(event, value) if plain else value
+        resolved = self.latest = self._resolve(event, value) if plain else value
         self._add(resolved, mark.line, mark.column)
 
     def _count_expressions(self, event: _Event, value: str) -> None:
@@ -356,7 +356,7 @@ class _Builder:
             self._refuse_line(event, "a key must be text, not a mapping or list", "put `${…}` and `{…}` in quotes")
         if len(self._stack) >= MAX_DEPTH:
             self._refuse(event, f"nested deeper than {MAX_DEPTH} levels", "split the document with behavior references")
-        self.said = container
+        self.latest = container
         outer = (self._container, self._place, None)
         place = self._add(container, mark.line, mark.column)
         place.children = {}

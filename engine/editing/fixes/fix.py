@@ -60,7 +60,7 @@ class FixContext:
         return tuple(each.name for each in inside if each.name != self.ref.name)
 
     @property
-    def leaving(self) -> tuple[str, ...]:
+    def machine_outcomes(self) -> tuple[str, ...]:
         """The names of the outcomes of the surrounding machine."""
         return self.session.outcomes_inside(self.machine) if self.machine is not None else ()
 

@@ -32,7 +32,7 @@ def unconnected(place: FixContext) -> Iterator[Fix]:
         )
         return
     for target in _targets(place, outcome):
-        sure = target == outcome and target in place.leaving
+        sure = target == outcome and target in place.machine_outcomes
         yield Fix(title=f"Connect `{outcome}` to `{target}`", edits=(_lead(place, outcome, target),), sure=sure)
 
 
@@ -43,10 +43,10 @@ def _targets(place: FixContext, outcome: str) -> list[str]:
         return []
     names = [child.name for child in place.session.outline.children(machine)]
     onward = names[names.index(place.ref.name) + 1 :][:1]
-    same = [name for name in place.leaving if name == outcome]
+    same = [name for name in place.machine_outcomes if name == outcome]
     good = _good(place)
-    well = [name for name in place.leaving if name in good]
-    badly = [name for name in place.leaving if name not in good]
+    well = [name for name in place.machine_outcomes if name in good]
+    badly = [name for name in place.machine_outcomes if name not in good]
     is_good = outcome in place.session.ends(place.ref).success
     ordered = [*onward, *same, *well, *badly] if is_good else [*same, *badly, *onward, *well]
     return list(dict.fromkeys((*ordered, *place.siblings)))
@@ -138,10 +138,10 @@ def unused_outcome(place: FixContext) -> Iterator[Fix]:
 def unknown_target(place: FixContext) -> Iterator[Fix]:
     """Change the target, or declare the name as an outcome of the behavior."""
     target = place.names[0]
-    leaving = [name for name in place.leaving if name != target]
-    known = (*place.siblings, place.ref.name, *leaving)
+    others = [name for name in place.machine_outcomes if name != target]
+    known = (*place.siblings, place.ref.name, *others)
     ways = [outcome for outcome, to in place.section("transitions").items() if to == target]
-    for right in dict.fromkeys((*similar_names(target, known), *leaving[:2])):
+    for right in dict.fromkeys((*similar_names(target, known), *others[:2])):
         edits: list[AnyEdit] = [_lead(place, outcome, right) for outcome in ways]
         for key in ("timeout", "guard"):
             measure = place.section(key)

@@ -145,7 +145,7 @@ class Control:
         """
         if not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
-        self._refuse_undoing("")
+        self._refuse_if_undone("")
         waiting = self._first_waiting_in(path)
         if path and waiting is None:
             raise ControlError("no node waits there", where=path, hint=did_you_mean(path, self._gate.waiting))
@@ -162,7 +162,7 @@ class Control:
         """
         if self._closed or not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
-        self._refuse_undoing("")
+        self._refuse_if_undone("")
         if self._gate.stepping or self._gate.ordered:
             raise ControlError("the run is executing another command", hint="wait until it is at rest")
 
@@ -318,7 +318,7 @@ class Control:
             raise ControlError("there is no such node", where=path, hint=did_you_mean(path, self.structure.paths()))
         return known
 
-    def _refuse_undoing(self, path: str) -> None:
+    def _refuse_if_undone(self, path: str) -> None:
         """Refuse a command for a node that a step back undoes; any command where `path` is empty."""
         for undoing in self._gate.undoing:
             if not path or is_inside(undoing, path):
@@ -326,7 +326,7 @@ class Control:
                 raise ControlError("this node is being undone", where=undoing, hint=hint)
 
     def _require_active(self, path: str) -> None:
-        self._refuse_undoing(path)
+        self._refuse_if_undone(path)
         if path not in self._activity.nodes and path not in self._gate.waiting:
             active = [*self._activity.nodes, *self._gate.waiting]
             raise ControlError("this node is not active", where=path, hint=did_you_mean(path, active))

@@ -236,8 +236,8 @@ class _Branches:
         """Preempt, in order, the branches of conditions that hold for the first time."""
         matches = finished_with(self._finished)
         for condition in conditions:
-            if condition.said not in self._fired and condition.holds(matches):
-                self._fired.add(condition.said)
+            if condition.text not in self._fired and condition.holds(matches):
+                self._fired.add(condition.text)
                 self._record(condition)
         for name, task in self.tasks.items():
             if name in self._preempted and not task.done():
@@ -247,7 +247,7 @@ class _Branches:
         over = self._preempted.union(self._finished)
         names = tuple(name for name in self.tasks if name in condition.preempt and name not in over)
         self._preempted.update(names)
-        self._execution.recorder.emit(BranchesPreempted, path=self._path, condition=condition.said, branches=names)
+        self._execution.recorder.emit(BranchesPreempted, path=self._path, condition=condition.text, branches=names)
 
     async def end(self, names: Collection[str]) -> None:
         """Preempt the given branches that have not ended, and return when they have.

@@ -65,20 +65,20 @@ class Recorder:
         if not self.ended:
             self._append(event)
             if self._watchers:
-                self.tell(event)
+                self.publish(event)
 
     def log(self, path: str, message: str, *, level: str = "info") -> None:
         """Write a message about a node into the event log; about the run as a whole where `path` is empty."""
         self.emit(MessageLogged, path=path, level=level, message=escape_surrogates(message))
 
     def end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
-        """Record the last event and return it, for `tell` once it is known whether it could be stored."""
+        """Record the last event and return it, for `publish` once it is known whether it could be stored."""
         event = RunEnded(*self.stamp(), status=status, outcome=outcome, cause=cause)
         self._journal.append(event)
         self.ended = True
         return event
 
-    def tell(self, event: Event) -> None:
+    def publish(self, event: Event) -> None:
         """Pass an event to all watchers."""
         for watcher in self._watchers:
             try:

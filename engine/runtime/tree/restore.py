@@ -64,7 +64,7 @@ class _Restoring:
     resumed_leaves: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
 
     @cached_property
-    def newest(self) -> int:
+    def latest(self) -> int:
         """The number of the last event."""
         return max((max(each.order, each.passed) for each in self.known.values()), default=-1)
 
@@ -119,7 +119,7 @@ class _Restoring:
     def _passed_since(self, condition: Behaviour, branch: Behaviour) -> int:
         """Return the event since which no tick has reached a branch: when its condition became RUNNING."""
         state, last = self._state(condition), max(self._order(condition), self._last(condition))
-        if last == self.newest:
+        if last == self.latest:
             # The tick of the condition may have been in progress, before it recorded the nodes that it passed over.
             return max(state.over, *map(self._ticked, branch.iterate()))
         return state.opened if state.status == "running" else last

@@ -195,7 +195,7 @@ class MotionRunner:
 
     async def loaded(self) -> None:
         """Return when inverse kinematics answers without a loading delay; the status shows the wait."""
-        if not self.loading.under_way:
+        if not self.loading.active:
             return
         _log.info("%s: %s", self.name, _LOADING)
         if not self.moving:

@@ -22,7 +22,7 @@ class WarmUp:
         self._task: asyncio.Task[None] | None = None
 
     @property
-    def under_way(self) -> bool:
+    def active(self) -> bool:
         """True from `begin` until loading has finished."""
         return self._task is not None and not self._task.done()
 

@@ -38,7 +38,7 @@ class AdmittanceLoop:
             self._move(axis, step_s, float(measured[axis] - wanted[axis]), float(feed_forward[axis]))
         self._add_up(feed_forward)
 
-    def give_way(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
+    def relieve(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
         """Come to rest; move only away from forces clearly above the wanted ones, never towards them."""
         for axis in self._axes:
             excess = float(measured[axis] - wanted[axis])

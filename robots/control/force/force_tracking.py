@@ -119,7 +119,7 @@ class ForceTracking:
         if self._pauses(step_s):
             self._tracker.brake(step_s)
             return
-        move = admittance.press if passing else admittance.give_way
+        move = admittance.press if passing else admittance.relieve
         move(step_s, measured=measured, wanted=self._row[6:], feed_forward=self._feed_forward())
         self._follow(step_s, state)
         if passing:

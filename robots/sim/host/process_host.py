@@ -111,7 +111,7 @@ class ProcessHost:
             FromWorld,
             what=_WHAT,
             hint=CONNECT_AGAIN,
-            on_notice=partial(_tell, listener),
+            on_notice=partial(_notify, listener),
             on_lost=listener.lost,
         )
         try:
@@ -196,6 +196,6 @@ def _not_open() -> RobotError:
     return RobotError("the simulated world is not open", hint="enter it with `async with` first")
 
 
-def _tell(listener: WorldListener, message: FromWorld) -> None:
+def _notify(listener: WorldListener, message: FromWorld) -> None:
     if isinstance(message, MotionFinished | MotionHeld | MotionResumed | ReflexTripped):
         listener.happened(message)

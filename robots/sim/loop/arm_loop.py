@@ -88,7 +88,7 @@ class SimArmLoop:
                     command.motion, GuidingGenerator(limits=self.indices.model.limits, start=start), Tolerance()
                 )
             case Setpoint():
-                control.motion.tell(command.motion, np.array(command.values), age_s=command.age_s)
+                control.motion.receive(command.motion, np.array(command.values), age_s=command.age_s)
             case FinishStream():
                 control.motion.finish(command.motion)
             case ConfigureArm():

@@ -23,7 +23,7 @@ class PersonMotion:
         self._rest = np.array(person.hand_rests)
         self._limb = Limb(person)
         self._step_s = step_s
-        self._way = HandTrajectory(start=_standing(self._rest), goal=self._rest, duration_s=0.0)
+        self._way = HandTrajectory(start=_at_rest(self._rest), goal=self._rest, duration_s=0.0)
         self._steps = 0
         self._stay_s = _FOR_EVER
         self._speed_m_s = 1.0
@@ -86,5 +86,5 @@ class PersonMotion:
         self._still = False
 
 
-def _standing(xyz: Array) -> HandMotion:
+def _at_rest(xyz: Array) -> HandMotion:
     return HandMotion(xyz=xyz, velocity=np.zeros(3))

@@ -130,7 +130,7 @@ class MotionRegistry:
         """Forward events to `motion`."""
         self._motions[motion.number] = motion
 
-    def under_way(self) -> tuple[SimMotion, ...]:
+    def active(self) -> tuple[SimMotion, ...]:
         """Return the motions that have not ended."""
         return tuple(self._motions.values())
 

@@ -62,20 +62,20 @@ class LiveOccupancyMap:
             # A map becomes stale without notification; that it is valid again is still a change.
             self._told = (self._told[0], "stale")
         self.latest, self._looked_at_s, self.lost_reason = grid, looked_at_s, ""
-        self.tell()
+        self.notify()
         return changed
 
     def outdated(self) -> None:
         """Invalidate the map until the next image."""
         self._looked_at_s = -math.inf
-        self.tell()
+        self.notify()
 
     def lost(self, reason: str) -> None:
         """Set the reason why no more images arrive."""
         self.lost_reason = reason
-        self.tell()
+        self.notify()
 
-    def tell(self) -> None:
+    def notify(self) -> None:
         """Notify subscribers of changes; only this checks the age of the map."""
         # A rising age is not a change.
         stale = self.lost_reason or ("stale" if self.stale_reason else "")

@@ -99,7 +99,7 @@ def run(folder: Path, cell: Path, steps: str, *, seed: int | None = None) -> Com
     return run_behavior(file, catalogue=load_states(), store=folder / "store.db", cell=cell, seed=seed)
 
 
-def told(ran: CompletedRun) -> tuple[str | None, str]:
+def ended(ran: CompletedRun) -> tuple[str | None, str]:
     """The outcome, and its causes."""
     return ran.outcome, describe_cause(ran.result.cause) if ran.result.cause else ""
 
@@ -117,14 +117,14 @@ def test_two_fingers_take_a_part_where_it_lies_and_put_it_down_straight(
     tmp_path: Path, cell: str, steps: str, seed: int | None
 ) -> None:
     """With a seed it lies off and turned."""
-    assert told(run(tmp_path, BEHAVIORS / "cells" / f"{cell}.yaml", steps, seed=seed)) == ("placed", "")
+    assert ended(run(tmp_path, BEHAVIORS / "cells" / f"{cell}.yaml", steps, seed=seed)) == ("placed", "")
 
 
 def test_a_soft_hand_takes_a_can_from_the_side_and_puts_it_down(tmp_path: Path) -> None:
     cell = tmp_path / "cell.yaml"
     cell.write_text(SOFT_HAND_CELL.lstrip(), encoding="utf-8")
     assert load_cell(cell).document.cell == "soft_hand"
-    assert told(run(tmp_path, cell, SOFT_HAND)) == ("placed", "")
+    assert ended(run(tmp_path, cell, SOFT_HAND)) == ("placed", "")
 
 
 def test_a_part_out_of_reach_is_unreachable_with_the_reason(tmp_path: Path) -> None:
@@ -133,4 +133,4 @@ def test_a_part_out_of_reach_is_unreachable_with_the_reason(tmp_path: Path) -> N
     far = PANDA_HAND.replace("turns: 2", "grasp: {xyz: [1.2, 0, 0], xyzw: [1, 0, 0, 0], frame: part}")
     ran = run(tmp_path, cell, far)
     assert ran.outcome == "unreachable"
-    assert "left did not pick part hca_north" in told(ran)[1]
+    assert "left did not pick part hca_north" in ended(ran)[1]

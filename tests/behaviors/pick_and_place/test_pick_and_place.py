@@ -110,13 +110,13 @@ INTO_S = 1.0
 async def _lose(run: Run, cell: OpenCell) -> None:
     """Open the fingers while the payload is on its way, a second after it has set out."""
     set_out = asyncio.get_running_loop().create_future()
-    run.watch(lambda event: _tell(event, set_out))
+    run.watch(lambda event: _report_start(event, set_out))
     await set_out
     await cell.bus.clock.sleep(INTO_S)
     await cell.bus.send_goal(GripperOpen(), to="arm/gripper", holder=Holder(run.id, "root/lose")).result()
 
 
-def _tell(event: Event, set_out: asyncio.Future[None]) -> None:
+def _report_start(event: Event, set_out: asyncio.Future[None]) -> None:
     if isinstance(event, NodeEntered) and event.path.endswith("/carry"):
         set_out.set_result(None)
 

@@ -13,7 +13,7 @@ from tests.behaviors.application import Application, causes, shipped_cell
 WAIT_RAD = (-1.1, -1.4915, 1.8008, -1.8801, -1.5708, -1.1)
 
 
-def test_it_goes_there_and_back_as_often_as_told(tmp_path: Path) -> None:
+def test_it_goes_there_and_back_as_often_as_requested(tmp_path: Path) -> None:
     """Every way takes the same time to within a control period or two, and the wait pose is reached."""
     done = Application(behavior="pick_and_place/start_wait.yaml", cell=shipped_cell("ur10"), parameters={"rounds": 4})
     result = done.run(tmp_path)

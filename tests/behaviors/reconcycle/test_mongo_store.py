@@ -64,7 +64,7 @@ def test_overwriting_an_entry_changes_the_motion_of_the_next_run_and_not_the_beh
     third = ran(cell)
     assert second.joints[-1][0] == pytest.approx(home, abs=0.01)
     assert abs(second.joints[-1][0][0] - first.joints[-1][0][0]) == pytest.approx(0.3, abs=0.01)
-    assert _way(first) == _way(second) == _way(third)
+    assert _path_taken(first) == _path_taken(second) == _path_taken(third)
     assert third.joints == first.joints
 
 
@@ -83,5 +83,5 @@ async def _undone(address: str) -> EntryChange:
         return await store.undo("joints", "left_home")
 
 
-def _way(transfer: Transfer) -> list[tuple[str, str]]:
+def _path_taken(transfer: Transfer) -> list[tuple[str, str]]:
     return [(event.path, event.outcome) for event in transfer.log if isinstance(event, NodeExited)]

@@ -13,7 +13,7 @@ from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.skills.planning import PathPreview
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
-from tests.editor_web.fake_sights import description, way
+from tests.editor_web.fake_sights import description, planned_path
 from tests.editor_web.viser_page import opened_view, viser_page
 
 NOBODY_LOOKS = PathPreview(robot="left", state="none")
@@ -23,10 +23,10 @@ def test_a_ghost_stands_beside_the_planned_way_and_goes_when_nobody_looks(server
     newest = LatestMessages()
     for name, message in (("left", description("left")), ("cell", new_scene()), ("cell", frames_at(0.0))):
         newest.put(name, message)
-    newest.put("left", way("left", "moving"))
+    newest.put("left", planned_path("left", "moving"))
     planned, ghosts = PathLayer(server), GhostLayer(server)
     planned.draw(newest, 0.0, is_shown=True)
-    ghosts.draw({("left", 0): way("left"), ("left", 2): way("left")}, newest, 0.0)
+    ghosts.draw({("left", 0): planned_path("left"), ("left", 2): planned_path("left")}, newest, 0.0)
     for node in ("/ways/left", "/taught/left.0", "/taught/left.2"):
         assert server.scene.get_handle_by_name(f"{node}/line") is not None
         assert server.scene.get_handle_by_name(f"{node}/ghost") is not None
@@ -50,7 +50,7 @@ async def opened() -> AsyncGenerator[CellView]:
         ("cell/scene", new_scene()),
         ("cell/frames", frames_at(0.0)),
         ("left/description", description("left")),
-        ("left/planned_path", way("left", "moving")),
+        ("left/planned_path", planned_path("left", "moving")),
     ):
         backend.publish(topic, message)
     async with opened_view(backend) as view:
@@ -62,7 +62,7 @@ async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
     async with opened() as view:
         view.show("mine", frozenset({"voxels"}))
         async with viser_page(view, "mine") as page:
-            view.show_ghost("mine", way("left"), place=1)
+            view.show_ghost("mine", planned_path("left"), place=1)
             await page.until(lambda: page.is_seen("/taught/left.1/line") and not page.is_seen("/ways/left/line"))
             view.show_ghost("mine", NOBODY_LOOKS, place=1)
             await page.until(lambda: not page.is_seen("/taught/left.1/line"))
@@ -76,8 +76,8 @@ async def test_only_the_page_that_asked_sees_a_ghost() -> None:
         viser_page(view, "yours") as yours,
         viser_page(view, "theirs") as theirs,
     ):
-        view.show_ghost("mine", way("left"))
-        view.show_ghost("yours", way("left"), place=3)
+        view.show_ghost("mine", planned_path("left"))
+        view.show_ghost("yours", planned_path("left"), place=3)
         await mine.until(lambda: mine.is_seen("/taught/left.0/ghost"))
         await yours.until(lambda: yours.is_seen("/taught/left.3/ghost"))
         view.show_ghost("mine", NOBODY_LOOKS)
@@ -91,7 +91,7 @@ async def test_only_the_page_that_asked_sees_a_ghost() -> None:
 async def test_a_page_that_loads_its_view_again_still_sees_its_ghost() -> None:
     """As it does when the colours of the page change."""
     async with opened() as view:
-        view.show_ghost("mine", way("left"))
+        view.show_ghost("mine", planned_path("left"))
         for _ in range(2):
             async with viser_page(view, "mine") as page:
                 await page.until(lambda page=page: page.is_seen("/taught/left.0/ghost"))

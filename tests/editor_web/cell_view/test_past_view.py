@@ -13,9 +13,9 @@ import pytest
 from editor_web.cell_view import CellView, PastViewState
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
-from tests.editor_web.fake_sights import description, detections, occupancy, planning_scene, way
+from tests.editor_web.fake_sights import description, detections, occupancy, planned_path, planning_scene
 from tests.editor_web.limits import GUARD_S
-from tests.editor_web.past_recording import Said, write_recording
+from tests.editor_web.past_recording import RecordedMessages, write_recording
 from tests.editor_web.viser_page import ViserPage, viser_page
 
 ARM = "/cell/left.fore"
@@ -32,17 +32,17 @@ class Past:
         self._told: asyncio.Queue[PastViewState] = asyncio.Queue()
 
     async def show(self, page: str, run: str, time_s: float) -> PastViewState:
-        def tell(state: PastViewState) -> None:
+        def report(state: PastViewState) -> None:
             self._loop.call_soon_threadsafe(self._told.put_nowait, state)
 
-        self.view.show_past(page, run, time_s, tell=tell)
+        self.view.show_past(page, run, time_s, tell=report)
         async with asyncio.timeout(GUARD_S):
             while (state := await self._told.get()).time_s != time_s:
                 pass
         return state
 
 
-def said() -> Said:
+def recorded_messages() -> RecordedMessages:
     """Ten seconds of the fake cell; from 5 s on there are an obstacle, voxels and a planned way."""
     return {
         "left/description": [(0.0, description("left"))],
@@ -51,17 +51,19 @@ def said() -> Said:
         "cell/frames": [(at_s, frames_at(at_s)) for at_s in MOMENTS],
         "cell/planning_scene": [(5.0, planning_scene())],
         "cell/occupancy": [(5.0, occupancy())],
-        "left/planned_path": [(5.0, way("left"))],
+        "left/planned_path": [(5.0, planned_path("left"))],
     }
 
 
 @asynccontextmanager
-async def opened(folder: Path, runs: dict[str, Said] | None = None) -> AsyncGenerator[tuple[FakeBackend, Past]]:
+async def opened(
+    folder: Path, runs: dict[str, RecordedMessages] | None = None
+) -> AsyncGenerator[tuple[FakeBackend, Past]]:
     """A view of a cell that stands at 0 s, and recordings of runs in it."""
     backend = FakeBackend()
     backend.publish("left/description", description("left"))
     backend.publish("right/description", description("right"))
-    for run, content in (runs or {"run": said()}).items():
+    for run, content in (runs or {"run": recorded_messages()}).items():
         backend.recorded[run] = (write_recording(folder / f"{run}.mcap", content),)
     view = CellView(backend, shadows=False)
     await asyncio.to_thread(view.open)
@@ -130,9 +132,12 @@ async def test_what_was_not_there_yet_is_not_shown(tmp_path: Path) -> None:
         await one.until(lambda: seen() == [False, False, False])
 
 
-async def test_detections_are_shown_at_the_moments_that_they_are_of(tmp_path: Path) -> None:
+async def test_detections_are_shown_at_the_instants_that_they_are_of(tmp_path: Path) -> None:
     """Before there were any, and a second after the last, there are none."""
-    told: Said = {**said(), "above/detections": [(at_s, detections(time_s=at_s)) for at_s in (4.0, 5.0, 6.0)]}
+    told: RecordedMessages = {
+        **recorded_messages(),
+        "above/detections": [(at_s, detections(time_s=at_s)) for at_s in (4.0, 5.0, 6.0)],
+    }
     node = "/past/detections/above/cup.0"
     async with opened(tmp_path, {"run": told}) as (_, past), viser_page(past.view, "one") as one:
         for time_s, is_there in ((5.5, True), (3.0, False), (4.5, True), (8.0, False), (6.5, True)):
@@ -151,10 +156,10 @@ async def test_a_page_hides_in_the_past_what_it_hides_in_the_present(tmp_path: P
         await one.until(lambda: one.is_seen("/past/ways/left/line") and not one.is_seen("/past/voxels/occupied"))
 
 
-async def test_pages_see_different_moments_of_different_runs(tmp_path: Path) -> None:
-    early: Said = {"cell/scene": [(0.0, new_scene())], "cell/frames": [(0.0, frames_at(0.7))]}
+async def test_pages_see_different_instants_of_different_runs(tmp_path: Path) -> None:
+    early: RecordedMessages = {"cell/scene": [(0.0, new_scene())], "cell/frames": [(0.0, frames_at(0.7))]}
     async with (
-        opened(tmp_path, {"run": said(), "early": early}) as (_, past),
+        opened(tmp_path, {"run": recorded_messages(), "early": early}) as (_, past),
         viser_page(past.view, "one") as one,
         viser_page(past.view, "two") as two,
     ):
@@ -182,13 +187,13 @@ async def test_a_page_that_loads_its_view_again_sees_the_moment_that_it_asked_fo
 
 async def test_a_run_under_way_is_seen_up_to_now(tmp_path: Path) -> None:
     async with opened(tmp_path) as (backend, past), viser_page(past.view, "one") as one:
-        backend.recorded["now"] = (write_recording(tmp_path / "now.mcap", said(), finished=False),)
+        backend.recorded["now"] = (write_recording(tmp_path / "now.mcap", recorded_messages(), finished=False),)
         assert (await past.show("one", "now", 3.0)).until_s == 10.0
         await one.until(lambda: stands(one, PAST_ARM, 3.0))
 
 
-async def test_a_resumed_run_has_the_moments_of_all_its_recordings(tmp_path: Path) -> None:
-    later: Said = {
+async def test_a_resumed_run_has_the_instants_of_all_its_recordings(tmp_path: Path) -> None:
+    later: RecordedMessages = {
         "cell/scene": [(20.0, new_scene())],
         "cell/frames": [(20.0 + at_s, frames_at(20.0 + at_s)) for at_s in MOMENTS],
     }
@@ -202,7 +207,7 @@ async def test_a_resumed_run_has_the_moments_of_all_its_recordings(tmp_path: Pat
 
 
 @pytest.mark.parametrize(("run", "problem"), [("none", "no recording"), ("broken", "damaged"), ("gone", "cannot read")])
-async def test_what_cannot_be_shown_is_told_and_the_page_stays_in_the_present(
+async def test_what_cannot_be_shown_is_reported_and_the_page_stays_in_the_present(
     tmp_path: Path, run: str, problem: str
 ) -> None:
     (tmp_path / "broken.mcap").write_bytes(b"\x89MCAP0\r\n" + b"\xff" * 50)

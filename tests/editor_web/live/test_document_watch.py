@@ -37,11 +37,11 @@ async def test_a_change_while_no_page_is_open_is_reported_to_the_next_one(tmp_pa
     asked, changes = asyncio.Event(), asyncio.Queue[Mapping[str, str | None]]()
     is_open = False
 
-    def wanted() -> bool:
+    def is_watched() -> bool:
         asked.set()
         return is_open
 
-    watch = DocumentWatch(documents, changed=changes.put_nowait, wanted=wanted, period_s=0.001)
+    watch = DocumentWatch(documents, changed=changes.put_nowait, wanted=is_watched, period_s=0.001)
     watch.open()
     (tmp_path / SHIFT_ID).write_text(SHIFT)
     async with asyncio.timeout(GUARD_S):

@@ -15,7 +15,7 @@ from engine.event import BranchesPreempted
         ((), "preempt mover, light when camera=lost: all branches had ended"),
     ],
 )
-def test_a_condition_that_preempts_is_told_with_the_branches_that_it_found_at_work(
+def test_a_condition_that_preempts_is_reported_with_the_branches_that_it_found_at_work(
     branches: tuple[str, ...], said: str
 ) -> None:
     condition = "preempt mover, light when camera=lost"

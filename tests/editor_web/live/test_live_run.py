@@ -65,7 +65,7 @@ def test_a_visit_shorter_than_a_frame_is_counted() -> None:
     )
 
 
-def test_a_failure_is_told_apart_from_another_outcome() -> None:
+def test_a_failure_is_distinguished_from_another_outcome() -> None:
     """By its cause, or by the name of its outcome."""
     live = folded(
         exited(1, "root/a", "empty", cause=Cause(message="nothing held")),
@@ -147,7 +147,7 @@ def test_the_log_is_bounded() -> None:
     assert (len(live.log), live.log[0].seq) == (LOG_LINES, 11)
 
 
-def test_a_cause_chain_is_told_from_the_inside_out() -> None:
+def test_a_cause_chain_is_reported_from_the_inside_out() -> None:
     """All links, in order."""
     cause = Cause(message="outer", where="root/a", kind="A", because=Cause(message="inner", where="arm", kind="B"))
     line = log_line(exited(1, "root/a", "failed", cause=cause), duration_s=1.5)

@@ -17,11 +17,11 @@ from engine.project.session import Session
 from engine.skills.arm_control import SetSpeedOverride
 from engine.skills.planning import PathPreview
 from tests.editor_web.fake_arm import FakeArm
-from tests.editor_web.fake_sights import way
+from tests.editor_web.fake_sights import planned_path
 
 
 @asynccontextmanager
-async def followed(folder: Path) -> AsyncGenerator[tuple[SkillBus, LiveHub, FakeArm]]:
+async def hub_of_two_arms(folder: Path) -> AsyncGenerator[tuple[SkillBus, LiveHub, FakeArm]]:
     """A hub that follows a bus with two arms and a topic of another kind."""
     with Journal.open(folder) as journal:
         async with OpenCell(None) as cell, Session(cell, project=folder, catalogue={}, journal=journal) as session:
@@ -42,7 +42,7 @@ def delta(client: LiveClient) -> LiveDelta:
 
 
 async def test_a_page_gets_all_arms_first_and_then_those_that_changed(tmp_path: Path) -> None:
-    async with followed(tmp_path) as (bus, hub, arm):
+    async with hub_of_two_arms(tmp_path) as (bus, hub, arm):
         client = hub.join()
         first = client.frame()
         assert isinstance(first, LiveSnapshot)
@@ -55,7 +55,7 @@ async def test_a_page_gets_all_arms_first_and_then_those_that_changed(tmp_path: 
         assert client.frame() is None
 
 
-async def test_the_way_of_an_arm_is_told_with_what_blocks_it_and_since_when(tmp_path: Path) -> None:
+async def test_the_way_of_an_arm_is_reported_with_what_blocks_it_and_since_when(tmp_path: Path) -> None:
     """Another reason is the same wait; a way that is over is none."""
     with Journal.open(tmp_path) as journal:
         async with OpenCell(None) as cell, Session(cell, project=tmp_path, catalogue={}, journal=journal) as session:
@@ -64,24 +64,24 @@ async def test_the_way_of_an_arm_is_told_with_what_blocks_it_and_since_when(tmp_
             now_s = 100.0
             board = RobotStatusCache(session, changed=lambda name: None, unix_s=lambda: now_s)
             await board.open()
-            ways.publish(way("left", "moving"))
+            ways.publish(planned_path("left", "moving"))
             now_s = 107.0
-            ways.publish(way("left", "blocked", reason="a hand"))
+            ways.publish(planned_path("left", "blocked", reason="a hand"))
             now_s = 109.0
-            ways.publish(way("left", "blocked", reason="an arm"))
+            ways.publish(planned_path("left", "blocked", reason="an arm"))
             line = board.lines["left"].way
             assert line is not None
             assert (line.state, line.reason, line.since_s) == ("blocked", "an arm", 107.0)
             assert 1.0 < line.length_m < 1.5
             await cell.bus.call(SetSpeedOverride(share=0.25), to="left")
             assert board.lines["left"].way == line
-            ways.publish(way("left", "none"))
+            ways.publish(planned_path("left", "none"))
             assert board.lines["left"].way is None
             board.close()
 
 
 async def test_what_says_the_same_again_wakes_nobody(tmp_path: Path) -> None:
-    async with followed(tmp_path) as (_, hub, arm):
+    async with hub_of_two_arms(tmp_path) as (_, hub, arm):
         client = hub.join()
         client.frame()
         arm.become("idle")

@@ -61,7 +61,7 @@ def test_an_outcome_that_means_failure_is_traced_to_the_node_that_had_it() -> No
     assert [step.text for step in found.steps] == ["ended with bad", "ended with c"]
 
 
-def test_of_several_attempts_the_last_one_is_told() -> None:
+def test_of_several_attempts_the_last_one_is_reported() -> None:
     """Though the earlier ones failed alike."""
     found, events = failure(RETRIED)
     assert found.path == "root/broken"
@@ -69,7 +69,7 @@ def test_of_several_attempts_the_last_one_is_told() -> None:
     assert found.seq > len(events) / 2
 
 
-def test_what_an_error_of_ours_suggests_is_told_apart() -> None:
+def test_what_an_error_of_ours_suggests_is_reported_apart() -> None:
     """Brackets inside the advice are a part of it."""
     events = run_document(
         """

@@ -49,7 +49,7 @@ def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float
     resumable = read_history(PLAN, "r", events)
     state = resumable.state
     shown = past.at(events[-1].seq).nodes
-    assert told(shown) == told(past.now.nodes) == told(live.state.nodes) == told(state.nodes)
+    assert not_idle(shown) == not_idle(past.now.nodes) == not_idle(live.state.nodes) == not_idle(state.nodes)
     for other in (live.state, past.now):
         assert (list(other.active), other.exits) == (list(state.active), state.exits)
         assert (other.paused, other.locks, other.autonomy) == (state.paused, state.locks, state.autonomy)
@@ -60,7 +60,7 @@ def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float
     assert left - {"root"} == {f"{path}/{name}" for path, names in state.exits.items() for name in names}
 
 
-def told(nodes: Mapping[str, NodeLive]) -> dict[str, NodeLive]:
+def not_idle(nodes: Mapping[str, NodeLive]) -> dict[str, NodeLive]:
     """Return the nodes of which there is something to tell; a resume may have taken all of it back."""
     return {path: node for path, node in nodes.items() if node != IDLE}
 

@@ -96,7 +96,7 @@ def test_an_event_that_comes_again_changes_nothing() -> None:
 
 @settings(deadline=None, max_examples=20)
 @given(seqs=st.lists(st.integers(0, 2600), min_size=1, max_size=6))
-def test_the_values_of_every_moment_are_what_was_told_live(seqs: list[int]) -> None:
+def test_the_values_of_every_moment_are_what_was_reported_live(seqs: list[int]) -> None:
     """In whatever order the moments are looked at, over several checkpoints."""
     plan = plan_of(COUNTING)
     events = run_document(COUNTING).events

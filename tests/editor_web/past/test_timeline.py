@@ -18,7 +18,7 @@ LONG = [("enter", "root", 0.0)] + [
 ]
 
 
-def followed(events: list[Event]) -> RunHistory:
+def history_of(events: list[Event]) -> RunHistory:
     """A run whose events are all taken."""
     course = RunHistory("r")
     for event in events:
@@ -38,7 +38,7 @@ def test_a_node_is_active_in_its_spans_and_nowhere_else(
 ) -> None:
     """At any event: what the graph shows as active has a bar there, and the other way round."""
     events = made_up(steps, ended=ended)
-    course = followed(events)
+    course = history_of(events)
     seq = math.ceil(where * len(events))
     active = {path for path, node in course.moments.at(seq).nodes.items() if node.status == "active"}
     spans = spans_of(course.timeline())
@@ -53,7 +53,7 @@ def test_pieces_make_up_the_whole(steps: list[tuple[str, str, float]], where: fl
     """What was told first, and what is new after it, is what is told at once in the end."""
     events = made_up(steps, ended=True)
     first = math.ceil(where * len(events))
-    course = followed(events[:first])
+    course = history_of(events[:first])
     known = spans_of(course.timeline())
     for event in events[first:]:
         course.follow(event)
@@ -68,7 +68,7 @@ def test_pieces_make_up_the_whole(steps: list[tuple[str, str, float]], where: fl
 def test_too_many_spans_become_few_that_say_how_many_they_are() -> None:
     """None is lost: the visits are counted, the worst of them is told."""
     events = made_up([*LONG[:401], ("enter", "root/a", 0.0), ("fail", "root/a", 0.0), *LONG[401:]], ended=True)
-    timeline = followed(events).timeline(most=50)
+    timeline = history_of(events).timeline(most=50)
     row = spans_of(timeline)["root/a"]
     assert timeline.merged
     assert len(row) <= 50
@@ -76,9 +76,9 @@ def test_too_many_spans_become_few_that_say_how_many_they_are() -> None:
     assert [span.status for span in row].count("failed") == 1
 
 
-def test_a_part_of_a_long_run_is_told_exactly() -> None:
+def test_a_part_of_a_long_run_is_reported_exactly() -> None:
     """Only what touches that time."""
-    course = followed(made_up(LONG, ended=True))
+    course = history_of(made_up(LONG, ended=True))
     part = course.timeline(from_s=100.0, until_s=103.0, most=50)
     assert all(span.count == 1 for span in spans_of(part)["root/a"])
     assert all(

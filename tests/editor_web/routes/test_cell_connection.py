@@ -26,7 +26,7 @@ def lost() -> FakeBackend:
     return backend
 
 
-async def test_a_lost_cell_is_told_and_connected_again(serve: Serve) -> None:
+async def test_a_lost_cell_is_reported_and_connected_again(serve: Serve) -> None:
     async with serve(lost()) as served:
         before = (await served.http.get("/api/v1/cell/connection")).json()
         session = (await served.http.get("/api/v1/session")).json()

@@ -70,7 +70,7 @@ class Site:
         """Send one command."""
         return await self.served.http.post(f"/api/v1/runs/{run}/control/{command}", json=body)
 
-    async def told(self, run: str, kind: type[Event], count: int = 1) -> None:
+    async def recorded(self, run: str, kind: type[Event], count: int = 1) -> None:
         """Wait until a run has had so many events of a kind."""
         enough = asyncio.Event()
 
@@ -115,7 +115,7 @@ async def site(project: Path, host: str) -> AsyncGenerator[Site]:
 async def test_a_paused_run_is_stepped_and_resumed(project: Path, loopback: str) -> None:
     async with site(project, loopback) as there:
         run = await there.start(supervision={"start_paused": True})
-        await there.told(run, GateReached)
+        await there.recorded(run, GateReached)
         seen: dict[str, Any] = (await there.served.http.get(f"/api/v1/runs/{run}/control")).json()
         assert (seen["paused"], seen["confirmed"], seen["operator"]) == (True, True, "none")
         assert [(each["path"], each["point"], each["reasons"]) for each in seen["waiting"]] == [
@@ -132,13 +132,13 @@ async def test_a_paused_run_is_stepped_and_resumed(project: Path, loopback: str)
 async def test_a_paused_run_is_stepped_back_until_nothing_is_left(project: Path, loopback: str) -> None:
     async with site(project, loopback) as there:
         run = await there.start(supervision={"start_paused": True})
-        await there.told(run, GateReached)
+        await there.recorded(run, GateReached)
         for waiting in ("root/one", "root/two"):
             assert [each["path"] for each in (await there.command(run, "step")).json()["waiting"]] == [waiting]
         back = await there.command(run, "step_back")
         assert back.status_code == 200
         assert [(each["path"], each["point"]) for each in back.json()["waiting"]] == [("root/one", "before")]
-        await there.told(run, RunSteppedBack)
+        await there.recorded(run, RunSteppedBack)
         book = there.session.userdata(run)
         book.read(there.session.events(run))
         assert {key: entry.value for key, entry in book.scopes[""].values.items()} == {"value": 0}
@@ -159,16 +159,16 @@ async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: st
         answered = (await there.command(run, "breakpoints", breakpoints=points)).json()["breakpoints"]
         assert answered == points
         await there.command(run, "resume")
-        await there.told(run, GateReached, 2)
+        await there.recorded(run, GateReached, 2)
         assert (await there.command(run, "unlock", path="root/one")).json()["locks"] == []
-        await there.told(run, GateReached, 3)
+        await there.recorded(run, GateReached, 3)
         seen = (await there.served.http.get(f"/api/v1/runs/{run}/control")).json()
         assert [(each["outcome"], each["required"]) for each in seen["waiting"]] == [("done", "high")]
         assert (seen["demanded"], seen["loss_policy"], seen["loss_timeout_s"]) == (True, "hold", 5.0)
         assert (await there.command(run, "repeat", path="root/two")).status_code == 200
-        await there.told(run, GateReached, 4)
+        await there.recorded(run, GateReached, 4)
         assert (await there.command(run, "answer", path="root/two")).status_code == 200
-        await there.told(run, GateReached, 5)
+        await there.recorded(run, GateReached, 5)
         assert (await there.command(run, "autonomy", level="full")).json()["autonomy"] == "full"
         assert (await there.command(run, "force", path="root/three", outcome="done")).status_code == 200
         await there.command(run, "resume")
@@ -227,7 +227,7 @@ async def test_what_runs_is_given_up_for_the_file_only_where_that_is_said(projec
     async with site(project, loopback) as there:
         answer = await there.served.http.post("/api/v1/runs", json={"behavior": "behaviors/asks.yaml"})
         run = answer.json()["run"]
-        await there.told(run, NodeEntered, 2)
+        await there.recorded(run, NodeEntered, 2)
         await there.command(run, "pause")
         other = ASKS.replace("flow.Wait, with: {duration_s: 3000}", "flow.Log, with: {message: hi}")
         (project / "behaviors" / "asks.yaml").write_text(other, encoding="utf-8")
@@ -248,13 +248,13 @@ async def test_a_page_operates_a_run_until_it_says_so_or_is_gone(project: Path, 
         run = await there.start(supervision=supervision)
         async with there.served.live(run) as page:
             await page.send({"k": "operate", "run": run})
-            await there.told(run, OperatorChanged)
+            await there.recorded(run, OperatorChanged)
             await page.send({"k": "operate", "run": ""})
-            await there.told(run, OperatorChanged, 2)
+            await there.recorded(run, OperatorChanged, 2)
             await page.send({"k": "operate", "run": run})
-            await there.told(run, OperatorChanged, 3)
+            await there.recorded(run, OperatorChanged, 3)
             await there.command(run, "resume")
-            await there.told(run, GateReached, 2)
+            await there.recorded(run, GateReached, 2)
         assert (await there.session.wait(run)).outcome == "good"
         changes = [event.status for event in there.session.events(run) if isinstance(event, OperatorChanged)]
         assert changes == ["attached", "detached", "attached", "lost"]
@@ -318,7 +318,7 @@ async def test_the_live_stream_carries_the_control_of_the_watched_run(project: P
     """With reasons of locks, questions with what they require, and nothing once the run is over."""
     async with site(project, loopback) as there:
         run = await there.start(supervision={"start_paused": True, "demand_operator": True, "autonomy": "low"})
-        await there.told(run, GateReached)
+        await there.recorded(run, GateReached)
         await there.command(run, "lock", path="root/one", reason="look first")
         async with there.served.live(run) as page:
             frame = await page.until("snapshot", run=run)

@@ -69,7 +69,7 @@ def got(http: httpx.Client, path: str, **query: object) -> Any:
     return answer.json()
 
 
-async def test_a_run_of_this_server_is_told_while_it_goes_on(serve: Serve) -> None:
+async def test_a_run_of_this_server_is_reported_while_it_goes_on(serve: Serve) -> None:
     """What was told is not told again; a moment in the middle is what the live view showed."""
     async with serve() as served:
         run = await served.backend.start(TRANSFER.id, parameters={"part": "part_a"}, seed=1)

@@ -66,7 +66,7 @@ def test_a_session_that_nobody_uses_ends_earlier(sessions: LoginSessions, clock:
     assert sessions.find(secret) is None
 
 
-def test_whoever_is_open_is_told_of_the_end(sessions: LoginSessions) -> None:
+def test_whoever_is_open_is_notified_of_the_end(sessions: LoginSessions) -> None:
     """Of this session only, and only while open."""
     secret, other = sessions.begin(OPERATOR), sessions.begin(OPERATOR)
     told: list[str] = []

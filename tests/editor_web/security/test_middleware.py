@@ -353,7 +353,7 @@ async def test_control_characters_in_an_address_are_refused(
     assert answer.status_code == 400
 
 
-def test_the_page_may_connect_to_what_it_is_told() -> None:
+def test_the_page_may_connect_to_what_it_is_given() -> None:
     """And to nothing else."""
     policy = response_headers("/", PolicyOrigins(connect_sources=("http://127.0.0.1:9",)))["content-security-policy"]
     assert "connect-src 'self' http://127.0.0.1:9; " in policy

@@ -71,7 +71,7 @@ async def ask(socket: websockets.asyncio.client.ClientConnection, time_s: float 
     await socket.send(json.dumps({"run": run, "time_s": time_s}))
 
 
-async def told(socket: websockets.asyncio.client.ClientConnection, time_s: float) -> dict[str, Any]:
+async def state_at(socket: websockets.asyncio.client.ClientConnection, time_s: float) -> dict[str, Any]:
     """What the page is told of a moment."""
     async with asyncio.timeout(GUARD_S):
         while (state := json.loads(await socket.recv()))["time_s"] != time_s:
@@ -79,10 +79,10 @@ async def told(socket: websockets.asyncio.client.ClientConnection, time_s: float
     return state
 
 
-async def test_a_moment_is_shown_and_told_and_null_shows_the_present(serve: Serve, backend: FakeBackend) -> None:
+async def test_a_moment_is_shown_and_reported_and_null_shows_the_present(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served, shown(served) as view, past_of(served) as past:
         await ask(past, 4.0)
-        assert await told(past, 4.0) == {"run": "run", "time_s": 4.0, "from_s": 0.0, "until_s": 10.0, "problem": ""}
+        assert await state_at(past, 4.0) == {"run": "run", "time_s": 4.0, "from_s": 0.0, "until_s": 10.0, "problem": ""}
         await view.until(lambda: view.is_seen("/past/cell/left.fore") and not view.is_seen("/cell/left.fore"))
         await ask(past, None)
         await view.until(lambda: view.is_seen("/cell/left.fore") and not view.is_seen("/past/cell/left.fore"))
@@ -96,17 +96,17 @@ async def test_a_page_whose_connection_ends_sees_the_present(serve: Serve, backe
         await view.until(lambda: view.is_seen("/cell/left.fore") and not view.is_seen("/past/cell/left.fore"))
 
 
-async def test_of_many_moments_the_newest_is_shown(serve: Serve, backend: FakeBackend) -> None:
+async def test_of_many_instants_the_latest_is_shown(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served, shown(served), past_of(served) as past:
         for step in range(300):
             await ask(past, step / 40)
-        await told(past, 299 / 40)
+        await state_at(past, 299 / 40)
 
 
-async def test_a_run_without_a_recording_is_told_in_words(serve: Serve, backend: FakeBackend) -> None:
+async def test_a_run_without_a_recording_is_reported_in_words(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served, shown(served) as view, past_of(served) as past:
         await ask(past, 1.0, run="other")
-        assert (await told(past, 1.0))["problem"] == "this run has no recording"
+        assert (await state_at(past, 1.0))["problem"] == "this run has no recording"
         assert view.is_seen("/cell/left.fore")
 
 
@@ -115,7 +115,7 @@ async def test_a_viewer_may_look_at_the_past_too(serve: Serve, backend: FakeBack
         cookie = session_cookie(served.running, VIEWER)
         async with shown(served), past_of(served, cookie=cookie) as past:
             await ask(past, 2.0)
-            assert (await told(past, 2.0))["problem"] == ""
+            assert (await state_at(past, 2.0))["problem"] == ""
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def backend_on(bus: SkillBus) -> FakeBackend:
 
 
 @contextlib.asynccontextmanager
-async def looking(served: Served) -> AsyncGenerator[Callable[..., Any]]:
+async def data_frames(served: Served) -> AsyncGenerator[Callable[..., Any]]:
     """Open the data stream; gives a function that waits for a frame of a kind, sending a look first where given."""
     async with websockets.asyncio.client.connect(
         f"{served.origin.replace('http', 'ws', 1)}/api/v1/data",
@@ -68,12 +68,12 @@ async def looking(served: Served) -> AsyncGenerator[Callable[..., Any]]:
         yield frame
 
 
-async def test_curves_are_sampled_from_the_newest_messages(serve: Serve) -> None:
+async def test_curves_are_sampled_from_the_latest_messages(serve: Serve) -> None:
     """In the order of the fields; a field that a message has not is a gap."""
     async with SkillBus(LoopClock()) as bus:
         topic = bus.topic("left/joints", JointState)
         topic.publish(joints(0.25))
-        async with serve(backend_on(bus)) as served, looking(served) as frame:
+        async with serve(backend_on(bus)) as served, data_frames(served) as frame:
             fields = ["left/joints:position_rad.0", "left/joints:effort_nm.1", "left/joints:nothing", "gone:x"]
             got = await frame("samples", number=3, fields=fields)
             assert got["number"] == 3
@@ -88,7 +88,7 @@ async def test_a_message_is_sent_when_it_is_new_and_cut_to_a_size(serve: Serve) 
     """A long row and bytes are told by how much there is of them."""
     async with SkillBus(LoopClock()) as bus:
         topic = bus.topic("cell/blob", Blob)
-        async with serve(backend_on(bus)) as served, looking(served) as frame:
+        async with serve(backend_on(bus)) as served, data_frames(served) as frame:
             assert "no message was published" in (await frame("message", topic="cell/blob"))["problem"]
             topic.publish(Blob(points=tuple(map(float, range(5000))), image=b"x" * 100_000))
             value = (await frame("message"))["value"]
@@ -103,7 +103,7 @@ async def test_traffic_tells_rates_ages_leases_and_goals(serve: Serve) -> None:
         topic = bus.topic("left/joints", JointState)
         bus.topic("left/silent", JointState)
         bus.leases.acquire(("left",), Holder("run-7", "root/move"))
-        async with serve(backend_on(bus)) as served, looking(served) as frame:
+        async with serve(backend_on(bus)) as served, data_frames(served) as frame:
             first = await frame("traffic", traffic=True)
             assert first["topics"]["left/silent"]["age_s"] is None
             for _ in range(30):
@@ -131,7 +131,7 @@ async def test_nothing_is_sent_to_who_looks_at_nothing_any_more(serve: Serve) ->
         assert (page.due(), page.samples, page.begun.is_set()) == ([], False, False)
 
 
-async def test_a_slow_page_loses_the_oldest_samples_and_is_told_how_many() -> None:
+async def test_a_slow_page_loses_the_oldest_samples_and_learns_how_many() -> None:
     """What waits for it stays bounded."""
     async with SkillBus(LoopClock()) as bus:
         topic = bus.topic("left/joints", JointState)
@@ -148,7 +148,7 @@ async def test_a_slow_page_loses_the_oldest_samples_and_is_told_how_many() -> No
 
 async def test_userdata_of_an_unknown_run_is_refused_in_words(serve: Serve) -> None:
     """The page shows them."""
-    async with serve() as served, looking(served) as frame:
+    async with serve() as served, data_frames(served) as frame:
         got = await frame("userdata", run="run-404")
         assert (got["run"], got["scopes"]) == ("run-404", {})
         assert "userdata" in got["problem"]
@@ -170,7 +170,7 @@ async def test_what_is_no_look_ends_the_connection(serve: Serve) -> None:
                 assert socket.close_code == 1008
 
 
-class Way(Message, frozen=True, kw_only=True):
+class TravelProgress(Message, frozen=True, kw_only=True):
     """How far a motion is."""
 
     progress: float
@@ -182,7 +182,7 @@ class Rest(Message, frozen=True, kw_only=True):
     width_m: float
 
 
-class Travel(Action[Way, Way], frozen=True, kw_only=True):
+class Travel(Action[TravelProgress, TravelProgress], frozen=True, kw_only=True):
     """A motion."""
 
 
@@ -198,10 +198,10 @@ class Plant:
         self.all_begun = asyncio.Event()
         self.goals: list[ActiveGoal[Any]] = []
 
-    async def travel(self, request: Travel, goal: ActiveGoal[Way]) -> Way:
+    async def travel(self, request: Travel, goal: ActiveGoal[TravelProgress]) -> TravelProgress:
         """Move."""
         await self._carry_out(goal)
-        return Way(progress=1.0)
+        return TravelProgress(progress=1.0)
 
     async def close(self, request: Close, goal: ActiveGoal[Rest]) -> Rest:
         """Grip."""
@@ -216,21 +216,21 @@ class Plant:
         await self.end.wait()
 
 
-async def test_goals_under_way_are_told_by_node_with_their_feedback(serve: Serve) -> None:
+async def test_goals_under_way_are_reported_by_node_with_their_feedback(serve: Serve) -> None:
     """A share where the feedback has one, else its words; only of the run that is looked at."""
     async with SkillBus(LoopClock()) as bus:
         plant = Plant()
         bus.advertise_action(Travel, plant.travel, namespace="left")
         bus.advertise_action(Close, plant.close, namespace="left/gripper")
         bus.advertise_action(Travel, plant.travel, namespace="right")
-        async with serve(backend_on(bus)) as served, looking(served) as frame:
+        async with serve(backend_on(bus)) as served, data_frames(served) as frame:
             assert (await frame("goals", goals="run-1"))["goals"] == {}
             bus.send_goal(Travel(), to="left", holder=Holder("run-1", "root/move"))
             bus.send_goal(Close(), to="left/gripper", holder=Holder("run-1", "root/grip"))
             bus.send_goal(Travel(), to="right", holder=Holder("run-2", "root/other"))
             got = await frame("goals")
             await plant.all_begun.wait()
-            plant.goals[0].feedback(Way(progress=0.25))
+            plant.goals[0].feedback(TravelProgress(progress=0.25))
             plant.goals[1].feedback(Rest(width_m=0.0312))
             while not got["goals"].get("root/move", {}).get("share"):
                 got = await frame("goals")

@@ -50,7 +50,7 @@ class Hand:
     async def say(self, **message: object) -> None:
         await self.grip.send(json.dumps(message))
 
-    async def told(self, kind: str, **fields: object) -> dict[str, Any]:
+    async def message(self, kind: str, **fields: object) -> dict[str, Any]:
         async with asyncio.timeout(GUARD_S):
             while True:
                 news = json.loads(await self.grip.recv())
@@ -61,14 +61,14 @@ class Hand:
     async def take(self, way: str = "move", arm: str = "left") -> None:
         """Take the handle, and wait until it is seen."""
         await self.say(k="take", arm=arm, way=way)
-        await self.told("gripped", arm=arm)
+        await self.message("gripped", arm=arm)
         await self.view.until(lambda: self.view.is_seen(HANDLE))
 
     async def grab(self) -> Vector3:
         """Press the mouse on the handle, and wait until that is heard; returns where it is."""
         await self.view.send("TransformControlsDragStartMessage", name=HANDLE, owner=self.view.owner(HANDLE))
         self._holding = asyncio.create_task(self._hold())
-        await self.told("gripped", pulled=True)
+        await self.message("gripped", pulled=True)
         return self.tool()
 
     async def pull(self, to: Vector3, *, until: Callable[[Vector3], bool]) -> None:
@@ -80,7 +80,7 @@ class Hand:
         for _ in range(MOST_PULLS):
             await self.drag(to)
             arrived = asyncio.create_task(frames_seen(self.site, until))
-            refused = asyncio.create_task(self.told("refused"))
+            refused = asyncio.create_task(self.message("refused"))
             await asyncio.wait({arrived, refused}, return_when=asyncio.FIRST_COMPLETED)
             is_there = arrived.done()
             for task in (arrived, refused):
@@ -89,7 +89,7 @@ class Hand:
             if is_there:
                 return arrived.result()
             news.append(refused.result())
-            await self.told("gripped", pulled=False)
+            await self.message("gripped", pulled=False)
             await self.release()
             await self.grab()
         raise AssertionError(f"let go {MOST_PULLS} times: {news}")
@@ -208,7 +208,7 @@ def fastest(state: JointState) -> float:
     return max(map(abs, state.velocity_rad_s))
 
 
-async def rests_within(site: TeachSite) -> float:
+async def time_to_rest_s(site: TeachSite) -> float:
     """The time of the simulated world until no joint moves."""
     began = await site.seen(lambda _: True)
     rested = await site.seen(lambda state: fastest(state) < RESTS_RAD_S)
@@ -234,7 +234,7 @@ async def test_the_tool_follows_the_handle_and_the_handle_comes_back_to_the_tool
         await hand.pull(target, until=lambda tool: math.dist(tool, target) < 0.003)
         await hand.drag(below(began, 0.2))
         await hand.release()
-        await hand.told("gripped", pulled=False)
+        await hand.message("gripped", pulled=False)
         await site.seen(lambda state: fastest(state) < RESTS_RAD_S)
         rest = hand.tool()
         assert rest[2] > began[2] - 0.1
@@ -265,32 +265,32 @@ async def test_the_handle_is_seen_only_once_somebody_listens_to_it(
 async def test_the_arm_rests_when_the_mouse_is_let_go(site: TeachSite) -> None:
     async with moving(site) as hand:
         await hand.release()
-        assert await rests_within(site) < REST_S
+        assert await time_to_rest_s(site) < REST_S
 
 
 async def test_the_arm_rests_when_the_page_falls_silent_with_the_mouse_down(site: TeachSite) -> None:
     async with moving(site) as hand:
         await hand.fall_silent()
-        assert await rests_within(site) < REST_S
+        assert await time_to_rest_s(site) < REST_S
 
 
 async def test_the_arm_rests_when_the_3d_view_is_cut_off(site: TeachSite) -> None:
     async with moving(site) as hand:
         hand.view.socket.transport.abort()
-        assert await rests_within(site) < REST_S
+        assert await time_to_rest_s(site) < REST_S
 
 
 async def test_the_arm_rests_when_the_page_is_cut_off(site: TeachSite) -> None:
     async with moving(site) as hand:
         await hand.fall_silent()
         hand.grip.transport.abort()
-        assert await rests_within(site) < REST_S
+        assert await time_to_rest_s(site) < REST_S
 
 
 async def test_the_arm_rests_when_the_handle_is_put_away(site: TeachSite) -> None:
     async with moving(site) as hand:
         await hand.say(k="take", arm="")
-        assert await rests_within(site) < REST_S
+        assert await time_to_rest_s(site) < REST_S
         await hand.view.until(lambda: not hand.view.is_seen(HANDLE))
 
 
@@ -315,7 +315,7 @@ async def test_an_arm_that_floats_is_pushed_and_is_let_go(site: TeachSite) -> No
         x, y, z = began
         await hand.pull((x, y + 0.1, z), until=lambda tool: tool[1] > y + 0.03)
         await hand.release()
-        await hand.told("gripped", pulled=False)
+        await hand.message("gripped", pulled=False)
         await asyncio.to_thread(lambda: site.call(site.bus.call(FinishGuiding(), to="left", holder=CLI_HOLDER)))
         await asyncio.wrap_future(guiding)
 
@@ -329,13 +329,13 @@ async def test_an_arm_that_holds_itself_is_not_pushed(site: TeachSite) -> None:
     async with hand_at(site) as hand:
         await hand.take("push")
         await hand.grab()
-        assert (await hand.told("refused"))["message"] == "the arm is not in hand guiding"
+        assert (await hand.message("refused"))["message"] == "the arm is not in hand guiding"
 
 
 async def test_an_arm_that_there_is_not_has_no_handle(site: TeachSite) -> None:
     async with hand_at(site) as hand:
         await hand.say(k="take", arm="third")
-        assert (await hand.told("refused"))["message"] == "there is no such arm"
+        assert (await hand.message("refused"))["message"] == "there is no such arm"
 
 
 async def test_a_viewer_has_no_handle_not_even_under_the_name_of_an_operators_page(site: TeachSite) -> None:

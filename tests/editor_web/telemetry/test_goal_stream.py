@@ -37,7 +37,7 @@ async def silence() -> Asgi:
 
 
 @pytest.mark.parametrize("told", [0, 1, 2])
-async def test_a_goal_ends_when_its_listener_cannot_be_told(told: int) -> None:
+async def test_a_goal_ends_when_its_listener_cannot_be_notified(told: int) -> None:
     """Also where not even the first line goes out, before anybody waits for the end."""
     lines = 0
 

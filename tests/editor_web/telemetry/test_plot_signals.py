@@ -66,13 +66,13 @@ def test_a_path_that_no_message_has_reads_nothing() -> None:
 
 
 @given(value=JSON)
-def test_whatever_is_pruned_is_json(value: Any) -> None:
+def test_whatever_is_truncated_is_json(value: Any) -> None:
     """Also numbers that JSON does not know."""
     json.loads(msgspec.json.encode(truncate_value(value)))
     assert truncate_value(value) == truncate_value(value)
 
 
-def test_what_is_pruned_is_small_however_large_the_message_is() -> None:
+def test_what_is_truncated_is_small_however_large_the_message_is() -> None:
     """Wide, deep, long."""
     deep: object = 1
     for _ in range(100):

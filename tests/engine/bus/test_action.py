@@ -139,7 +139,7 @@ async def test_a_bug_in_a_handler_ends_its_goal_only(caplog: pytest.LogCaptureFi
     assert (end.cause.kind, "test_action.py:" in end.cause.where) == ("ZeroDivisionError", True)
 
 
-async def test_a_second_goal_of_an_exclusive_group_is_told_which_one_runs() -> None:
+async def test_a_second_goal_of_an_exclusive_group_learns_which_one_runs() -> None:
     """One goal at a time per device, and the refusal names the other."""
     bus, gripper = _bus()
     first = bus.send_goal(GRASP, to="left/gripper", holder=ONE, goal_id="first")
@@ -153,7 +153,7 @@ async def test_a_second_goal_of_an_exclusive_group_is_told_which_one_runs() -> N
     assert (await third.result()).status is GoalStatus.SUCCEEDED
 
 
-async def test_another_run_is_refused_the_resource_and_told_who_holds_it() -> None:
+async def test_another_run_is_refused_the_resource_and_learns_who_holds_it() -> None:
     """Leases keep two runs from commanding one device."""
     bus, gripper = _bus()
     first = bus.send_goal(GRASP, to="left/gripper", holder=ONE)

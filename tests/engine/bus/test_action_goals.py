@@ -63,7 +63,7 @@ async def test_a_cancel_reaches_a_server_that_asks_for_it_late() -> None:
     assert (end.status, end.result, log) == (GoalStatus.CANCELED, HELD, ["first", "second"])
 
 
-async def test_a_server_that_accepts_after_a_cancel_is_told_and_the_goal_has_not_begun() -> None:
+async def test_a_server_that_accepts_after_a_cancel_is_notified_and_the_goal_has_not_begun() -> None:
     """A rejection afterwards is not one: the goal ends as cancelled."""
     going = asyncio.Event()
 

@@ -131,7 +131,7 @@ async def test_a_service_that_refuses_in_its_own_words_is_not_reworded() -> None
         await bus.call(ReadGripper(), to="left/gripper")
 
 
-async def test_who_watches_topics_is_told_of_each_once_until_they_stop() -> None:
+async def test_who_watches_topics_is_notified_of_each_once_until_they_stop() -> None:
     bus, names, others = SkillBus(new_clock()), list[str](), list[str]()
     bus.topic("a", GripperState)
 

@@ -62,7 +62,7 @@ async def test_a_service_that_commands_nothing_is_answered_to_anybody() -> None:
         assert await bus.call(Change(), to="left", holder=TWO) == Number(value=1)
 
 
-def test_who_waits_for_a_resource_is_told_once_when_its_run_gives_it_back() -> None:
+def test_who_waits_for_a_resource_is_notified_once_when_its_run_gives_it_back() -> None:
     """Not at the end of a goal, not for another resource, not when nobody holds it."""
     leases, told = LeaseTable(), list[str]()
     leases.when_freed("left", lambda: told.append("nobody held it"))
@@ -77,7 +77,7 @@ def test_who_waits_for_a_resource_is_told_once_when_its_run_gives_it_back() -> N
     assert told == ["left"]
 
 
-async def test_who_holds_what_is_told_with_the_time_since_when() -> None:
+async def test_who_holds_what_is_reported_with_the_time_since_when() -> None:
     """A run keeps the arm after its branch has given its part back; the branch's time is its own."""
     now_s = 1.0
     table = LeaseTable(now_s=lambda: now_s)

@@ -70,7 +70,7 @@ class FakeWorld:
     def lose(self) -> None:
         """Be lost from now on."""
         self.lost_reason = WHY
-        self._told()
+        self._notify()
 
     async def reconnect(self) -> str:
         await asyncio.sleep(0)
@@ -78,10 +78,10 @@ class FakeWorld:
         if self.refusal:
             raise RobotError(self.refusal)
         self.lost_reason = ""
-        self._told()
+        self._notify()
         return self.note
 
-    def _told(self) -> None:
+    def _notify(self) -> None:
         assert self._tell is not None
         self._tell()
 
@@ -135,7 +135,7 @@ async def session(folder: Path) -> AsyncGenerator[Session]:
 
 
 @pytest.mark.virtual
-async def test_the_connection_is_told_on_the_bus_when_it_is_lost_and_when_it_is_back(
+async def test_the_connection_is_published_on_the_bus_when_it_is_lost_and_when_it_is_back(
     tmp_path: Path, world: FakeWorld
 ) -> None:
     async with opened(tmp_path) as cell:
@@ -150,7 +150,9 @@ async def test_the_connection_is_told_on_the_bus_when_it_is_lost_and_when_it_is_
 
 
 @pytest.mark.virtual
-async def test_what_is_not_as_it_was_before_is_told_of_a_cell_that_is_back(tmp_path: Path, world: FakeWorld) -> None:
+async def test_what_is_not_as_it_was_before_is_reported_of_a_cell_that_is_back(
+    tmp_path: Path, world: FakeWorld
+) -> None:
     async with opened(tmp_path) as cell:
         world.lose()
         world.note = "the world has begun anew"

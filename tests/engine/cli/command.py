@@ -18,7 +18,7 @@ _LONGEST_S = 100.0
 
 
 @dataclass(frozen=True)
-class Said:
+class CommandOutput:
     """What the command printed and its exit code."""
 
     code: int
@@ -26,7 +26,7 @@ class Said:
     err: str
 
 
-def flexcell(*arguments: str | Path, cwd: Path) -> Said:
+def flexcell(*arguments: str | Path, cwd: Path) -> CommandOutput:
     """Run the command to its end."""
     # Of those that wait, or a new one: tests may run two commands at a time, in threads.
     preloaded = _IDLE.pop() if _IDLE else _Preloaded()
@@ -47,7 +47,7 @@ class _Preloaded:
         atexit.register(self._process.kill)
         assert self._line() == "ready"
 
-    def run(self, arguments: list[str], cwd: Path) -> Said:
+    def run(self, arguments: list[str], cwd: Path) -> CommandOutput:
         """Run one command; raises TimeoutExpired."""
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
             asked = {"args": arguments, "cwd": str(cwd), "env": dict(os.environ), "out": out.name, "err": err.name}
@@ -55,7 +55,7 @@ class _Preloaded:
             self._process.stdin.write(f"{json.dumps(asked)}\n")
             self._process.stdin.flush()
             code = int(self._line(arguments))
-            return Said(code, out.read().decode(), err.read().decode())
+            return CommandOutput(code, out.read().decode(), err.read().decode())
 
     def _line(self, arguments: list[str] | None = None) -> str:
         pipe = self._process.stdout

@@ -34,17 +34,17 @@ def serve() -> None:
     load_states()
     assert threading.active_count() == 1, "a thread would not be in the child"
     gc.freeze()
-    _tell("ready")
+    _write_line("ready")
     for line in sys.stdin:
         pid = os.fork()
         if pid == 0:
             _become(json.loads(line))
             main()
             return
-        _tell(str(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])))
+        _write_line(str(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])))
 
 
-def _tell(line: str) -> None:
+def _write_line(line: str) -> None:
     sys.stdout.write(f"{line}\n")
     sys.stdout.flush()
 

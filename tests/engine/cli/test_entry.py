@@ -22,14 +22,14 @@ except SystemExit as left:
 """
 
 
-def said(*arguments: str) -> str:
+def output(*arguments: str) -> str:
     command = [sys.executable, "-P", "-c", PROGRAM.format(arguments=arguments)]
     return subprocess.run(command, capture_output=True, text=True, check=True).stderr
 
 
 def test_the_collector_waits_until_the_command_is_loaded_and_works_afterwards() -> None:
-    assert said("run", "--help") == "0 [] True\n"
+    assert output("run", "--help") == "0 [] True\n"
 
 
 def test_a_command_that_does_not_exist_is_refused_as_ever() -> None:
-    assert "No such command 'rnu'" in said("rnu")
+    assert "No such command 'rnu'" in output("rnu")

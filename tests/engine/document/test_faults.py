@@ -43,7 +43,7 @@ def test_a_document_says_what_goes_wrong_where_and_when(tmp_path: Path) -> None:
         ("{times: 2, crash: {at_event: 4}}", "3:4: `times` has no effect with `at_event` (remove `times`)"),
     ],
 )
-def test_a_breach_is_reported_at_its_place(fault: str, message: str) -> None:
+def test_a_violation_is_reported_at_its_place(fault: str, message: str) -> None:
     """One line that says what to do."""
     with pytest.raises(DocumentError) as raised:
         parse_faults(HEAD + f"- {fault}\n", file="f.yaml")

@@ -103,7 +103,7 @@ def test_as_many_mistakes_as_there_are_are_reported_each_on_its_line_and_nothing
 
 @given(st.lists(st.sampled_from(KINDS), min_size=1, max_size=8))
 @settings(deadline=None)
-def test_without_mistakes_there_is_nothing_to_tell(nodes: list[str]) -> None:
+def test_without_mistakes_there_is_nothing_to_report(nodes: list[str]) -> None:
     survey = survey_behavior(Path("x.yaml"), behavior_of(nodes))
     assert survey.mistakes == ()
     assert check_survey(survey, Path("x.yaml"), CATALOGUE) == ()

@@ -34,7 +34,7 @@ def simple_edits(draw: st.DrawFn, data: Plain) -> Plain | None:
         return named if kind == "rename" else {"edit": "remove_nodes", "paths": [ref.path]}
     if kind in ("wire", "unwire"):
         ref = _one(draw, [s for s in refs if s.parent is not None and s.parent.kind in MACHINES])
-        return None if ref is None else _wiring(draw, ref, clear=kind == "unwire")
+        return None if ref is None else _transition_edit(draw, ref, clear=kind == "unwire")
     if kind == "initial":
         ref = _one(draw, [s for s in refs if s.kind in MACHINES and outline.children(s)])
         if ref is None:
@@ -50,7 +50,7 @@ def simple_edits(draw: st.DrawFn, data: Plain) -> Plain | None:
     return {"edit": "set_field", "path": ref.path, "field": "description", "value": said}
 
 
-def _wiring(draw: st.DrawFn, ref: NodeRef, *, clear: bool) -> Plain | None:
+def _transition_edit(draw: st.DrawFn, ref: NodeRef, *, clear: bool) -> Plain | None:
     wired: Any = ref.data.get("transitions", {})
     if not clear:
         target = draw(st.sampled_from(["x", "y", "s0"]))

@@ -61,7 +61,7 @@ def test_a_project_that_cannot_be_written_is_read_and_says_so_when_it_is_saved(t
     assert (tmp_path / ID).read_text() == TEXT
 
 
-def test_a_folder_that_cannot_be_written_is_told(documents: DocumentRepository) -> None:
+def test_a_folder_that_cannot_be_written_is_reported(documents: DocumentRepository) -> None:
     """The file stays as it was."""
     file = documents.file_of(ID)
     (file.parent / f".{file.name}.new").mkdir()
@@ -163,7 +163,7 @@ def test_versions_are_compared_node_by_node() -> None:
     assert ("root/wait", "removed") in [(each.path, each.change) for each in gone.changes]
 
 
-def test_moved_boxes_are_told_apart_from_changes_of_meaning() -> None:
+def test_moved_boxes_are_distinguished_from_changes_of_meaning() -> None:
     after = edited(TEXT, {"edit": "set_positions", "positions": {"root/third": [1, 2]}})
     assert compare_texts(TEXT, after, file="x.yaml").layout_only
     assert not compare_texts(TEXT, TEXT, file="x.yaml").layout_only

@@ -239,7 +239,7 @@ def test_a_missing_parameter_takes_the_one_of_the_behavior_of_the_same_name() ->
     assert 'with: {duration_s: "${duration_s}"}' in mended(text, fix)
 
 
-def test_what_only_a_person_can_mend_has_no_fix() -> None:
+def test_what_only_a_person_can_correct_has_no_fix() -> None:
     text = states("first: {state: flow.Wait, with: {duration_s: soon}, transitions: {done: first}}")
     assert offered(text, "no-path-to-outcome") == []
 

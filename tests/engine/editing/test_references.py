@@ -48,7 +48,7 @@ def documents(tmp_path: Path) -> DocumentRepository:
     return made
 
 
-def test_those_that_refer_to_a_document_are_told_with_their_nodes(documents: DocumentRepository) -> None:
+def test_those_that_refer_to_a_document_are_reported_with_their_nodes(documents: DocumentRepository) -> None:
     """However they write its path; a name that only occurs is no reference."""
     found = referrers(documents, INNER_ID)
     assert [(each.id, each.name, each.paths) for each in found] == [(OUTER_ID, "outer", ("root/one", "root/two"))]

@@ -62,7 +62,7 @@ async def test_the_process_answers_as_the_function_does(tmp_path: Path) -> None:
     assert checks.pid == 0
 
 
-async def test_of_the_texts_that_wait_the_newest_of_each_asker_is_looked_at(tmp_path: Path) -> None:
+async def test_of_the_texts_that_wait_the_latest_of_each_asker_is_looked_at(tmp_path: Path) -> None:
     """One that is being looked at is answered; those between are dropped."""
     checks = TargetChecks(tmp_path, limit_s=GUARD_S, start=ECHO)
     asked = [("a", "1"), ("a", "2"), ("a", "3"), ("b", "4")]
@@ -77,7 +77,7 @@ async def test_of_the_texts_that_wait_the_newest_of_each_asker_is_looked_at(tmp_
 @pytest.mark.parametrize(
     ("text", "limit_s", "problem"), [("hang", 0.2, "no answer within 0.2 s"), ("die", GUARD_S, "has ended")]
 )
-async def test_a_process_that_does_not_answer_is_told_and_the_next_text_has_another(
+async def test_a_process_that_does_not_answer_is_reported_and_the_next_text_has_another(
     tmp_path: Path, text: str, limit_s: float, problem: str
 ) -> None:
     """It hangs, or dies."""

@@ -34,7 +34,7 @@ root:
 SENT = "grasp root/grasp#1.1"
 
 
-def test_a_late_goal_is_done_in_time_and_told_late() -> None:
+def test_a_late_goal_is_done_in_time_and_reported_late() -> None:
     """The device takes its two seconds, the state learns of it three later."""
     told = run_with_faults(GRASP, "- {at: root/grasp, late: 3 s}")
     assert (told.result.outcome, told.result.duration_s, told.ends) == ("good", 5.0, [(5.0, "succeeded")])
@@ -109,7 +109,7 @@ def test_a_lost_goal_never_reaches_the_device() -> None:
     assert (told.result.outcome, told.ends, told.device) == ("bad", [(5.0, "canceled")], ())
 
 
-def test_a_lost_end_is_told_to_who_asks() -> None:
+def test_a_lost_end_is_reported_to_who_asks() -> None:
     """The effect has happened; the answer to the cancel tells it."""
     told = run_with_faults(GRASP_WITHIN_5_S, "- lost: answer")
     assert (told.result.outcome, told.ends, told.device) == ("bad", [(5.0, "succeeded")], (SENT, "grasped"))
@@ -172,7 +172,7 @@ def test_a_crash_at_a_request_comes_before_it_or_after_its_effect(when: str, dev
     assert len(told.killed_at) == 1
 
 
-def test_a_second_answer_that_is_an_error_is_told_in_the_log_only() -> None:
+def test_a_second_answer_that_is_an_error_is_reported_in_the_log_only() -> None:
     """The state has the first answer; that the device did not take the copy stands in the event log."""
     told = run_with_faults(READ_TWICE.replace("times: 2", "times: 1"), "- duplicate: at_once", breaks_at_read=2)
     assert (told.result.outcome, told.logged) == ("good", [(0.0, "0.01")])

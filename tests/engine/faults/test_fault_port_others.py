@@ -86,7 +86,7 @@ async def test_a_port_that_is_no_bus_goes_wrong_as_well() -> None:
 
 
 @pytest.mark.virtual
-async def test_faults_around_faults_are_told_in_one_log() -> None:
+async def test_faults_around_faults_are_reported_in_one_log() -> None:
     """The inner ones see the copy that the outer ones make."""
     inner = _around(Script(), "{request: 2, error: once only}")
     outer = _around(inner, "{duplicate: at_once}")

@@ -62,7 +62,7 @@ def test_every_kind_of_fault_is_among_the_random_ones() -> None:
 
 @settings(deadline=None, max_examples=150)
 @given(FAULTS, st.integers(0, 3), st.none() | st.sampled_from([0.0, 0.5, 2.0, 5.0]))
-def test_any_faults_end_in_a_told_end(faults: str, seed: int, stop_at_s: float | None) -> None:
+def test_any_faults_end_in_a_reported_end(faults: str, seed: int, stop_at_s: float | None) -> None:
     """Numbered without gaps, one end for each goal whose state was not abandoned, and byte for byte the same."""
     first, second = (run_with_faults(BEHAVIOR, faults, seed=seed, stop_at_s=stop_at_s, messages=30) for _ in range(2))
     events = first.events

@@ -53,7 +53,7 @@ def _copy_with_flip(crashed: Path, folder: Path, at: int) -> Path:
     return folder / "lines.db"
 
 
-def test_a_flipped_byte_loses_no_commit_but_the_newest_unnoticed(crashed: Path, tmp_path: Path) -> None:
+def test_a_flipped_byte_loses_no_commit_but_the_latest_unnoticed(crashed: Path, tmp_path: Path) -> None:
     size = crashed.with_name("lines.db-wal").stat().st_size
     # Every byte of the header of the log, and some of each frame.
     ends = [_end(_copy_with_flip(crashed, tmp_path / str(at), at)) for at in (*range(32), *range(32, size, 631))]
@@ -68,7 +68,7 @@ def test_a_refused_log_stays_as_it_is(crashed: Path, tmp_path: Path) -> None:
     assert path.with_name("lines.db-wal").read_bytes() == before
 
 
-def test_a_log_whose_newest_commit_was_cut_is_read_up_to_there(crashed: Path, tmp_path: Path) -> None:
+def test_a_log_whose_latest_commit_was_cut_is_read_up_to_there(crashed: Path, tmp_path: Path) -> None:
     shutil.copy(crashed, tmp_path / "lines.db")
     log = crashed.with_name("lines.db-wal").read_bytes()
     (tmp_path / "lines.db-wal").write_bytes(log[:-100])

@@ -15,7 +15,7 @@ from tests.engine.journal.test_codec import EVENTS
 START = b"s" * 16
 
 
-def said(seq: int, message: str = "x") -> MessageLogged:
+def logged(seq: int, message: str = "x") -> MessageLogged:
     return MessageLogged(seq=seq, time_s=0.0, path="root", level="info", message=message)
 
 
@@ -43,12 +43,12 @@ def test_a_changed_byte_is_traced_to_its_event(events: list[AnyEvent], choice: s
 
 
 def test_where_the_sums_accuse_none_all_events_are_suspects() -> None:
-    (block,) = new_blocks("run", 1, [said(1), said(2)], START)
+    (block,) = new_blocks("run", 1, [logged(1), logged(2)], START)
     assert msgspec.structs.replace(block, epoch=2).suspects() == (1, 2)
 
 
 def test_many_events_are_many_blocks_in_one_chain() -> None:
-    events = [said(seq) for seq in range(1, 3 * MAX_EVENTS)]
+    events = [logged(seq) for seq in range(1, 3 * MAX_EVENTS)]
     blocks = list(new_blocks("run", 1, events, START))
     assert [block.last - block.seq + 1 for block in blocks] == [MAX_EVENTS, MAX_EVENTS, MAX_EVENTS - 1]
     assert _read(blocks) == events
@@ -57,7 +57,7 @@ def test_many_events_are_many_blocks_in_one_chain() -> None:
 def test_large_events_share_a_block_only_up_to_its_size() -> None:
     """What one commit had written as rows of their own must not become one row that SQLite refuses."""
     sizes = (MAX_BYTES // 3, MAX_BYTES // 3, MAX_BYTES // 3, 10, 2 * MAX_BYTES, 10, 10)
-    events = [said(seq, "m" * size) for seq, size in enumerate(sizes, 1)]
+    events = [logged(seq, "m" * size) for seq, size in enumerate(sizes, 1)]
     blocks = list(new_blocks("run", 1, events, START))
     assert [(block.seq, block.last) for block in blocks] == [(1, 2), (3, 4), (5, 5), (6, 7)]
     assert _read(blocks) == events
@@ -68,7 +68,7 @@ def test_large_events_share_a_block_only_up_to_its_size() -> None:
     [
         (b'{"event":"log"}\n', "event 1 of the block: this is not an event"),
         (b"", "the block does not hold the events 1 to 2"),
-        (msgspec.json.Encoder().encode_lines([said(1), said(3)]), "the block does not hold the events 1 to 2"),
+        (msgspec.json.Encoder().encode_lines([logged(1), logged(3)]), "the block does not hold the events 1 to 2"),
     ],
 )
 def test_a_row_with_the_right_checksum_may_hold_no_events_all_the_same(data: bytes, message: str) -> None:

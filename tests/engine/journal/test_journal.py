@@ -20,7 +20,7 @@ from engine.journal.group_commit import MAX_PENDING_EVENTS
 BOTH = pytest.mark.parametrize("inline", [True, False], ids=["inline", "threaded"])
 
 
-def said(seq: int, message: str = "x") -> MessageLogged:
+def logged(seq: int, message: str = "x") -> MessageLogged:
     """Make an event."""
     return MessageLogged(seq=seq, time_s=seq * 0.5, path="root", level="info", message=message)
 
@@ -36,10 +36,10 @@ async def test_what_was_committed_is_read_back_while_the_journal_is_open(tmp_pat
     with Journal.open(tmp_path, inline=inline) as journal:
         run = begun(journal)
         for seq in (1, 2, 3):
-            run.append(said(seq))
+            run.append(logged(seq))
         await run.commit()
-        run.append(said(4))
-        assert read_events(tmp_path, "run-1") == (said(1), said(2), said(3))
+        run.append(logged(4))
+        assert read_events(tmp_path, "run-1") == (logged(1), logged(2), logged(3))
 
 
 async def test_an_inline_journal_writes_while_events_gather_without_a_commit(tmp_path: Path) -> None:
@@ -47,7 +47,7 @@ async def test_an_inline_journal_writes_while_events_gather_without_a_commit(tmp
     with Journal.open(tmp_path, inline=True) as journal:
         run = begun(journal)
         for seq in range(1, 20_001):
-            run.append(said(seq))
+            run.append(logged(seq))
         assert len(read_events(tmp_path, "run-1")) > 20_000 - 5_000
 
 
@@ -55,10 +55,10 @@ async def test_a_run_that_is_faster_than_the_writer_waits_for_it(tmp_path: Path)
     """However much comes without a wait in between, few events are in memory when it goes on."""
     with Journal.open(tmp_path) as journal:
         run = begun(journal)
-        run.append(said(1))
+        run.append(logged(1))
         await run.apply_backpressure()
         for seq in range(2, 100_001):
-            run.append(said(seq))
+            run.append(logged(seq))
         await run.apply_backpressure()
         assert len(read_events(tmp_path, "run-1")) > 100_000 - 20_000
 
@@ -79,10 +79,10 @@ async def test_a_run_waits_for_events_that_the_writer_has_taken_and_not_written(
         run = begun(journal)
         monkeypatch.setattr(JournalDatabase, "store", stored_slowly)
         for seq in range(1, MAX_PENDING_EVENTS + 1):
-            run.append(said(seq))
+            run.append(logged(seq))
         await asyncio.to_thread(taken.acquire)
         for seq in range(MAX_PENDING_EVENTS + 1, 3 * MAX_PENDING_EVENTS + 1):
-            run.append(said(seq))
+            run.append(logged(seq))
         written.release()
         await asyncio.to_thread(taken.acquire)
         waiting = asyncio.create_task(run.apply_backpressure())
@@ -97,10 +97,10 @@ async def test_a_run_waits_for_events_that_the_writer_has_taken_and_not_written(
 async def test_closing_writes_what_no_commit_asked_for_and_may_be_repeated(tmp_path: Path, inline: bool) -> None:
     """`close` flushes; closing again does nothing."""
     journal = Journal.open(tmp_path / "runs.db", inline=inline)
-    begun(journal).append(said(1))
+    begun(journal).append(logged(1))
     journal.close()
     journal.close()
-    assert read_events(tmp_path / "runs.db", "run-1") == (said(1),)
+    assert read_events(tmp_path / "runs.db", "run-1") == (logged(1),)
 
 
 @BOTH
@@ -109,7 +109,7 @@ async def test_after_closing_a_commit_says_that_the_journal_is_closed(tmp_path: 
     journal = Journal.open(tmp_path, inline=inline)
     run = begun(journal)
     journal.close()
-    run.append(said(1))
+    run.append(logged(1))
     with pytest.raises(JournalError, match="the journal is closed"):
         await asyncio.wait_for(run.commit(), 30)
 
@@ -121,12 +121,12 @@ async def test_branches_and_runs_commit_side_by_side_and_lose_nothing(tmp_path: 
 
         async def write(run: RunJournal) -> None:
             for seq in range(1, 21):
-                run.append(said(seq))
+                run.append(logged(seq))
                 await run.commit()
 
         await asyncio.gather(*(write(run) for run in runs))
         stored = [read_events(tmp_path, run.run_id) for run in runs]
-    assert stored == [tuple(said(seq) for seq in range(1, 21))] * 16
+    assert stored == [tuple(logged(seq) for seq in range(1, 21))] * 16
 
 
 async def test_commits_are_acknowledged_in_the_order_they_were_asked_for(tmp_path: Path) -> None:
@@ -136,7 +136,7 @@ async def test_commits_are_acknowledged_in_the_order_they_were_asked_for(tmp_pat
         run = begun(journal)
 
         async def write(seq: int) -> None:
-            run.append(said(seq))
+            run.append(logged(seq))
             await run.commit()
             told.append(seq)
 
@@ -148,14 +148,14 @@ async def test_a_cancelled_commit_disturbs_nobody(tmp_path: Path) -> None:
     """The event of a cancelled waiter is written all the same."""
     with Journal.open(tmp_path) as journal:
         run = begun(journal)
-        run.append(said(1))
+        run.append(logged(1))
         waiting = asyncio.create_task(run.commit())
         await asyncio.sleep(0)
         waiting.cancel()
         await asyncio.wait([waiting])
-        run.append(said(2))
+        run.append(logged(2))
         await run.commit()
-        assert read_events(tmp_path, "run-1") == (said(1), said(2))
+        assert read_events(tmp_path, "run-1") == (logged(1), logged(2))
 
 
 @BOTH
@@ -164,7 +164,7 @@ async def test_the_end_of_a_run_sets_its_status(tmp_path: Path, inline: bool) ->
     with Journal.open(tmp_path, inline=inline) as journal:
         first, second = begun(journal, "run-1"), begun(journal, "run-2")
         first.append(RunEnded(seq=1, time_s=2.0, status="finished", outcome="done"))
-        second.append(said(1))
+        second.append(logged(1))
         await first.commit()
         await second.commit()
         runs = list_runs(tmp_path)
@@ -185,21 +185,21 @@ async def test_an_engine_whose_run_was_taken_over_can_write_no_more(tmp_path: Pa
     """Two engines on one file: the one that resumed goes on, the other is fenced for that run only."""
     with Journal.open(tmp_path, inline=inline) as old, Journal.open(tmp_path, inline=inline) as new:
         before, beside = begun(old, "run-1"), begun(old, "run-2")
-        before.append(said(1))
+        before.append(logged(1))
         await before.commit()
         after = new.resume("run-1")
-        before.append(said(2, "zombie"))
+        before.append(logged(2, "zombie"))
         with pytest.raises(JournalError, match=r"run run-1 is driven by another engine now \(epoch 2\)"):
             await before.commit()
         with pytest.raises(JournalError, match="another engine"):
             await before.commit()
-        beside.append(said(1))
+        beside.append(logged(1))
         await beside.commit()
-        after.append(said(2, "successor"))
+        after.append(logged(2, "successor"))
         await after.commit()
         assert after.epoch == 2
-        assert read_events(tmp_path, "run-1") == (said(1), said(2, "successor"))
-        assert read_events(tmp_path, "run-2") == (said(1),)
+        assert read_events(tmp_path, "run-1") == (logged(1), logged(2, "successor"))
+        assert read_events(tmp_path, "run-2") == (logged(1),)
 
 
 @BOTH
@@ -208,11 +208,11 @@ async def test_an_event_that_cannot_be_written_stops_its_own_run_only(tmp_path: 
     with Journal.open(tmp_path, inline=inline) as journal:
         bad, good = begun(journal, "bad"), begun(journal, "good")
         bad.append(MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="\ud800"))
-        good.append(said(1))
+        good.append(logged(1))
         ends = await asyncio.gather(bad.commit(), good.commit(), return_exceptions=True)
         assert [type(end) for end in ends] == [JournalError, type(None)]
         assert "event 1 (MessageLogged) cannot be written as JSON" in str(ends[0])
-        assert (read_events(tmp_path, "bad"), read_events(tmp_path, "good")) == ((), (said(1),))
+        assert (read_events(tmp_path, "bad"), read_events(tmp_path, "good")) == ((), (logged(1),))
 
 
 @BOTH
@@ -220,12 +220,12 @@ async def test_the_same_sequence_number_twice_is_refused(tmp_path: Path, inline:
     """An append-only journal overwrites nothing."""
     with Journal.open(tmp_path, inline=inline) as journal:
         run = begun(journal)
-        run.append(said(1, "first"))
+        run.append(logged(1, "first"))
         await run.commit()
-        run.append(said(1, "again"))
+        run.append(logged(1, "again"))
         with pytest.raises(JournalError, match="event 1 is already stored"):
             await run.commit()
-    assert read_events(tmp_path, "run-1") == (said(1, "first"),)
+    assert read_events(tmp_path, "run-1") == (logged(1, "first"),)
 
 
 @BOTH
@@ -233,9 +233,9 @@ async def test_an_event_whose_predecessor_is_missing_is_refused(tmp_path: Path, 
     """A run without gaps is what reading and resuming rely on."""
     with Journal.open(tmp_path, inline=inline) as journal:
         run, other = begun(journal), begun(journal, "run-2")
-        run.append(said(1))
-        run.append(said(3))
-        other.append(said(1))
+        run.append(logged(1))
+        run.append(logged(3))
+        other.append(logged(1))
         with pytest.raises(JournalError, match="event 3 arrived where event 2 was expected"):
             await run.commit()
         await other.commit()
@@ -249,7 +249,7 @@ async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path,
         run, other, idle = (begun(journal, f"run-{n}") for n in (1, 2, 3))
         thief = sqlite3.connect(journal.path, isolation_level=None)
         thief.execute("BEGIN IMMEDIATE")
-        run.append(said(1))
+        run.append(logged(1))
         with pytest.raises(
             JournalError, match=r"journal\.db: the journal cannot be written: .*locked.*end that program"
         ):
@@ -258,7 +258,7 @@ async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path,
             begun(journal, "run-4")
         thief.close()
         for run_journal in (run, other, idle):
-            run_journal.append(said(2 if run_journal is run else 1))
+            run_journal.append(logged(2 if run_journal is run else 1))
         await other.commit()
         await idle.commit()
         with pytest.raises(JournalError, match="locked"):
@@ -268,7 +268,7 @@ async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path,
 
 
 @BOTH
-async def test_a_failure_that_no_commit_waits_for_is_told(tmp_path: Path, inline: bool) -> None:
+async def test_a_failure_that_no_commit_waits_for_is_reported(tmp_path: Path, inline: bool) -> None:
     """A run that only waits hears of it from the commit of another, or from the writer by itself."""
     heard: asyncio.Queue[JournalError] = asyncio.Queue()
     with Journal.open(tmp_path, inline=inline, busy_timeout_s=0.01) as journal:
@@ -276,8 +276,8 @@ async def test_a_failure_that_no_commit_waits_for_is_told(tmp_path: Path, inline
         waiting.on_failure(heard.put_nowait)
         thief = sqlite3.connect(journal.path, isolation_level=None)
         thief.execute("BEGIN IMMEDIATE")
-        waiting.append(said(1))
-        other.append(said(1))
+        waiting.append(logged(1))
+        other.append(logged(1))
         with pytest.raises(JournalError, match="locked"):
             await other.commit()
         assert "locked" in (await asyncio.wait_for(heard.get(), 30)).message
@@ -291,7 +291,7 @@ def test_closing_reports_a_failure_that_no_commit_had_reported(tmp_path: Path) -
     run = begun(journal)
     thief = sqlite3.connect(journal.path, isolation_level=None)
     thief.execute("BEGIN IMMEDIATE")
-    run.append(said(1))
+    run.append(logged(1))
     with pytest.raises(JournalError, match="locked"):
         journal.close()
     thief.close()
@@ -310,7 +310,7 @@ async def test_a_defect_in_the_writer_reaches_the_waiting_commit(
         run = begun(journal)
         monkeypatch.setattr(JournalDatabase, "store", broken)
         for seq in (1, 2):
-            run.append(said(seq))
+            run.append(logged(seq))
             with pytest.raises(JournalError, match="the journal writer failed: ZeroDivisionError: oops"):
                 await asyncio.wait_for(run.commit(), 30)
 
@@ -362,7 +362,7 @@ async def test_the_null_journal_takes_the_same_calls() -> None:
     """Benchmarks can leave the disk out."""
     journal: JournalPort = NullJournal()
     run = journal.begin("run-1", behavior="transfer", document="abc", started_unix_s=0.0)
-    run.append(said(1))
+    run.append(logged(1))
     await run.commit()
     journal.close()
     assert (run.run_id, run.epoch, journal.resume("run-2").run_id) == ("run-1", 1, "run-2")

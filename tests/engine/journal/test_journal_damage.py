@@ -20,7 +20,7 @@ EVENTS = 20
 A_COMMIT = 6
 
 
-def said(seq: int) -> MessageLogged:
+def logged(seq: int) -> MessageLogged:
     return MessageLogged(
         seq=seq, time_s=seq * 0.5, path="root", level="info", message=f"step {seq} " + "x" * (seq * 7 % 150)
     )
@@ -33,7 +33,7 @@ async def written(folder: Path) -> Path:
             origin = RunOrigin(behavior="/b.yaml", documents={"b.yaml": "text " * 100})
             run = journal.begin(name, behavior="transfer", document="abc", started_unix_s=10.0, origin=origin)
             for seq in range(1, EVENTS):
-                run.append(said(seq))
+                run.append(logged(seq))
                 if seq % A_COMMIT == 0 or seq == EVENTS - 1:
                     run.append_world_state(bytes(range(100)))
                     await run.commit()
@@ -98,7 +98,7 @@ STEP_7 = "UPDATE {} SET data = CAST(replace(CAST(data AS TEXT), 'step 7', 'step 
         ("UPDATE checksum SET since = 5 WHERE run = 'first'", "the record of run first is damaged"),
     ],
 )  # fmt: skip
-async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, statement: str, said: str) -> None:
+async def test_a_changed_event_is_reported_with_file_run_and_number(tmp_path: Path, statement: str, said: str) -> None:
     file = await written(tmp_path)
     change(file, statement)
     with pytest.raises(JournalError, match=said):
@@ -131,7 +131,7 @@ async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, 
     ],
 )
 @pytest.mark.parametrize("upgraded", [False, True])
-def test_a_changed_event_of_format_4_is_told(tmp_path: Path, statement: str, said: str, upgraded: bool) -> None:
+def test_a_changed_event_of_format_4_is_reported(tmp_path: Path, statement: str, said: str, upgraded: bool) -> None:
     file = of_format_4(tmp_path)
     change(file, statement)
     if upgraded:
@@ -155,12 +155,12 @@ async def test_a_run_of_format_4_goes_on_in_the_same_chain(tmp_path: Path) -> No
     with Journal.open(file, inline=True) as journal:
         run = journal.resume("first")
         for seq in (21, 22, 23):
-            run.append(said(seq))
+            run.append(logged(seq))
         await run.commit()
-    assert read_events(file, "first") == (*before, said(21), said(22), said(23))
+    assert read_events(file, "first") == (*before, logged(21), logged(22), logged(23))
     first = next(run for run in list_runs(file) if run.id == "first")
     assert (first.last_seq, first.verified, first.damage, first.epoch) == (23, True, "", 2)
-    assert PastRuns(file, success=lambda run, document: ()).all()[1].duration_s == said(23).time_s
+    assert PastRuns(file, success=lambda run, document: ()).all()[1].duration_s == logged(23).time_s
     change(file, "DELETE FROM event WHERE run = 'first' AND seq = 20")
     with pytest.raises(JournalError, match="events 21 to 23 of run first are damaged or out of place"):
         read_events(file, "first")
@@ -273,7 +273,7 @@ def _is_found(file: Path, whole: bytes, at: int, flip: int, before: object) -> b
 @pytest.mark.parametrize("version", [1, 2, 3])
 async def test_a_run_of_an_older_version_is_read_and_said_to_be_unverified(tmp_path: Path, version: int) -> None:
     file = tmp_path / "journal.db"
-    events = tuple(said(seq) for seq in range(1, 6))
+    events = tuple(logged(seq) for seq in range(1, 6))
     write_older_journal(file, version, "old", events)
     (run,) = list_runs(file)
     assert (run.verified, run.damage, run.interrupted, run.last_seq) == (False, "", True, 5)
@@ -284,19 +284,19 @@ async def test_a_run_of_an_older_version_is_read_and_said_to_be_unverified(tmp_p
 @pytest.mark.parametrize("version", [1, 2, 3])
 async def test_a_run_of_an_older_version_goes_on_with_checksums(tmp_path: Path, version: int) -> None:
     file = tmp_path / "journal.db"
-    events = tuple(said(seq) for seq in range(1, 6))
+    events = tuple(logged(seq) for seq in range(1, 6))
     write_older_journal(file, version, "old", events)
     with Journal.open(file, inline=True) as journal:
         assert read_events(file, "old") == events
         run = journal.resume("old")
         assert read_events(file, "old") == events
-        run.append(said(6))
-        run.append(said(7))
+        run.append(logged(6))
+        run.append(logged(7))
         run.append_world_state(b"now")
         await run.commit()
     (record,) = list_runs(file)
     assert (record.verified, record.damage, record.last_seq) == (False, "", 7)
-    assert read_events(file, "old") == (*events, said(6), said(7))
+    assert read_events(file, "old") == (*events, logged(6), logged(7))
     assert read_world(file, "old") is not None
     assert PastRuns(file, success=lambda run, document: ()).all()[0].status == "running"
     change(file, STEP_7.format("block").replace("'first'", "'old'"))

@@ -83,7 +83,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, name: str) -> 
         pass
 
 
-def test_a_lock_that_cannot_be_opened_is_told(tmp_path: Path) -> None:
+def test_a_lock_that_cannot_be_opened_is_reported(tmp_path: Path) -> None:
     """As in a folder of another user."""
     (tmp_path / LOCK_FILE).mkdir()
     with pytest.raises(FlexcellError, match="the state folder cannot be written"), lock_server_state_folder(tmp_path):

@@ -90,7 +90,7 @@ async def test_a_changed_file_is_read_anew(project: Path) -> None:
         assert session.behavior("behaviors/quick.yaml").name == "quicker"
 
 
-async def test_a_run_is_told_from_start_to_end_and_journaled(project: Path) -> None:
+async def test_a_run_is_reported_from_start_to_end_and_journaled(project: Path) -> None:
     """Events by number, result in the summary, and a row in the journal."""
     async with _session(project) as session:
         run = await session.start("behaviors/quick.yaml", parameters={"pause": 0.02}, seed=1)

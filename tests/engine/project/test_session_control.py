@@ -59,7 +59,7 @@ async def opened(project: Path, *, real_states: bool = False) -> AsyncGenerator[
             yield session
 
 
-async def told(session: Session, run: str, true: Callable[[Event], bool]) -> None:
+async def recorded(session: Session, run: str, true: Callable[[Event], bool]) -> None:
     """Wait until a run has had such an event."""
     while not any(true(event) for event in session.events(run)):
         await session.cell.bus.clock.sleep(0)
@@ -74,7 +74,7 @@ def waits(path: str) -> Callable[[Event], bool]:
 async def test_a_run_is_controlled_and_shown_with_its_control(project: Path) -> None:
     async with opened(project) as session:
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=RunOptions(start_paused=True))
-        await told(session, run, waits("root"))
+        await recorded(session, run, waits("root"))
         view = session.control(run).view()
         assert session.run(run).waits == "paused"
         assert (view.paused, view.confirmed, [each.path for each in view.waiting]) == (True, True, ["root"])
@@ -95,7 +95,7 @@ async def test_a_run_has_an_operator_as_long_as_anybody_is_there(project: Path) 
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=supervision)
         first, second, third = session.operate(run), session.operate(run), session.operate(run)
         session.control(run).resume()
-        await told(session, run, waits("root/two"))
+        await recorded(session, run, waits("root/two"))
         first.lose()
         second.detach()
         second.lose()
@@ -112,7 +112,7 @@ async def test_a_lost_operator_has_the_run_held_after_a_while(project: Path) -> 
         supervision = RunOptions(autonomy="low", loss_timeout_s=2.0)
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=supervision)
         attachment = session.operate(run)
-        await told(session, run, waits("root/two"))
+        await recorded(session, run, waits("root/two"))
         attachment.lose()
         await session.cell.bus.clock.sleep(3.0)
         view = session.control(run).view()
@@ -143,7 +143,7 @@ async def test_breakpoints_beside_the_file_are_used_when_asked_for(project: Path
         free = await session.start(BEHAVIOR, parameters={}, seed=0)
         assert (await session.wait(free)).outcome == "good"
         run = await session.start(BEHAVIOR, parameters={}, seed=0, breakpoints=True)
-        await told(session, run, waits("root/three"))
+        await recorded(session, run, waits("root/three"))
 
 
 @pytest.mark.virtual

@@ -52,7 +52,7 @@ def ticks(path: Path) -> list[tuple[float, int]]:
 
 
 @given(time_s=st.floats(-1.0, 7.0))
-def test_a_moment_has_the_newest_message_before_it(files: tuple[Path, Path], time_s: float) -> None:
+def test_a_moment_has_the_latest_message_before_it(files: tuple[Path, Path], time_s: float) -> None:
     expected = [number for at_s, number in ticks(files[0]) if at_s <= time_s + 5e-10]
     for path in files:
         with IndexedRecording.open(path) as moments:
@@ -61,7 +61,7 @@ def test_a_moment_has_the_newest_message_before_it(files: tuple[Path, Path], tim
         assert number == (expected[-1] if expected else None)
 
 
-def test_topics_and_span_are_told(files: tuple[Path, Path]) -> None:
+def test_topics_and_span_are_reported(files: tuple[Path, Path]) -> None:
     for path in files:
         with IndexedRecording.open(path) as moments:
             assert moments.topics == {"bench/tick": "Tick"}
@@ -105,7 +105,7 @@ def test_what_is_no_recording_is_refused_in_words(tmp_path: Path, content: bytes
 
 
 @given(place=st.integers(0), byte=st.integers(0, 255))
-def test_damage_is_told_in_words_or_changes_nothing(
+def test_damage_is_reported_in_words_or_changes_nothing(
     files: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory, place: int, byte: int
 ) -> None:
     whole = bytearray(files[0].read_bytes())

@@ -126,7 +126,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
         load_recording(tmp_path)
 
 
-def test_a_recording_of_something_else_is_told_apart(tmp_path: Path) -> None:
+def test_a_recording_of_something_else_is_reported_apart(tmp_path: Path) -> None:
     with (tmp_path / "other.mcap").open("wb") as stream:
         writer = Writer(stream)
         writer.start()

@@ -41,7 +41,7 @@ def lines_of(events: Iterable[Event]) -> list[Line]:
     return lines
 
 
-def story_of(lines: Iterable[Line]) -> list[str]:
+def activation_lines(lines: Iterable[Line]) -> list[str]:
     """Write a log as its tree of activations.
 
     Raises:

@@ -8,7 +8,7 @@ import pytest
 
 from engine.document import Behavior, parse_behavior
 from engine.event import NodeEntered
-from tests.engine.reference.activation import lines_of, story_of
+from tests.engine.reference.activation import activation_lines, lines_of
 from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter
 
@@ -121,7 +121,7 @@ def test_a_machine_goes_on_at_the_very_instant_of_its_timeout() -> None:
     behavior = _behavior(GOES_ON)
     reference = Interpreter(behavior)
     reference.run(10.0)
-    assert story_of(lines_of(run_to_end(behavior, 10.0).events)) == story_of(reference.log)
+    assert activation_lines(lines_of(run_to_end(behavior, 10.0).events)) == activation_lines(reference.log)
 
 
 def test_branches_are_entered_in_document_order() -> None:

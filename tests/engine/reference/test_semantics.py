@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.event import RunEnded, RunStarted
 from engine.journal import encode_event_log
-from tests.engine.reference.activation import lines_of, story_of
+from tests.engine.reference.activation import activation_lines, lines_of
 from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter, TooLong
 from tests.engine.reference.random_behaviors import STOPS, Case, cases, preempting_cases
@@ -57,11 +57,11 @@ def compare(case: Case, stop_at_s: float) -> None:
         assume(False)
         raise
     if case.shares:
-        mine = (status, outcome, userdata, story_of(reference.log))
+        mine = (status, outcome, userdata, activation_lines(reference.log))
         assume(all(_in_any_order(case, stop_at_s, seed) == mine for seed in range(ORDERS)))
     told = run_to_end(case.behavior, stop_at_s)
     result = told.result
-    assert story_of(lines_of(told.events)) == story_of(reference.log)
+    assert activation_lines(lines_of(told.events)) == activation_lines(reference.log)
     assert (result.status, result.outcome, dict(result.userdata)) == (status, outcome, userdata)
 
 
@@ -69,7 +69,7 @@ def _in_any_order(case: Case, stop_at_s: float, seed: int) -> tuple[object, ...]
     """What becomes of it when branches take turns by chance at each instant."""
     reference = Interpreter(case.behavior, schedule=Schedule(random.Random(seed)))
     try:
-        return (*reference.run(stop_at_s), story_of(reference.log))
+        return (*reference.run(stop_at_s), activation_lines(reference.log))
     except TooLong:
         return ()
 
@@ -83,7 +83,7 @@ def test_a_run_ends_and_leaves_nothing_behind(case: Case, stop_at_s: float) -> N
     except TooLong:
         assume(False)
     told = run_to_end(case.behavior, stop_at_s)
-    story_of(lines_of(told.events))
+    activation_lines(lines_of(told.events))
     assert [event.seq for event in told.events] == list(range(1, len(told.events) + 1))
     assert [event.time_s for event in told.events] == sorted(event.time_s for event in told.events)
     assert isinstance(told.events[0], RunStarted)

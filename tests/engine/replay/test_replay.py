@@ -95,7 +95,7 @@ def test_of_a_changed_behavior_the_first_difference_is_named(
     assert (str(report.difference) if report.difference else None) == line
 
 
-def test_the_events_before_the_difference_are_told(tmp_path: Path) -> None:
+def test_the_events_before_the_difference_are_reported(tmp_path: Path) -> None:
     report = changed(tmp_path, ("a: look, b: bad", "a: listen, b: bad"))
     assert report.difference is not None
     assert report.difference.before[-2:] == (

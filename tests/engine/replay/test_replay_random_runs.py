@@ -176,10 +176,10 @@ def _same(text: str, **options: object) -> None:
         recording = recorded(text, Path(folder) / "run.mcap", **options)
         report = replay(recording, CATALOGUE)
     assert report.difference is None, report.difference.explained()
-    assert [_told(event) for event in report.events] == [_told(each.event) for each in recording.events]
+    assert [_comparable(event) for event in report.events] == [_comparable(each.event) for each in recording.events]
 
 
-def _told(event: Event) -> tuple[int, float, dict[str, object]]:
+def _comparable(event: Event) -> tuple[int, float, dict[str, object]]:
     return event.seq, event.time_s, plain_event(event)
 
 

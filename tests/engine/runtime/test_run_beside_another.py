@@ -100,7 +100,7 @@ def test_the_events_of_two_runs_are_not_mixed(arms: _Arms, run: str, robot: str)
     assert [event.path for event in log if isinstance(event, NodeEntered)] == ["root", "root/away", "root/back"]
 
 
-def test_the_third_run_is_refused_the_arm_and_told_run_and_state_of_the_holder(arms: _Arms) -> None:
+def test_the_third_run_is_refused_the_arm_and_learns_run_and_state_of_the_holder(arms: _Arms) -> None:
     """At once, before anything is asked of the arm."""
     third = arms.results["third"]
     assert third.status == "errored"

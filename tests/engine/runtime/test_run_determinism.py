@@ -30,6 +30,6 @@ def test_twice_the_same_run_gives_the_same_bytes(left: float, right: float, time
     """
     first, second = run_document(text, stop_at_s=stop), run_document(text, stop_at_s=stop)
     assert encode_event_log(first.events) == encode_event_log(second.events)
-    entered = [line for line in first.story if line.startswith("+")]
-    left_lines = [line for line in first.story if line.startswith("-")]
+    entered = [line for line in first.lines if line.startswith("+")]
+    left_lines = [line for line in first.lines if line.startswith("-")]
     assert len(entered) == len(left_lines)

@@ -86,7 +86,7 @@ def _where(blocks: Sequence[LoopStall]) -> list[str]:
     return [block.where for block in blocks if block.path == "root/block"]
 
 
-def _told(caplog: pytest.LogCaptureFixture) -> list[str]:
+def _warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     messages = [record.getMessage() for record in caplog.records if record.name == "flexcell.watchdog"]
     return [message for message in messages if message.startswith("root/block has blocked the event loop")]
 
@@ -103,7 +103,7 @@ def test_a_state_that_blocks_is_named_with_its_line(how: str, text: str, caplog:
     assert 0.5 < blocked.blocked_s < 60.0
     assert _where(blocks) == [blocked.where]
     assert isinstance(events[-1], RunEnded)
-    messages = _told(caplog)
+    messages = _warnings(caplog)
     assert re.search(r"event loop for \d+\.\d\d s, at ", messages[0])
     assert messages[0].endswith(blocked.where)
 
@@ -111,7 +111,7 @@ def test_a_state_that_blocks_is_named_with_its_line(how: str, text: str, caplog:
 def test_a_state_that_waits_as_it_should_is_left_alone(caplog: pytest.LogCaptureFixture) -> None:
     """The loop sleeps for longer than the threshold, which is no block."""
     events, blocks = asyncio.run(_watched("clock"))
-    assert (_blocked(events), _where(blocks), _told(caplog)) == ([], [], [])
+    assert (_blocked(events), _where(blocks), _warnings(caplog)) == ([], [], [])
 
 
 def test_in_virtual_time_a_block_is_logged_and_not_recorded(caplog: pytest.LogCaptureFixture) -> None:
@@ -120,7 +120,7 @@ def test_in_virtual_time_a_block_is_logged_and_not_recorded(caplog: pytest.LogCa
     events, blocks = run_virtual(_watched("itself"))
     unwatched, _ = run_virtual(_watched("itself", watched=False))
     assert _where(blocks) == [_line_of("time.sleep(BLOCKED_S)")]
-    assert _told(caplog)
+    assert _warnings(caplog)
     assert encode_event_log(events) == encode_event_log(unwatched)
 
 

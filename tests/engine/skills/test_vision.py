@@ -36,7 +36,7 @@ def detections(draw: st.DrawFn, frame: str = "world") -> Detection:
     )
 
 
-def said(*found: Detection, frame_pose: Pose) -> Detections:
+def camera_message(*found: Detection, frame_pose: Pose) -> Detections:
     """Return a message of a camera."""
     return Detections(
         camera="top", frame="corner", time_s=1.5, detections=found, image_px=(640, 480), frame_pose=frame_pose
@@ -66,7 +66,7 @@ def test_corners_are_in_order_x_slowest_and_z_fastest(each: Detection) -> None:
 
 @given(each=detections("corner"), frame=poses())
 def test_a_box_in_a_frame_is_where_that_frame_puts_it_in_the_world(each: Detection, frame: Pose) -> None:
-    world = said(each, frame_pose=frame).in_world(each)
+    world = camera_message(each, frame_pose=frame).in_world(each)
     assert world.frame == "world"
     assert compose_poses(invert_pose(frame), world).xyz == pytest.approx(each.pose.xyz, abs=1e-9)
 
@@ -75,7 +75,7 @@ def test_a_box_in_a_frame_is_where_that_frame_puts_it_in_the_world(each: Detecti
 def test_choosing_keeps_labels_and_scores_that_fit_in_their_order(
     found: list[Detection], label: str, least: float
 ) -> None:
-    message = said(*found, frame_pose=Pose(xyz=(0.0, 0.0, 0.0)))
+    message = camera_message(*found, frame_pose=Pose(xyz=(0.0, 0.0, 0.0)))
     kept = message.only(labels=(label,), minimal_score=least).detections
     assert list(kept) == [each for each in found if each.label == label and each.score >= least]
     assert message.only() == message
@@ -83,7 +83,7 @@ def test_choosing_keeps_labels_and_scores_that_fit_in_their_order(
 
 @given(found=st.lists(detections("corner"), max_size=4), frame=poses())
 def test_what_is_written_is_read_again(found: list[Detection], frame: Pose) -> None:
-    message = said(*found, frame_pose=frame)
+    message = camera_message(*found, frame_pose=frame)
     assert msgspec.json.decode(msgspec.json.encode(message), type=Detections) == message
     assert msgspec.msgpack.decode(msgspec.msgpack.encode(message), type=Detections) == message
 

@@ -44,7 +44,7 @@ def test_a_line_on_which_nothing_arrives_is_open(wire: _Wire) -> None:
     assert not wire.line.latched
 
 
-def test_a_stop_latches_and_is_acknowledged_and_rest_is_told_once(wire: _Wire) -> None:
+def test_a_stop_latches_and_is_acknowledged_and_rest_is_reported_once(wire: _Wire) -> None:
     wire.stop(1, "a hand")
     assert wire.line.poll() == "a hand"
     assert not wire.line.poll()
@@ -54,7 +54,7 @@ def test_a_stop_latches_and_is_acknowledged_and_rest_is_told_once(wire: _Wire) -
     assert wire.answers() == [StopAcknowledgement(stop=1, at_rest=False), StopAcknowledgement(stop=1, at_rest=True)]
 
 
-def test_only_the_release_of_the_newest_stop_unlatches(wire: _Wire) -> None:
+def test_only_the_release_of_the_latest_stop_unlatches(wire: _Wire) -> None:
     wire.stop(1, "first")
     wire.stop(2, "second")
     wire.release(1)

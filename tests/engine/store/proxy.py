@@ -34,7 +34,7 @@ class Proxy:
         for writer in tuple(self._open):
             writer.transport.abort()
 
-    def mend(self) -> None:
+    def restore(self) -> None:
         """Let connections through again."""
         self._up = True
 

@@ -37,7 +37,7 @@ async def test_entries_are_written_read_and_listed_over_the_bus(tmp_path: Path) 
             await bus.call(ReadEntry(kind="record", name="a/c"), to="store")
 
 
-async def test_changes_are_undone_told_and_published_over_the_bus(tmp_path: Path) -> None:
+async def test_changes_are_undone_reported_and_published_over_the_bus(tmp_path: Path) -> None:
     """Who changed what and why is on `store/changes` and in the history, whichever program did it."""
     async with (
         SqliteStore.open(tmp_path / "s.db") as store,

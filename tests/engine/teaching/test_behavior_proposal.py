@@ -73,7 +73,7 @@ def test_a_place_in_front_along_the_tool_is_an_approach_and_behind_it_a_depart()
     assert [roles(step("x", place), step("y", PICK), CLOSE)[0] for place in (beside, far)] == ["via", "via"]
 
 
-def test_without_a_word_of_the_tool_the_names_tell() -> None:
+def test_without_a_word_of_the_tool_the_names_decide() -> None:
     assert roles(step("above_pick"), step("tray_pick"), step("home"), step("bin/place"), step("over_bin")) == [
         "approach", "grasp", "via", "release", "depart",
     ]  # fmt: skip

@@ -34,7 +34,7 @@ def test_a_file_that_is_no_capture_is_left_alone(tmp_path: Path) -> None:
     assert broken.exists()
 
 
-def test_a_disk_that_takes_nothing_is_told_and_the_capture_kept(tmp_path: Path) -> None:
+def test_a_disk_that_takes_nothing_is_reported_and_the_capture_kept(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("in the way", encoding="utf-8")
     buffer = CaptureBuffer(blocked / "captures")

@@ -27,7 +27,7 @@ def test_a_frame_is_seen_from_another_one() -> None:
     assert seen.xyzw == pytest.approx((0.0, 0.0, -HALF, HALF))
 
 
-def test_a_frame_is_seen_from_the_world_as_it_was_told() -> None:
+def test_a_frame_is_seen_from_the_world_as_it_was_given() -> None:
     assert relative_pose(POSES, "part", "world") == Pose(xyz=(1.0, 3.0, 0.7))
 
 

@@ -193,7 +193,7 @@ async def test_after_any_sequence_of_operations_a_stop_ends_everything_and_the_a
             assert cell.bus.find_topic(topic).subscriber_count == 1, f"garbage has silenced {topic}"
 
 
-async def _told(seed: int) -> tuple[str, ...]:
+async def _observed(seed: int) -> tuple[str, ...]:
     """Return what an arm said and where it was, as text, over a sequence of operations."""
     async with simulated() as cell:
         operator, seen = Operator(cell, random.Random(seed)), list[str]()
@@ -206,4 +206,4 @@ async def _told(seed: int) -> tuple[str, ...]:
 
 
 def test_the_same_operations_give_the_same_bits() -> None:
-    assert run_virtual(_told(3)) == run_virtual(_told(3))
+    assert run_virtual(_observed(3)) == run_virtual(_observed(3))

@@ -33,7 +33,7 @@ def test_a_goal_that_is_rejected_says_why_and_has_an_exit_code_of_its_own() -> N
     assert "a velocity and `duration_s` are only valid together" in said.stderr
 
 
-def test_a_message_is_published_as_often_as_told() -> None:
+def test_a_message_is_published_as_often_as_requested() -> None:
     """Nobody jogs at present, so that nothing moves."""
     message = '{"velocity": [0, 0, -0.02, 0, 0, 0]}'
     said = CliRunner().invoke(app, ["bus", "publish", "left/jog", message, "--rate", "50", "--for", "0.1", *WHERE])

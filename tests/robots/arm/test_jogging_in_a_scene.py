@@ -59,7 +59,7 @@ async def jogged(cell: Simulated, goal: Action[Any, Any]) -> tuple[str, float]:
 
 
 @pytest.mark.virtual
-async def test_the_tool_told_to_go_through_the_table_stands_above_it() -> None:
+async def test_the_tool_commanded_through_the_table_stands_above_it() -> None:
     """As near as its rule allows, at 25 cm/s, without a contact; and it goes up again."""
     async with simulated() as cell:
         held_by, nearest_m = await jogged(cell, JogTool(velocity=DOWN, duration_s=4.0))
@@ -152,7 +152,7 @@ async def test_a_step_that_would_touch_something_is_rejected_and_nothing_moves(s
     assert moved < 1e-3
 
 
-async def told(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], set[float]]:
+async def jog_end(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], set[float]]:
     """Jog to the end; returns how it ended, what held it back, and which speeds of the first joint were sent."""
     handle = cell.bus.send_goal(goal, to="left")
     held: list[str] = []
@@ -177,7 +177,7 @@ async def test_an_arm_that_nobody_looks_ahead_of_stands() -> None:
     """A planning process that fails, or is silent; cameras that see nothing any more."""
     slow = (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     async with fake_cell() as cell:
-        assert (await told(cell, JogJoints(velocity_rad_s=slow, duration_s=0.5)))[2] == {0.0, 0.1}
+        assert (await jog_end(cell, JogJoints(velocity_rad_s=slow, duration_s=0.5)))[2] == {0.0, 0.1}
         handle = cell.bus.send_goal(JogJoints(velocity_rad_s=slow, duration_s=4.0), to="left")
         held: list[str] = []
         handle.on_feedback(lambda feedback: held.append(feedback.held_by))

@@ -14,7 +14,7 @@ LIMITS = panda_model().limits
 
 
 @pytest.mark.virtual
-async def test_the_tool_moves_at_the_velocity_told_and_comes_to_rest_when_the_key_is_released() -> None:
+async def test_the_tool_moves_at_the_commanded_velocity_and_comes_to_rest_when_the_key_is_released() -> None:
     """5 cm/s down for a second; after the release at rest within half a second, and within 1 cm."""
     async with simulated() as cell:
         handle = await cell.begun(JogTool(idle_s=1.0))

@@ -49,7 +49,7 @@ def test_an_arm_with_its_tool_holds_and_moves(tmp_path: Path, arm: str, tool: st
     home = np.array(model.home_rad)
     goal = home + np.resize((0.3, -0.2), model.dof)
 
-    async def story() -> tuple[Array, Array, str]:
+    async def scenario() -> tuple[Array, Array, str]:
         async with OpenCell(load_cell(file)) as cell:
             await cell.bus.clock.sleep(0.5)
             held = measured(cell)
@@ -60,7 +60,7 @@ def test_an_arm_with_its_tool_holds_and_moves(tmp_path: Path, arm: str, tool: st
             assert description is not None
             return held, measured(cell), description.calibration
 
-    held, reached, calibration = run_virtual(story())
+    held, reached, calibration = run_virtual(scenario())
     assert np.abs(held - home).max() < 0.002
     assert np.abs(reached - goal).max() < 0.002
     assert bool(calibration) == ("calibration" in options)

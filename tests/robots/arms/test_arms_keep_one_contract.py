@@ -87,7 +87,7 @@ class Driven:
         assert state is not None
         return state
 
-    def rests(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Whether no joint moves."""
         return float(np.abs(self.joints().velocity_rad_s).max()) < REST_RAD_S
 
@@ -104,7 +104,7 @@ class Driven:
         handle = self.bus.send_goal(goal, to="arm")
         await handle.accepted()
         await self.bus.clock.sleep(after_s)
-        assert not self.rests()
+        assert not self.is_at_rest()
         return handle
 
 
@@ -156,15 +156,15 @@ async def driven_through(arm: Driven, bench: ArmCase) -> dict[str, str]:
 
     held = await arm.begun(aside)
     await held.hold()
-    said["held"] = f"{held.status.value}, {'at rest' if arm.rests() else 'moving'}"
+    said["held"] = f"{held.status.value}, {'at rest' if arm.is_at_rest() else 'moving'}"
     await held.resume()
     said["resumed"] = words(await held.result())
     cancelled = await arm.begun(back)
     cancelled.cancel()
-    said["cancelled"] = f"{words(await cancelled.result())}, {'at rest' if arm.rests() else 'moving'}"
+    said["cancelled"] = f"{words(await cancelled.result())}, {'at rest' if arm.is_at_rest() else 'moving'}"
     stopped = await arm.begun(back)
     await arm.cell.robots["arm"].stop()
-    said["stopped"] = f"{words(await stopped.result())}, {'at rest' if arm.rests() else 'moving'}"
+    said["stopped"] = f"{words(await stopped.result())}, {'at rest' if arm.is_at_rest() else 'moving'}"
     said["next"] = words(await arm.done(back))
 
     said["jogged"] = words(await arm.done(JogJoints(velocity_rad_s=tuple(turn.tolist()), duration_s=0.3)))
@@ -213,9 +213,9 @@ def expected(dof: int) -> dict[str, str]:
 
 @pytest.mark.parametrize("bench", BENCHES, ids=lambda bench: f"{bench.model}-{bench.tool}")
 def test_it_does_what_every_arm_does_and_says_what_every_arm_says(tmp_path: Path, bench: ArmCase) -> None:
-    async def story() -> dict[str, str]:
+    async def scenario() -> dict[str, str]:
         async with opened(bench, tmp_path) as arm:
             return await driven_through(arm, bench)
 
     dof = robot_model(bench.model).dof
-    assert run_virtual(story()) == expected(dof)
+    assert run_virtual(scenario()) == expected(dof)

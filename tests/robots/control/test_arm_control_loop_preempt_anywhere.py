@@ -92,7 +92,7 @@ class WatchedArm:
         return self.number
 
 
-def way(arm: WatchedArm, random_: random.Random, *, speed: float = 1.0) -> JointTrajectory:
+def random_trajectory(arm: WatchedArm, random_: random.Random, *, speed: float = 1.0) -> JointTrajectory:
     """Return a fast motion to somewhere near home."""
     goal = HOME + np.array([random_.uniform(-0.6, 0.6) for _ in range(7)])
     return plan_joints(arm.set_point, goal, speed=speed, limits=LIMITS, joint_names=PANDA.arm_joints)
@@ -100,7 +100,9 @@ def way(arm: WatchedArm, random_: random.Random, *, speed: float = 1.0) -> Joint
 
 def follow(arm: WatchedArm, random_: random.Random) -> None:
     arm.simulation.apply(
-        FollowTrajectory(arm="left", motion=arm.next_number(), trajectory=way(arm, random_), tolerance=Tolerance())
+        FollowTrajectory(
+            arm="left", motion=arm.next_number(), trajectory=random_trajectory(arm, random_), tolerance=Tolerance()
+        )
     )
 
 
@@ -109,7 +111,11 @@ def guarded(arm: WatchedArm, random_: random.Random) -> None:
     contact = ContactCondition(force_n=5.0)
     arm.simulation.apply(
         FollowTrajectory(
-            arm="left", motion=arm.next_number(), trajectory=way(arm, random_), tolerance=Tolerance(), until=contact
+            arm="left",
+            motion=arm.next_number(),
+            trajectory=random_trajectory(arm, random_),
+            tolerance=Tolerance(),
+            until=contact,
         )
     )
     if random_.random() < 0.5:
@@ -118,7 +124,7 @@ def guarded(arm: WatchedArm, random_: random.Random) -> None:
 
 def track_force(arm: WatchedArm, random_: random.Random) -> None:
     """Pressed from outside now and then, so that the admittance works."""
-    trajectory = way(arm, random_, speed=0.2)
+    trajectory = random_trajectory(arm, random_, speed=0.2)
     samples = len(trajectory.position_rad)
     task = ForceTask(
         trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)), admittance=Admittance()

@@ -90,7 +90,7 @@ async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str
 
 
 @both_hosts_nightly
-async def test_nothing_starts_before_it_is_told_to_recover(host: str) -> None:
+async def test_nothing_starts_before_it_is_commanded_to_recover(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = await tripped(world)
         starts = (
@@ -107,7 +107,7 @@ async def test_nothing_starts_before_it_is_told_to_recover(host: str) -> None:
         assert (await move(arm, HOME + 0.1, 0.6)).end is MotionEnd.REACHED
 
 
-async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_told_the_very_one() -> None:
+async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_reported_the_very_one() -> None:
     """Its state is seen at once, what it tells when the loop turns; nor is the reason of an earlier stop given."""
     async with opened(one_arm()) as world:
         arm = await tripped(world)

@@ -129,7 +129,7 @@ def test_an_arm_that_is_initialized_forgets_its_motion_and_holds_the_position() 
     assert run(motion, lambda desired: desired.copy(), limit=1000)[0] == []
 
 
-def test_of_a_hold_and_a_resume_the_newest_is_told_with_its_number() -> None:
+def test_of_a_hold_and_a_resume_the_latest_is_reported_with_its_number() -> None:
     motion = new_motion(np.array([0.2, 0.1]), Tolerance())
     motion.hold(7, request=1)
     motion.resume(7, request=2)

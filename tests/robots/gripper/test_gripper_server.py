@@ -115,7 +115,7 @@ async def test_opening_opens_fully() -> None:
 
 
 @pytest.mark.virtual
-async def test_fingers_that_cannot_open_fail_and_tell_where_they_stopped() -> None:
+async def test_fingers_that_cannot_open_fail_and_report_where_they_stopped() -> None:
     """Blocked on the way out."""
     async with served(FakeGripperPort(obstacle_m=0.03, opens_to_m=0.05)) as bus:
         await bus.send_goal(GRASP, to=HAND).result()

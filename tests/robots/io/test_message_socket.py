@@ -46,7 +46,7 @@ def test_messages_to_a_parent_that_does_not_listen_are_kept_in_order_and_nothing
         assert heard == [(number, number) for number in range(1, 41)]
 
 
-def test_messages_that_came_in_pieces_are_taken_once_they_are_whole_and_their_end_is_told() -> None:
+def test_messages_that_came_in_pieces_are_taken_once_they_are_whole_and_their_end_is_reported() -> None:
     ours, theirs = socket.socketpair()
     theirs.setblocking(False)
     with theirs:

@@ -87,7 +87,7 @@ async def test_an_answer_that_nobody_waits_for_any_more_harms_nobody() -> None:
         assert await later.answer == Word(text="2")
 
 
-async def test_a_lost_process_fails_all_requests_now_and_later_and_is_told_once() -> None:
+async def test_a_lost_process_fails_all_requests_now_and_later_and_is_reported_once() -> None:
     async with connected() as wire:
         answer = wire.connection.ask(Word(text="a")).answer
         wire.theirs.close()

@@ -52,7 +52,7 @@ def test_every_arm_rests_within_its_limits_and_comes_with_its_licence(name: str)
         assert model.tool.licence_file.is_file()
 
 
-def test_an_arm_comes_with_its_own_tool_unless_told_otherwise() -> None:
+def test_an_arm_comes_with_its_own_tool_unless_another_is_named() -> None:
     assert model_by_name("panda") is robot_model("panda", gripper=OWN_TOOL)
     assert robot_model("panda") == robot_model("panda", gripper="panda_hand")
     assert robot_model("panda", gripper=None).tool is None

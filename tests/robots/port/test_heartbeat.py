@@ -74,6 +74,6 @@ def test_the_heartbeat_of_a_process_is_read_by_another_that_knows_its_number_onl
     os.close(descriptor)
 
 
-def test_a_process_without_a_heartbeat_is_told() -> None:
+def test_a_process_without_a_heartbeat_is_reported() -> None:
     with pytest.raises(FileNotFoundError, match="has no heartbeat"):
         Heartbeat.of_process(os.getpid())

@@ -39,7 +39,7 @@ async def test_the_loop_pulses_as_long_as_it_turns_and_the_control_process_is_he
 
 
 @pytest.mark.virtual
-async def test_a_control_process_that_stands_still_is_told_once_within_three_tenths_of_a_second(
+async def test_a_control_process_that_stands_still_is_reported_once_within_three_tenths_of_a_second(
     shared: Heartbeat,
 ) -> None:
     loop, silences = asyncio.get_running_loop(), list[float]()

@@ -44,7 +44,7 @@ def test_it_brakes_in_every_period_until_it_is_released(wire: tuple[socket.socke
     assert devices.causes == ["STOP: the door is open"] * 2
 
 
-def test_rest_is_told_when_it_is_measured(wire: tuple[socket.socket, socket.socket]) -> None:
+def test_rest_is_reported_when_it_is_measured(wire: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = wire
     devices = _Devices()
     monitor = StopMonitor(StopLine(ours), devices)

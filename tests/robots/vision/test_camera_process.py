@@ -24,7 +24,7 @@ from robots.vision.known_geometry import KnownGeometry
 from robots.vision.perception_messages import PerceptionResult, PerceptionSetup
 from robots.vision.real_time_perception import RealTimePerception
 from tests.robots.vision.cell_document import watched
-from tests.robots.vision.watched_cell import FRONT, block, cameras, look, scene, sight, voxels
+from tests.robots.vision.watched_cell import FRONT, block, cameras, look, perception_setup, scene, voxels
 
 WHAT = scene(block((0.5, 0.0, 0.3)))
 
@@ -63,12 +63,12 @@ def test_the_process_finds_the_parts_that_it_is_asked_to_look_for() -> None:
 def test_what_the_process_sees_is_what_is_there() -> None:
     async def main() -> tuple[str, int, int]:
         process = CameraProcess()
-        await process.start(sight(scene()))
+        await process.start(perception_setup(scene()))
         try:
             empty = await process.look(look(scene()))
             process.end()
             process = CameraProcess()
-            await process.start(sight(WHAT))
+            await process.start(perception_setup(WHAT))
             # The block is a fixture, hence known, until told otherwise.
             process.know(KnownGeometry())
             full = await process.look(look(WHAT))
@@ -85,7 +85,7 @@ def test_what_the_process_sees_is_what_is_there() -> None:
 def test_a_killed_process_fails_the_order_and_leaves_nothing_behind() -> None:
     async def main() -> int:
         process = CameraProcess()
-        await process.start(sight(WHAT))
+        await process.start(perception_setup(WHAT))
         pid = process.pid
         os.kill(pid, signal.SIGSTOP)
         answer = asyncio.ensure_future(process.look(look(WHAT)))
@@ -107,7 +107,7 @@ def test_a_cell_that_cannot_be_built_is_refused_in_words() -> None:
         process = CameraProcess()
         nobody = ArmPlacement(name="arm", model="nobody", base=Pose(xyz=(0.0, 0.0, 0.0)))
         with pytest.raises(CellError, match="nobody"):
-            await process.start(sight(scene(arms=(nobody,))))
+            await process.start(perception_setup(scene(arms=(nobody,))))
         assert process.pid == 0
 
     asyncio.run(main())
@@ -116,7 +116,7 @@ def test_a_cell_that_cannot_be_built_is_refused_in_words() -> None:
 def test_an_order_that_makes_no_sense_is_refused_and_the_next_one_is_carried_out() -> None:
     async def main() -> int:
         process = CameraProcess()
-        await process.start(sight(WHAT))
+        await process.start(perception_setup(WHAT))
         try:
             good = look(WHAT)
             for bad in (

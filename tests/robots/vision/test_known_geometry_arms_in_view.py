@@ -22,7 +22,7 @@ from robots.vision.occupancy.arm_body import ArmBody
 from robots.vision.occupancy.occupancy_mapper import OccupancyMapper
 from robots.vision.perception_messages import PerceptionRequest
 from robots.vision.voxel_box import voxel_box
-from tests.robots.vision.watched_cell import PANDA, block, cameras, look, scene, sight, voxels
+from tests.robots.vision.watched_cell import PANDA, block, cameras, look, perception_setup, scene, voxels
 
 ROOM = voxel_box(OccupancyMap(center_m=(0.0, 0.0, 1.1), size_m=(4.0, 4.0, 2.4), voxel_m=0.02))
 AROUND = cameras(
@@ -45,7 +45,7 @@ class Stage:
         self._names = names
         self._simulation = Simulation(self.cell)
         self._q: Array = self._simulation._physics.positions  # pyright: ignore[reportPrivateUsage]
-        self.eye = CameraRig(sight(what, *AROUND, box=ROOM), repeatable=True)
+        self.eye = CameraRig(perception_setup(what, *AROUND, box=ROOM), repeatable=True)
 
     def see(self, joints: Array, *, part: Pose | None = None) -> Array:
         """Return the voxels after a look with the arm at these joints."""
@@ -72,7 +72,7 @@ def test_an_arm_leaves_no_voxel_anywhere_it_can_be(name: str) -> None:
     assert [len(stage.see(joints)) for joints in postures(arm, 12)] == [0] * 12
 
 
-def test_a_moving_arm_leaves_no_trail_and_does_not_wipe_away_what_it_passes() -> None:
+def test_a_moving_arm_leaves_no_voxels_behind_and_does_not_wipe_away_what_it_passes() -> None:
     pillar = block((0.6, 0.6, 0.5), (0.1, 0.1, 1.0), name="pillar")
     stage = Stage(scene(pillar, arms=(PANDA,)))
     # The map knows the floor alone.
@@ -137,7 +137,7 @@ def test_a_held_part_that_is_not_measured_is_where_the_arm_has_it() -> None:
     at = ArmBody(PANDA).link_pose(home, PANDA.robot().tool_link)
     x, y, z = (at.xyz + at.rotation @ np.array([0.0, 0.0, 0.3])).tolist()
     what = scene(block((x, y, z), (0.2, 0.2, 0.2)))
-    stage = CameraRig(sight(what, *AROUND, box=ROOM), repeatable=True)
+    stage = CameraRig(perception_setup(what, *AROUND, box=ROOM), repeatable=True)
     images = stage.look(look(what, ("front", "side"))).images
     moment = MeasuredState(time_s=0.0, arms={"arm": home})
     mapper.know(KnownGeometry(obstacles=known_obstacles(scene())))

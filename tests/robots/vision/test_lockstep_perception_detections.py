@@ -148,7 +148,7 @@ def test_two_runs_find_the_same_to_the_bit(tmp_path: Path) -> None:
     assert run_virtual(main()) == first
 
 
-def test_who_waits_when_the_cell_closes_or_the_camera_fails_is_told(tmp_path: Path) -> None:
+def test_who_waits_when_the_cell_closes_or_the_camera_fails_is_notified(tmp_path: Path) -> None:
     async def main() -> tuple[str, str]:
         async with OpenCell(cell_with(tmp_path)) as cell:
             assert isinstance(cell.world, SimWorld)

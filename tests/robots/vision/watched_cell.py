@@ -38,7 +38,7 @@ def scene(*unknown: FixtureBody, arms: tuple[ArmPlacement, ...] = (), parts: tup
     return SimScene(step_s=0.002, gravity=False, arms=arms, fixtures=(FLOOR, *unknown), parts=parts)
 
 
-def sight(what: SimScene, *seen_by: CameraSpec, box: VoxelBox = BOX) -> PerceptionSetup:
+def perception_setup(what: SimScene, *seen_by: CameraSpec, box: VoxelBox = BOX) -> PerceptionSetup:
     """Return what is looked at."""
     return PerceptionSetup(scene=what, cameras=seen_by or cameras(front=FRONT), box=box)
 

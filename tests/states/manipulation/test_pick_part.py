@@ -128,7 +128,7 @@ async def test_every_kind_of_tool_takes_a_part(tool: str, closes: str) -> None:
     assert state.resources() == ("arm", f"arm/{tool}")
 
 
-async def test_the_arm_is_told_of_its_load_where_the_behavior_knows_it() -> None:
+async def test_the_arm_gets_its_load_where_the_behavior_knows_it() -> None:
     ctx = cell()
     assert (await PickPart(robot="arm", part="block", width_m=0.05, mass_kg=1.5).run(ctx)).name == "picked"
     assert ("arm/set_load", SetLoad(mass_kg=1.5)) in ctx.sent

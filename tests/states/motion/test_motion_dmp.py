@@ -198,7 +198,7 @@ async def test_pressing_that_fails_learns_nothing() -> None:
     assert len(ctx.sent) == 1
 
 
-async def test_a_learned_joint_primitive_is_stored_and_its_error_told() -> None:
+async def test_a_learned_joint_primitive_is_stored_and_its_error_reported() -> None:
     """Under the name that is asked for."""
     fit = JointFit(kernels=25, rms_rad=0.001, max_rad=0.004, end_rad=0.0, joint=3, cut=CUT)
     ctx = FakeContext(
@@ -213,7 +213,7 @@ async def test_a_learned_joint_primitive_is_stored_and_its_error_told() -> None:
     assert ctx.sent[1] == ("store/write_entry", write)
 
 
-async def test_a_learned_cartesian_primitive_is_stored_and_its_error_told() -> None:
+async def test_a_learned_cartesian_primitive_is_stored_and_its_error_reported() -> None:
     fit = CartFit(kernels=25, rms_m=0.001, max_m=0.002, end_m=0.0, rms_rad=0.001, max_rad=0.004, end_rad=0.0, cut=CUT)
     ctx = FakeContext(
         {

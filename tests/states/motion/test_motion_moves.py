@@ -98,7 +98,7 @@ async def test_a_pose_entry_with_an_offset_is_commanded_along_the_world() -> Non
     assert ctx.sent[1] == ("right/cart_trap_vel", CartTrapVel(pose=pose, speed=1.0))
 
 
-async def test_what_of_the_pose_counts_is_told_to_the_arm() -> None:
+async def test_what_of_the_pose_counts_is_sent_to_the_arm() -> None:
     """All of it, unless the behavior says otherwise."""
     ctx = FakeContext({"right/cart_trap_vel": DONE_CART})
     target = PoseTarget(xyz=(0.1, 0.2, 0.3))

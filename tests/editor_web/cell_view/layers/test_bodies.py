@@ -8,10 +8,10 @@ import viser
 
 from editor_web.cell_view.layers.bodies import BodyLayer, body_node
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
-from tests.editor_web.fake_sights import description, frames_with_a_person, scene_with_a_person, way
+from tests.editor_web.fake_sights import description, frames_with_a_person, planned_path, scene_with_a_person
 
 
-def newest_at(time_s: float) -> LatestMessages:
+def messages_at(time_s: float) -> LatestMessages:
     """The fake cell with a person, before any arm has said what it is."""
     made = LatestMessages()
     made.put("cell", scene_with_a_person())
@@ -39,7 +39,7 @@ def test_bodies_of_neither_an_arm_nor_the_cell_are_those_of_people(frame: str, n
 
 
 def test_people_find_their_group_once_the_arms_are_known(server: viser.ViserServer) -> None:
-    bodies, newest = BodyLayer(server), newest_at(0.0)
+    bodies, newest = BodyLayer(server), messages_at(0.0)
     bodies.draw(newest)
     assert is_there(server, "/cell/anna.hand", "/people/anna.hand", "/frames/left.tool") == [True, False, False]
     for arm in ("left", "right"):
@@ -60,24 +60,24 @@ def colours(server: viser.ViserServer) -> dict[str, tuple[int, ...]]:
 
 
 def test_the_two_bodies_that_would_touch_are_red_until_the_way_is_free(server: viser.ViserServer) -> None:
-    bodies, newest = BodyLayer(server), newest_at(0.0)
+    bodies, newest = BodyLayer(server), messages_at(0.0)
     for arm in ("left", "right"):
         newest.put(arm, description(arm))
     bodies.draw(newest)
     plain = colours(server)
-    newest.put("left", way("left", "blocked", reason="left/fore would touch tray_north and 1 more"))
+    newest.put("left", planned_path("left", "blocked", reason="left/fore would touch tray_north and 1 more"))
     bodies.draw(newest)
     assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "tray"}
-    newest.put("left", way("left", "blocked", reason="left/fore would touch right/fore"))
+    newest.put("left", planned_path("left", "blocked", reason="left/fore would touch right/fore"))
     bodies.draw(newest)
     assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "right/fore"}
-    newest.put("left", way("left", "moving"))
+    newest.put("left", planned_path("left", "moving"))
     bodies.draw(newest)
     assert colours(server) == plain
 
 
 def test_what_is_drawn_once_is_only_moved(server: viser.ViserServer) -> None:
-    bodies, newest = BodyLayer(server), newest_at(0.0)
+    bodies, newest = BodyLayer(server), messages_at(0.0)
     bodies.draw(newest)
     table, fore = (server.scene.get_handle_by_name(f"/cell/{name}") for name in ("world/0", "left.fore"))
     assert fore is not None
@@ -91,7 +91,7 @@ def test_what_is_drawn_once_is_only_moved(server: viser.ViserServer) -> None:
 
 
 def test_the_first_look_has_the_whole_cell_in_it(server: viser.ViserServer) -> None:
-    BodyLayer(server).draw(newest_at(0.0))
+    BodyLayer(server).draw(messages_at(0.0))
     camera = server.initial_camera
     away_m = float(np.linalg.norm(np.subtract(camera.position, camera.look_at)))
     half_table_m = float(np.hypot(0.8, 0.6))

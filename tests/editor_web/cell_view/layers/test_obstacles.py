@@ -13,11 +13,11 @@ from editor_web.cell_view.rendering.transforms import matrix_of_pose, poses_by_f
 from engine.messages import Pose
 from engine.messages.shapes import Hull, Obstacle
 from tests.editor_web.fake_scene import frames_at, new_scene
-from tests.editor_web.fake_sights import planning_scene, way
+from tests.editor_web.fake_sights import planned_path, planning_scene
 
 
 @pytest.fixture
-def newest() -> LatestMessages:
+def messages() -> LatestMessages:
     """The fake cell with a planning scene."""
     made = LatestMessages()
     for message in (new_scene(), frames_at(0.0), planning_scene()):
@@ -68,11 +68,11 @@ def test_what_a_blocked_way_names_stands_out_until_the_way_is_free(
     obstacles = ObstacleLayer(server)
     obstacles.draw(newest)
     plain = colour(server, "post")
-    newest.put("left", way("left", "blocked", reason="left/fore would touch post, not crates"))
+    newest.put("left", planned_path("left", "blocked", reason="left/fore would touch post, not crates"))
     obstacles.draw(newest)
     assert colour(server, "post") != plain
     assert colour(server, "crate") == plain
-    newest.put("left", way("left", "moving"))
+    newest.put("left", planned_path("left", "moving"))
     obstacles.draw(newest)
     assert colour(server, "post") == plain
 

@@ -54,7 +54,7 @@ def drawn(server: viser.ViserServer) -> viser.PointCloudHandle:
     return handle
 
 
-def test_a_grid_is_drawn_ten_times_a_second_at_most_and_the_newest_one_in_the_end(server: viser.ViserServer) -> None:
+def test_a_grid_is_drawn_ten_times_a_second_at_most_and_the_latest_one_in_the_end(server: viser.ViserServer) -> None:
     voxels, newest = VoxelLayer(server), LatestMessages()
     assert voxels.draw(newest, 0.0) is None
     for reach in (0.0, 0.3):
@@ -91,7 +91,7 @@ def test_a_space_that_has_become_free_shows_nothing(server: viser.ViserServer) -
     assert len(drawn(server).points) == 0
 
 
-def test_garbage_is_told_once_and_what_comes_next_is_drawn(
+def test_garbage_is_reported_once_and_what_comes_next_is_drawn(
     server: viser.ViserServer, caplog: pytest.LogCaptureFixture
 ) -> None:
     voxels, newest = VoxelLayer(server), LatestMessages()

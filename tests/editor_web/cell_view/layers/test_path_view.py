@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 from editor_web.cell_view.layers.path_view import REST_S, TRAVEL_S, PathLayer, interpolate_joints
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from tests.editor_web.fake_scene import frames_at, new_scene
-from tests.editor_web.fake_sights import description, way
+from tests.editor_web.fake_sights import description, planned_path
 
 rows = st.lists(st.tuples(*[st.floats(-3, 3)] * 3), min_size=1, max_size=6).map(tuple)
 
 
 @pytest.fixture
-def newest() -> LatestMessages:
+def messages() -> LatestMessages:
     """The fake cell with what its left arm says of itself."""
     made = LatestMessages()
     for name, message in (("left", description("left")), ("cell", new_scene()), ("cell", frames_at(0.0))):
@@ -51,7 +51,7 @@ def test_a_share_of_the_way_lies_on_it(joints: tuple[tuple[float, ...], ...], sh
 def test_a_proposed_way_has_a_line_and_a_ghost_that_goes_along_it(
     server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
 ) -> None:
-    ways, preview = PathLayer(server), way("left")
+    ways, preview = PathLayer(server), planned_path("left")
     newest.put("left", preview)
     assert ways.draw(newest, 0.0, is_shown=True) is not None
     assert node("line").points.shape == (len(preview.tool_path) - 1, 2, 3)
@@ -71,7 +71,7 @@ def test_the_ghost_of_a_way_that_an_arm_goes_stands_at_the_goal_in_the_colour_of
     ways = PathLayer(server)
     colours: list[tuple[int, ...]] = []
     for state in ("proposed", "moving", "blocked"):
-        newest.put("left", way("left", state))
+        newest.put("left", planned_path("left", state))
         ways.draw(newest, 0.0, is_shown=True)
         colours.append(tuple(node("goal").color))
     assert len(set(colours)) == 3
@@ -86,13 +86,13 @@ def test_a_way_that_is_over_vanishes_and_the_meshes_are_kept_for_the_next_one(
     server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     ways = PathLayer(server)
-    newest.put("left", way("left"))
+    newest.put("left", planned_path("left"))
     ways.draw(newest, 0.0, is_shown=True)
     body = node("ghost/fore")
-    newest.put("left", way("left", "none"))
+    newest.put("left", planned_path("left", "none"))
     assert ways.draw(newest, 1.0, is_shown=True) is None
     assert (node("line"), node("goal"), node("ghost").visible) == (None, None, False)
-    newest.put("left", way("left", "moving"))
+    newest.put("left", planned_path("left", "moving"))
     ways.draw(newest, 2.0, is_shown=True)
     assert node("ghost/fore") is body
     assert node("ghost").visible
@@ -103,7 +103,7 @@ def test_without_a_description_that_can_be_read_the_line_alone_is_drawn(
     server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any], urdf: str
 ) -> None:
     newest.put("left", msgspec.structs.replace(description("left"), urdf=urdf))
-    newest.put("left", way("left"))
+    newest.put("left", planned_path("left"))
     PathLayer(server).draw(newest, 0.0, is_shown=True)
     assert node("line") is not None
     assert node("ghost") is None
@@ -113,6 +113,6 @@ def test_a_way_of_numbers_that_are_none_is_not_drawn(
     server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     path = ((0.0, 0.0, 0.0), (float("nan"), 0.0, 0.0))
-    newest.put("left", msgspec.structs.replace(way("left"), tool_path=path, joints=()))
+    newest.put("left", msgspec.structs.replace(planned_path("left"), tool_path=path, joints=()))
     assert PathLayer(server).draw(newest, 0.0, is_shown=True) is None
     assert node("line") is None

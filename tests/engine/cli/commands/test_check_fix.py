@@ -62,7 +62,7 @@ def file(tmp_path: Path) -> Path:
     return made
 
 
-def test_slips_are_fixed_and_told_and_everything_else_stays(file: Path) -> None:
+def test_slips_are_fixed_and_reported_and_everything_else_stays(file: Path) -> None:
     """A second time there is nothing to do."""
     said = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert said.out.splitlines() == [
@@ -105,7 +105,7 @@ def test_machines_read_only_what_is_left(file: Path) -> None:
     assert (said.code, json.loads(said.out), said.err.count(": fixed: ")) == (0, [], 2)
 
 
-def test_a_read_only_file_is_told_and_left(file: Path) -> None:
+def test_a_read_only_file_is_reported_and_left(file: Path) -> None:
     """Also to whoever may write everywhere; other files are fixed all the same."""
     file.chmod(0o444)
     other = file.with_name("y.yaml")

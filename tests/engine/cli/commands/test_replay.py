@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.journal import list_runs
-from tests.engine.cli.command import Said, flexcell
+from tests.engine.cli.command import CommandOutput, flexcell
 
 WAIT = """
 flexcell: 1
@@ -34,7 +34,7 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def record(project: Path, *arguments: str) -> Said:
+def record(project: Path, *arguments: str) -> CommandOutput:
     """Record a run in virtual time."""
     return flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--record", "run.mcap", *arguments, cwd=project)
 
@@ -62,7 +62,7 @@ def test_a_difference_is_exit_code_4_and_one_line_with_both_sides(project: Path)
     )
 
 
-def test_json_and_junit_tell_all_of_several(project: Path) -> None:
+def test_json_and_junit_report_all_of_several(project: Path) -> None:
     record(project)
     (project / "bad.mcap").write_bytes(b"no recording")
     (project / "changed.yaml").write_text(WAIT.replace("done: choose", "done: failed"), encoding="utf-8")
@@ -145,7 +145,7 @@ def test_what_is_wrong_with_a_file_to_be_written_is_said_before_the_run(project:
         assert message in said.err
 
 
-def test_a_run_whose_report_finds_no_space_has_been_and_is_told(project: Path) -> None:
+def test_a_run_whose_report_finds_no_space_has_been_and_is_reported(project: Path) -> None:
     """Exit code 3, so that no CI takes it for good; what can be told is."""
     said = flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--junit", "/dev/full", cwd=project)
     assert said.code == 3

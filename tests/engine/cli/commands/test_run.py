@@ -155,7 +155,7 @@ def _running(journal: Path) -> bool:
         return False
 
 
-def test_the_version_is_told_without_loading_the_rest() -> None:
+def test_the_version_is_printed_without_loading_the_rest() -> None:
     """By the installed script."""
     imported = "import sys; sys.argv[1:] = ['--version']; from engine.cli.entry import main; main(); "
     done = subprocess.run(

@@ -10,7 +10,7 @@ import pytest
 
 from engine.event import ServiceCalled
 from engine.journal import list_runs, read_events
-from tests.engine.cli.command import Said, flexcell
+from tests.engine.cli.command import CommandOutput, flexcell
 
 BEHAVIOR = """
 flexcell: 1
@@ -41,7 +41,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def _run(folder: Path, faults: str, *more: str) -> Said:
+def _run(folder: Path, faults: str, *more: str) -> CommandOutput:
     (folder / "faults.yaml").write_text(f"flexcell: 1\nfaults:\n{faults}\n", encoding="utf-8")
     return flexcell("run", "write.yaml", "--clock", "virtual", "--faults", "faults.yaml", *more, cwd=folder)
 

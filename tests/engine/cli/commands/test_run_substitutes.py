@@ -51,7 +51,7 @@ def _run(folder: Path, *more: str) -> dict[str, object]:
     return json.loads(said.out)
 
 
-def test_what_stood_in_is_told(folder: Path) -> None:
+def test_what_stood_in_is_reported(folder: Path) -> None:
     result = _run(folder)
     assert (result["outcome"], result["duration_s"], result["stood_in_for"]) == ("finished", 5.0, ["root/read"])
     assert result["userdata"] == {"width": 0.03}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from engine.event import NodeEntered, NodeExited
-from tests.engine.cli.command import Said, flexcell
+from tests.engine.cli.command import CommandOutput, flexcell
 from tests.engine.cli.process import entered, events_in, run_id_in, runs_in, started, until
 
 STEPS = """
@@ -43,7 +43,7 @@ def behavior(tmp_path: Path) -> Path:
     return file
 
 
-def finished(behavior: Path, *options: str) -> Said:
+def finished(behavior: Path, *options: str) -> CommandOutput:
     """Run it in virtual time."""
     return flexcell("run", behavior, "--clock", "virtual", "-q", *options, cwd=behavior.parent)
 
@@ -136,7 +136,7 @@ def test_it_may_begin_elsewhere_and_with_another_version(behavior: Path) -> None
         (("--at", "root/two"), "--at requires --from"),
     ],
 )
-def test_moments_that_are_not_there_start_nothing(behavior: Path, options: tuple[str, ...], reason: str) -> None:
+def test_instants_that_are_not_there_start_nothing(behavior: Path, options: tuple[str, ...], reason: str) -> None:
     folder = behavior.parent
     finished(behavior)
     run = run_id_in(folder)

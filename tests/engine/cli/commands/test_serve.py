@@ -49,7 +49,7 @@ def test_logging_in_where_no_server_runs_says_so(tmp_path: Path) -> None:
         login(state=tmp_path)
 
 
-def test_a_state_folder_that_cannot_be_written_is_told_at_the_start(tmp_path: Path) -> None:
+def test_a_state_folder_that_cannot_be_written_is_reported_at_the_start(tmp_path: Path) -> None:
     """Before anything is opened: path and what to do."""
     (tmp_path / "file").write_text("")
     with pytest.raises(FlexcellError, match=r"file/state: the state folder cannot be written: .*--state"):

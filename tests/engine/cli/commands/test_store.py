@@ -30,7 +30,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mongod]:
     mongod.remove()
 
 
-def said(*arguments: str) -> str:
+def output(*arguments: str) -> str:
     """What `flexcell store` prints, in this process; times are WHEN, errors as the command line tells them."""
     result = CliRunner().invoke(app, list(arguments))
     assert result.exception is None or isinstance(result.exception, FlexcellError), result.exception
@@ -46,17 +46,17 @@ def test_a_life_of_an_entry_reads_the_same_on_both_stores(server: Mongod, tmp_pa
         who = ("--by", "ana")
         told.append(
             [
-                said("set", "joints", "home", '{"joints": [1, 2]}', "--tag", "fast", "--reason", "taught", *who, *at),
-                said("set", "joints", "home", '{"joints": [3]}', "--expected-revision", "7", *who, *at),
-                said("set", "joints", "home", '{"joints": [1, 3]}', *who, *at),
-                said("undo", "joints", "home", "--reason", "worse", *who, *at),
-                said("show", "joints", "home", *at),
-                said("list", "--search", "ho", "--tag", "fast", *at),
-                said("export", *at),
-                said("delete", "joints", "home", *who, *at),
-                said("history", "joints", "home", *at),
-                said("get", "joints", "home", *at),
-                said("list", "--json", *at),
+                output("set", "joints", "home", '{"joints": [1, 2]}', "--tag", "fast", "--reason", "taught", *who, *at),
+                output("set", "joints", "home", '{"joints": [3]}', "--expected-revision", "7", *who, *at),
+                output("set", "joints", "home", '{"joints": [1, 3]}', *who, *at),
+                output("undo", "joints", "home", "--reason", "worse", *who, *at),
+                output("show", "joints", "home", *at),
+                output("list", "--search", "ho", "--tag", "fast", *at),
+                output("export", *at),
+                output("delete", "joints", "home", *who, *at),
+                output("history", "joints", "home", *at),
+                output("get", "joints", "home", *at),
+                output("list", "--json", *at),
             ]
         )
     assert told[0] == told[1]
@@ -74,8 +74,8 @@ def test_a_life_of_an_entry_reads_the_same_on_both_stores(server: Mongod, tmp_pa
     assert told[0][8].splitlines() == history
     assert told[0][9:] == ["error: store: there is no joints entry called home (there are none)", "[]\n"]
     moved = str(tmp_path / "moved.db")
-    assert said("migrate", address, moved).startswith(f"1 entries with 4 changes are in {moved}, 4 new; verified")
-    assert said("history", "joints", "home", "--store", moved).splitlines() == history
+    assert output("migrate", address, moved).startswith(f"1 entries with 4 changes are in {moved}, 4 new; verified")
+    assert output("history", "joints", "home", "--store", moved).splitlines() == history
 
 
 def test_migrating_from_a_file_that_is_not_there_makes_none(tmp_path: Path) -> None:
@@ -131,15 +131,15 @@ def test_a_server_that_is_not_there_is_one_line(tmp_path: Path) -> None:
 def test_tags_go_through_a_document_from_one_store_to_another(tmp_path: Path) -> None:
     """Exported and imported again; what the document says no tags of keeps its own."""
     here, there, file = str(tmp_path / "here.db"), str(tmp_path / "there.db"), tmp_path / "entries.yaml"
-    said(
+    output(
         "set", "joints", "home", '{"joints": [1], "names": ["a"]}', "--tag", "tested", "--tag", "fast", "--store", here
     )
-    said("set", "record", "tray", '{"rows": 4}', "--store", here)
-    said("set", "record", "tray", '{"rows": 3}', "--tag", "old", "--store", there)
-    file.write_text(said("export", "--store", here), encoding="utf-8")
-    assert said("import", str(file), "--overwrite", "--store", there) == "2 of 2 entries written\n"
-    listed = json.loads(said("list", "--json", "--store", there))
+    output("set", "record", "tray", '{"rows": 4}', "--store", here)
+    output("set", "record", "tray", '{"rows": 3}', "--tag", "old", "--store", there)
+    file.write_text(output("export", "--store", here), encoding="utf-8")
+    assert output("import", str(file), "--overwrite", "--store", there) == "2 of 2 entries written\n"
+    listed = json.loads(output("list", "--json", "--store", there))
     assert [(key["name"], key["tags"]) for key in listed] == [("home", ["fast", "tested"]), ("tray", ["old"])]
-    assert said("export", "--store", there).replace("  records:\n    tray: [old]\n", "") == file.read_text(
+    assert output("export", "--store", there).replace("  records:\n    tray: [old]\n", "") == file.read_text(
         encoding="utf-8"
     )

@@ -22,7 +22,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def said(*arguments: str) -> str:
+def output(*arguments: str) -> str:
     """What it prints, errors as the command line tells them."""
     result = CliRunner().invoke(app, ["propose", *arguments, "--cell", str(CELL)])
     assert result.exception is None or isinstance(result.exception, FlexcellError), result.exception
@@ -32,7 +32,7 @@ def said(*arguments: str) -> str:
 def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -> None:
     """Its cell is named relative to it, what was said are the defaults of its parameters."""
     steps = ("home", "approach_pick=approach", "pick", "+close", "place=release", "+open")
-    told = said(*steps, "--out", "sub/taught.yaml", "--width", "0.05", "--speed", "0.4", "--approach", "0.2")
+    told = output(*steps, "--out", "sub/taught.yaml", "--width", "0.05", "--speed", "0.4", "--approach", "0.2")
     assert told.splitlines() == ["1. Move to home", "2. Pick payload at pick", "3. Place payload at place"]
     file = tmp_path / "sub" / "taught.yaml"
     assert check_file(file, load_states()) == ()
@@ -41,10 +41,10 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
     assert {name: one.default for name, one in behavior.document.parameters.items()} == {
         "speed": 0.4, "line_speed_m_s": 0.1, "approach_m": 0.2, "width_m": 0.05,
     }  # fmt: skip
-    assert said("home", "--out", "sub/taught.yaml").startswith(
+    assert output("home", "--out", "sub/taught.yaml").startswith(
         "error: sub/taught.yaml: the file exists (give another name"
     )
-    assert said("home", "--out", "sub/taught.yaml", "--replace") == "1. Move to home\n"
+    assert output("home", "--out", "sub/taught.yaml", "--replace") == "1. Move to home\n"
 
 
 @pytest.mark.parametrize(
@@ -61,5 +61,5 @@ def test_a_behavior_is_written_that_the_check_finds_nothing_in(tmp_path: Path) -
 )
 def test_what_cannot_be_proposed_is_refused_in_words(steps: tuple[str, ...], says: str, tmp_path: Path) -> None:
     """And no file is written."""
-    assert says in said(*steps, "--out", "taught.yaml")
+    assert says in output(*steps, "--out", "taught.yaml")
     assert not (tmp_path / "taught.yaml").exists()

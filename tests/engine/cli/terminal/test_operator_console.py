@@ -12,7 +12,7 @@ from typing import IO
 import pytest
 
 from engine.event import AnyEvent, GateReached, OperatorChanged, OperatorCommanded, RunEnded, StopRequested
-from tests.engine.cli.command import FLEXCELL, Said, flexcell
+from tests.engine.cli.command import FLEXCELL, CommandOutput, flexcell
 from tests.engine.cli.process import entered, events_in, started, until
 
 NESTED = """
@@ -72,13 +72,13 @@ def nested(tmp_path: Path) -> Path:
     return file
 
 
-def operated(file: Path, script: str, *options: str) -> Said:
+def operated(file: Path, script: str, *options: str) -> CommandOutput:
     """Run it in virtual time with these lines on standard input."""
     command = [FLEXCELL, "run", file, "--clock", "virtual", "--operator", *options]
     done = subprocess.run(
         command, cwd=file.parent, input=script, capture_output=True, text=True, timeout=100, check=False
     )
-    return Said(done.returncode, done.stdout, done.stderr)
+    return CommandOutput(done.returncode, done.stdout, done.stderr)
 
 
 def commanded(folder: Path) -> list[str]:

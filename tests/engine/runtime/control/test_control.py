@@ -96,7 +96,7 @@ def test_a_run_whose_operator_is_lost_is_held_after_a_while() -> None:
     assert commands(told)[:3] == [(4.0, "pause"), (11.0, "resume"), (12.0, "answer")]
 
 
-def test_a_run_whose_operator_is_lost_goes_on_without_questions_if_told_so() -> None:
+def test_a_run_whose_operator_is_lost_goes_on_without_questions_if_so_configured() -> None:
     told = operate(ASKS, {0.5: attach, 1.0: lose}, supervision=options("continue"))
     assert [event.time_s for event in told.events if isinstance(event, OutcomeRequested)] == [2.0]
     assert (told.result.outcome, told.result.duration_s, commands(told)) == ("good", 24.0, [])
@@ -107,7 +107,7 @@ def test_a_run_that_demands_an_operator_asks_also_when_it_was_lost() -> None:
     assert commands(told)[0] == (9.0, "answer")
 
 
-def test_a_run_whose_operator_is_lost_is_stopped_if_told_so() -> None:
+def test_a_run_whose_operator_is_lost_is_stopped_if_so_configured() -> None:
     told = operate(ASKS, {0.5: attach, 1.0: lose}, supervision=options("stop"))
     assert (told.result.status, told.result.duration_s) == ("stopped", 4.0)
     assert "the operator was lost" in str(told.events)

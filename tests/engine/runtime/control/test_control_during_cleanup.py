@@ -68,7 +68,7 @@ def one(kind: type[State]) -> str:
 
 def cleaned(told: ObservedRun) -> list[str]:
     """The clean-ups that came to their end."""
-    return [line for line in told.story if line.endswith("cleaned up")]
+    return [line for line in told.lines if line.endswith("cleaned up")]
 
 
 class ParkTable(State, frozen=True, kw_only=True):
@@ -117,7 +117,7 @@ def test_a_pause_stands_for_what_follows_a_forced_outcome() -> None:
 def test_the_same_order_given_twice_is_one_order(first: Act) -> None:
     told = operate(ONE, {1.0: first, 1.5: first, 6.0: force("root/one")})
     assert (told.result.status, told.result.outcome) == ("finished", "good")
-    assert len(cleaned(told)) == sum("-root/one" in line for line in told.story)
+    assert len(cleaned(told)) == sum("-root/one" in line for line in told.lines)
 
 
 def test_of_two_orders_the_later_one_is_carried_out() -> None:

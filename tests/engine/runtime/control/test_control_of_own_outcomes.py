@@ -81,10 +81,10 @@ def test_with_enough_autonomy_an_offer_passes_at_once() -> None:
     assert (told.result.outcome, told.result.duration_s) == ("good", 0.0)
 
 
-def test_a_state_is_told_of_pause_and_resume() -> None:
+def test_a_state_is_notified_of_pause_and_resume() -> None:
     text = "root: {machine: {initial: one, states: {one: {state: test.Hum, transitions: {done: good}}}}}"
     told = operate(text, {1.0: lambda run: run.control.pause(), 3.0: lambda run: run.control.resume()}, states=STATES)
-    assert [line for line in told.story if line.startswith("!")] == ["!root/one silent", "!root/one humming"]
+    assert [line for line in told.lines if line.startswith("!")] == ["!root/one silent", "!root/one humming"]
     assert told.result.duration_s == pytest.approx(6.0)
 
 

@@ -56,7 +56,7 @@ def test_the_timeout_of_a_node_stands_still_too() -> None:
 def test_a_stop_beats_a_pause() -> None:
     told = operate(LONG, {0.5: pause, 1.0: lambda run: run.stop("enough")})
     assert (told.result.status, told.result.duration_s) == ("stopped", pytest.approx(1.0))
-    assert told.story[-2:] == ["-root/first preempted", "-root preempted"]
+    assert told.lines[-2:] == ["-root/first preempted", "-root preempted"]
 
 
 def test_a_goal_is_held_until_it_is_resumed_and_the_pause_confirmed_when_at_rest() -> None:

@@ -53,7 +53,7 @@ def _force(path: str, outcome: str) -> Act:
 
 
 def _cleaned(told: ObservedRun) -> list[str]:
-    return [line for line in told.story if line.endswith("cleaned up")]
+    return [line for line in told.lines if line.endswith("cleaned up")]
 
 
 def _preempted(told: ObservedRun) -> list[tuple[float, str]]:
@@ -122,7 +122,7 @@ def test_a_branch_may_be_taken_away_while_it_cleans_up_for_a_condition() -> None
     told = operate(
         TEXT.replace("cleanup_s: 2", "cleanup_s: 8"), {1.5: pause, 2.0: _change(without, preempt=True), 2.5: resume}
     )
-    late = [line for line in told.story if "still cleaning up" in line]
+    late = [line for line in told.lines if "still cleaning up" in line]
     assert (told.result.outcome, late) == ("good", ["!root/both/mover asked to stop 5 s ago and still cleaning up"])
 
 

@@ -101,7 +101,7 @@ def test_the_reason_of_a_lock_is_in_its_event() -> None:
 def test_a_forced_outcome_preempts_what_runs_and_takes_its_transition() -> None:
     told = operate(NESTED, {0.5: lambda run: run.control.force("root/two", "bad")})
     assert told.result.outcome == "bad"
-    assert told.story[-4:-1] == ["+root/two/left", "-root/two/left preempted", "-root/two preempted"]
+    assert told.lines[-4:-1] == ["+root/two/left", "-root/two/left preempted", "-root/two preempted"]
     assert told.result.cause is not None
     assert "forced by the operator" in str(told.result.cause)
 
@@ -109,7 +109,7 @@ def test_a_forced_outcome_preempts_what_runs_and_takes_its_transition() -> None:
 def test_a_repeat_runs_a_node_again() -> None:
     told = operate(NESTED, {0.5: lambda run: run.control.repeat("root/two/left")})
     assert told.result.duration_s == pytest.approx(3.5)
-    assert told.story.count("+root/two/left") == 2
+    assert told.lines.count("+root/two/left") == 2
 
 
 def test_orders_to_what_is_not_there_say_so_and_change_nothing() -> None:

@@ -85,8 +85,8 @@ def test_transitions_and_conditions_of_several_active_branches_are_new_at_once()
     told, said = _changed(new)
     assert said == ["root/both/right/three is added", "root/both/right/one has changed transitions"]
     assert told.result.outcome == "good"
-    assert "+root/both/right/three" in told.story
-    assert "+root/both/right/two" not in told.story
+    assert "+root/both/right/three" in told.lines
+    assert "+root/both/right/two" not in told.lines
     assert told.result.duration_s == pytest.approx(4.0 + 3.0 + 7.0)
     assert len([e for e in told.events if isinstance(e, BehaviorChanged)]) == 1
 
@@ -148,8 +148,8 @@ def test_with_the_consent_of_the_operator_a_running_state_of_another_class_is_pr
     assert refused.result.duration_s == pytest.approx(8.0)
     told, said = _changed(OTHER_CLASS, preempt=True)
     assert said == ["root/both/right/one becomes test.Announce", "root/both/right/one is preempted and entered anew"]
-    assert told.story.count("-root/both/right/one preempted") == 1
-    assert told.story.count("+root/both/right/one") == 2
+    assert told.lines.count("-root/both/right/one preempted") == 1
+    assert told.lines.count("+root/both/right/one") == 2
     assert told.result.outcome == "good"
     assert told.result.duration_s == pytest.approx(5.0 + 3.0 + 1.0)
     (change,) = [event for event in told.events if isinstance(event, BehaviorChanged)]
@@ -168,7 +168,7 @@ def test_a_running_node_of_another_kind_is_entered_anew_as_what_it_is_now() -> N
     text = OLD.replace("{state: test.Give, with: {after_s: 4}}", rounds).replace("left: a", "left: exhausted")
     told, said = _changed(text, preempt=True)
     assert said[-1] == "root/both/left is preempted and entered anew"
-    assert told.story.count("+root/both/left/child") == 2
+    assert told.lines.count("+root/both/left/child") == 2
     assert told.result.outcome == "good"
 
 
@@ -212,7 +212,7 @@ def test_a_branch_that_has_ended_may_go_and_one_under_way_only_where_that_is_sai
     assert told.result.outcome == "good"
     told, said = _without_third(1.0, preempt=True)
     assert said == ["root/both has changed conditions", "root/both/third is removed"]
-    assert [line for line in told.story if "third" in line] == [
+    assert [line for line in told.lines if "third" in line] == [
         "+root/both/third",
         "!root/both/third cleaned up",
         "-root/both/third preempted",

@@ -87,7 +87,7 @@ def test_by_default_a_state_is_entered_again() -> None:
     assert told.result.outcome == "good"
     assert isinstance(told.events[0], RunResumed)
     assert told.events[0].rerun == ("root/second",)
-    assert told.story == ["+root/second", "-root/second done", "-root good"]
+    assert told.lines == ["+root/second", "-root/second done", "-root good"]
     assert next(e.visit for e in told.events if isinstance(e, NodeEntered)) == 2
 
 
@@ -106,7 +106,7 @@ def test_an_outcome_is_taken_and_the_state_not_entered_again(state: str, key: st
     plan = _plan(TWO % (state, key))
     told = _go_on(plan, _events_until(_whole(plan), "root/second"), {"root/second": "done"} if not key else {})
     assert told.result.outcome == "good"
-    assert told.story == ["-root/second done", "-root good"]
+    assert told.lines == ["-root/second done", "-root good"]
     assert next(e.cause.kind for e in told.events if isinstance(e, NodeExited) and e.cause) == "Resumed"
 
 
@@ -151,7 +151,7 @@ def test_the_data_of_a_moment_start_a_new_run_at_a_chosen_step() -> None:
 
     again = run_virtual(main("root/two"))
     assert (again.result.outcome, again.result.userdata) == ("good", {"value": 22})
-    assert again.story[:2] == ["+root", "+root/two"]
+    assert again.lines[:2] == ["+root", "+root/two"]
     assert again.events[0].seq == 1
     skipped = run_virtual(main("root/three"))
     assert skipped.result.userdata == {"value": 2}

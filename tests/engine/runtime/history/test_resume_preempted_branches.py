@@ -68,7 +68,7 @@ def test_a_branch_that_was_cleaning_up_does_so_from_the_start_and_is_ended() -> 
     whole = run_document(HANGING)
     rest = _after(HANGING, _place(whole, BranchesPreempted, "root"))
     assert rest.result.outcome == "good"
-    assert [line for line in rest.story if "mover" in line] == [
+    assert [line for line in rest.lines if "mover" in line] == [
         "+root/mover", "!root/mover cleaned up", "-root/mover preempted",
     ]  # fmt: skip
     assert not [event for event in rest.events if isinstance(event, BranchesPreempted)]
@@ -106,7 +106,7 @@ def test_a_run_that_starts_from_the_preempted_branch_lets_it_work() -> None:
     whole = run_document(HANGING)
     history = _history(plan, list(whole.events[: _place(whole, NodeExited, "root/mover")]))
     other = _go_on(plan, start_checkpoint(history, plan, "root/mover"), run="other")
-    assert other.story == [
+    assert other.lines == [
         "+root", "+root/mover", "+root/light", "-root/light a",
         "!root/mover cleaned up", "-root/mover preempted", "-root good",
     ]  # fmt: skip

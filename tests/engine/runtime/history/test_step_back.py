@@ -218,7 +218,7 @@ def test_inside_a_container_the_step_back_goes_over_its_entry() -> None:
     told = operator.run(text, {2.0: pause, 3.0: operator.back(), 5.0: operator.back(), 8.0: operator.look, 9.0: resume})
     assert operator.said == ["undoes root/inner/one", "undoes root/first", "before root/first rests 0 m"]
     assert told.result.outcome == "good"
-    assert told.story.count("+root/inner") == 2
+    assert told.lines.count("+root/inner") == 2
 
 
 BOTH = """
@@ -288,7 +288,7 @@ def test_one_branch_does_not_go_back_over_the_entry_of_its_container_alone() -> 
     )
 
 
-def test_an_undo_that_fails_is_told_and_the_run_stands_where_it_was() -> None:
+def test_an_undo_that_fails_is_reported_and_the_run_stands_where_it_was() -> None:
     operator = Operator()
 
     def jam(run: Run) -> None:
@@ -301,7 +301,7 @@ def test_an_undo_that_fails_is_told_and_the_run_stands_where_it_was() -> None:
     assert operator.said == ["undoes root/two", "undoes root/one", "before root/two rests 1 m"]
     failed = [e for e in told.events if isinstance(e, RunSteppedBack) and e.cause is not None]
     assert [e.path for e in failed] == ["root/two"]
-    lines = [line for line in told.story if "the step back failed" in line]
+    lines = [line for line in told.lines if "the step back failed" in line]
     assert lines == ["!root/one the step back failed: root/one: the slide did not get back to 0 m"]
     assert told.result.outcome == "good"
 

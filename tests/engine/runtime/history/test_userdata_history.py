@@ -44,7 +44,7 @@ def values(book: UserdataHistory, scope: str) -> dict[str, tuple[object, str, in
     return {key: (entry.value, entry.by, entry.writes) for key, entry in book.scopes[scope].values.items()}
 
 
-def test_a_write_is_told_with_its_writer_and_values_stay_when_a_container_is_left() -> None:
+def test_a_write_is_reported_with_its_writer_and_values_stay_when_a_container_is_left() -> None:
     """What nobody has written is there with its first value."""
     told = run_document(NESTED)
     book = UserdataHistory(lambda: plan_of(NESTED))
@@ -55,7 +55,7 @@ def test_a_write_is_told_with_its_writer_and_values_stay_when_a_container_is_lef
     assert book.seq == told.events[-1].seq
 
 
-def test_changes_are_told_once_and_by_scope() -> None:
+def test_changes_are_reported_once_and_by_scope() -> None:
     """So that a screen gets no more than what is new."""
     told = run_document(NESTED)
     book = UserdataHistory(lambda: plan_of(NESTED))

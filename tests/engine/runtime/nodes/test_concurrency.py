@@ -28,7 +28,7 @@ BOTH = "[{good: {left: a, right: b}}, {bad: {left: c}}, {bad: {right: c}}]"
 def test_all_of_an_entry_must_hold() -> None:
     """AND inside an entry: the container waits for both."""
     told = run_document(_two(GIVE_A, GIVE_B_LATER, BOTH, "otherwise: bad"))
-    assert told.story == [
+    assert told.lines == [
         "+root", "+root/left", "+root/right", "-root/left a", "-root/right b", "-root good",
     ]  # fmt: skip
     assert told.result.duration_s == pytest.approx(2.0)
@@ -37,7 +37,7 @@ def test_all_of_an_entry_must_hold() -> None:
 def test_the_first_entry_that_holds_preempts_the_others() -> None:
     """OR across entries: one failure is enough, and the sibling cleans up before the container leaves."""
     told = run_document(_two(GIVE_C, "{state: test.Hang, with: {cleanup_s: 3.0}}", BOTH, "otherwise: bad"))
-    assert told.story[3:] == ["-root/left c", "!root/right cleaned up", "-root/right preempted", "-root bad"]
+    assert told.lines[3:] == ["-root/left c", "!root/right cleaned up", "-root/right preempted", "-root bad"]
     assert told.result.duration_s == pytest.approx(4.0)
     assert told.result.cause is not None
     assert "left ended with c" in [link.message for link in told.result.cause.chain()]
@@ -55,7 +55,7 @@ def test_as_many_as_an_entry_asks_for_end_the_others() -> None:
             conditions: [{good: {one: a, two: a, three: a, at_least: 2}}]
             otherwise: bad
     """)
-    assert told.story[4:] == [
+    assert told.lines[4:] == [
         "-root/two a", "-root/one a", "!root/three cleaned up", "-root/three preempted", "-root good",
     ]  # fmt: skip
     assert (told.result.duration_s, told.result.cause) == (pytest.approx(5.0), None)
@@ -69,7 +69,7 @@ def test_what_finishes_at_one_instant_is_decided_in_document_order() -> None:
     told = run_document(
         _two(GIVE_A, "{state: test.Give, with: {outcome: b, after_s: 1.0}}", conditions), stop_at_s=None
     )
-    assert "-root/right b" in told.story
+    assert "-root/right b" in told.lines
 
 
 def test_an_inner_container_that_ends_at_the_same_instant_is_seen() -> None:
@@ -115,7 +115,7 @@ def test_a_child_that_raises_preempts_its_siblings_and_fails_the_container() -> 
     told = run_document(
         _two("{state: test.Raise}", "{state: test.Hang, with: {cleanup_s: 1.0}}", "[{good: {left: done}}]")
     )
-    assert told.story[-3:] == ["!root/right cleaned up", "-root/right preempted", "-root error"]
+    assert told.lines[-3:] == ["!root/right cleaned up", "-root/right preempted", "-root error"]
     assert told.result.cause is not None
     assert "test.Raise raised ZeroDivisionError" in told.result.cause.message
 
@@ -140,7 +140,7 @@ root:
 def test_a_finished_child_does_not_run_again() -> None:
     """Each child is entered once per activation of the container."""
     told = run_document(_two(GIVE_A, GIVE_B_LATER, BOTH, "otherwise: bad"))
-    assert told.story.count("+root/left") == 1
+    assert told.lines.count("+root/left") == 1
 
 
 def test_a_stop_preempts_all_branches() -> None:
@@ -154,7 +154,7 @@ def test_a_stop_preempts_all_branches() -> None:
         ),
         stop_at_s=1.0,
     )
-    assert told.story[3:] == [
+    assert told.lines[3:] == [
         "!root/left cleaned up",
         "-root/left preempted",
         "!root/right cleaned up",
@@ -167,7 +167,7 @@ def test_a_stop_preempts_all_branches() -> None:
 def test_a_sibling_that_is_slow_to_clean_up_is_named() -> None:
     """After five seconds the log says who is waited for."""
     told = run_document(_two(GIVE_C, "{state: test.Hang, with: {cleanup_s: 7.0}}", BOTH, "otherwise: bad"))
-    assert "!root/right asked to stop 5 s ago and still cleaning up" in told.story
+    assert "!root/right asked to stop 5 s ago and still cleaning up" in told.lines
     assert told.result.outcome == "bad"
 
 

@@ -35,7 +35,7 @@ def _fired(told: ObservedRun) -> list[tuple[float, str, tuple[str, ...]]]:
 def test_only_the_branches_that_a_condition_names_are_preempted() -> None:
     """The camera is lost at t=1, the mover cleans up until t=3, the light decides at t=5."""
     told = _run(HANGING, LOST, LIGHT, conditions=f"{PREEMPT}, {{good: {{light: b}}}}")
-    assert told.story == [
+    assert told.lines == [
         "+root", "+root/mover", "+root/camera", "+root/light", "-root/camera a",
         "!root/mover cleaned up", "-root/mover preempted", "-root/light b", "-root good",
     ]  # fmt: skip
@@ -62,7 +62,7 @@ def test_a_condition_that_decides_goes_before_those_that_preempt() -> None:
     """Both hold at t=1: the container ends, and with it all branches, as without the other condition."""
     told = _run(HANGING, LOST, LIGHT, conditions=f"{PREEMPT}, {{good: {{camera: a}}}}")
     assert (told.result.outcome, told.result.duration_s) == ("good", pytest.approx(3.0))
-    assert told.story[-3:] == ["!root/mover cleaned up", "-root/mover preempted", "-root good"]
+    assert told.lines[-3:] == ["!root/mover cleaned up", "-root/mover preempted", "-root good"]
     assert _fired(told) == []
 
 
@@ -84,7 +84,7 @@ def test_conditions_of_one_instant_preempt_in_the_order_of_the_branches() -> Non
         "{preempt: [one], when: {camera: a, light: b, at_least: 1}}, {good: {light: b}}",
     )  # fmt: skip
     assert [(time_s, names) for time_s, _, names in _fired(told)] == [(1.0, ("one", "two")), (1.0, ())]
-    assert [line for line in told.story if "preempted" in line] == ["-root/one preempted", "-root/two preempted"]
+    assert [line for line in told.lines if "preempted" in line] == ["-root/one preempted", "-root/two preempted"]
 
 
 def test_what_ends_first_may_end_those_that_a_condition_counts() -> None:
@@ -105,7 +105,7 @@ def test_a_container_that_decides_waits_for_who_cleans_up_and_asks_once() -> Non
         LIGHT,
         conditions=f"{PREEMPT}, {{good: {{light: b}}}}",
     )
-    assert told.story[4:] == [
+    assert told.lines[4:] == [
         "-root/camera a", "-root/light b", "!root/mover asked to stop 5 s ago and still cleaning up",
         "!root/mover cleaned up", "-root/mover preempted", "-root good",
     ]  # fmt: skip
@@ -116,7 +116,7 @@ def test_a_clean_up_that_fails_is_an_error_of_the_container_at_once() -> None:
     """The light is preempted; nobody asks for more."""
     told = _run("mover: {state: test.Messy}", LOST, LIGHT, conditions=f"{PREEMPT}, {{good: {{light: b}}}}")
     assert (told.result.status, told.result.duration_s) == ("errored", pytest.approx(1.0))
-    assert told.story[-2:] == ["-root/light preempted", "-root error"]
+    assert told.lines[-2:] == ["-root/light preempted", "-root error"]
 
 
 def test_a_branch_that_never_cleans_up_is_abandoned_once_and_named() -> None:
@@ -141,7 +141,7 @@ def test_a_stop_lets_everybody_clean_up_once(stop_at_s: float) -> None:
     """Before, while and after a branch cleans up for a condition."""
     told = _run(HANGING, LOST, LIGHT, conditions=f"{PREEMPT}, {{good: {{light: b}}}}", stop_at_s=stop_at_s)
     assert told.result.status == "stopped"
-    assert [line for line in told.story if "cleaned up" in line] == ["!root/mover cleaned up"]
+    assert [line for line in told.lines if "cleaned up" in line] == ["!root/mover cleaned up"]
     assert told.result.duration_s == pytest.approx(max(3.0, stop_at_s))
 
 
@@ -171,7 +171,7 @@ def test_neither_retry_nor_on_error_of_a_preempted_branch_runs_it_again() -> Non
         conditions=f"{PREEMPT}, {{good: {{light: b}}}}",
     )  # fmt: skip
     assert told.result.outcome == "good"
-    assert told.story.count("+root/mover") == 1
+    assert told.lines.count("+root/mover") == 1
 
 
 def test_what_a_preempted_branch_has_written_is_merged_with_the_others() -> None:

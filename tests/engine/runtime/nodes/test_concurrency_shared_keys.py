@@ -64,7 +64,7 @@ def test_a_shared_key_of_the_container_itself_ends_with_it() -> None:
                   conditions: [{done: {tell: done, hear: done}}]
                 transitions: {done: good}
     """)
-    assert "!root/both/hear/log hello" in told.story
+    assert "!root/both/hear/log hello" in told.lines
     assert told.result.userdata == {}
 
 
@@ -116,7 +116,7 @@ def test_inner_containers_share_what_they_name_and_no_more() -> None:
                 log: {state: flow.Log, with: {message: "beside ${up} ${side}"}, transitions: {done: done}}}}}
             conditions: [{good: {outer: ended, beside: done}}]
     """)
-    assert {"!root/outer/two/log two 1 1", "!root/beside/log beside 1 0"} <= set(told.story)
+    assert {"!root/outer/two/log two 1 1", "!root/beside/log beside 1 0"} <= set(told.lines)
     assert told.result.userdata == {"up": 1, "side": 1}
 
 

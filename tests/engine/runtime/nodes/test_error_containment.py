@@ -107,10 +107,10 @@ def test_what_is_no_error_of_flexcell_ends_the_run_and_names_the_node(kind: type
 def test_retry_and_on_error_take_it(kind: type[State]) -> None:
     told = run(kind, more=", retry: {times: 2, errors: true}, on_error: bad")
     assert told.result.outcome == "bad"
-    assert len([line for line in told.story if line == "-root/one error"]) == 3
+    assert len([line for line in told.lines if line == "-root/one error"]) == 3
 
 
-def test_a_pause_goes_on_whatever_a_state_raises_when_it_is_told() -> None:
+def test_a_pause_goes_on_whatever_a_state_raises_when_it_is_notified() -> None:
     acts = {0.5: pause, 2.5: resume}
     told = operate(DOCUMENT.replace("NAME", "test.Sulky").replace("MORE", ""), acts, states=STATES)
     assert (told.result.outcome, told.result.duration_s) == ("good", pytest.approx(3.0))

@@ -44,7 +44,7 @@ def lists(text: str, told: ObservedRun) -> list[object]:
 
 
 @pytest.mark.parametrize("rounds", ["times: 3", "items: [a, b, c]", "times: 3.0", "times: '${6 / 2}'"])
-def test_what_is_collected_is_the_same_in_result_history_and_book(rounds: str) -> None:
+def test_what_is_collected_is_the_same_in_result_resume_and_userdata_history(rounds: str) -> None:
     text = collecting(rounds)
     assert lists(text, run_document(text)) == [["before", 0, 1, 2]] * 3
 

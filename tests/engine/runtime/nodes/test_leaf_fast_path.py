@@ -52,7 +52,7 @@ def test_who_watches_later_hears_the_numbers_and_times_of_who_watched_from_the_s
 def test_a_stop_in_the_middle_lets_a_state_that_waits_since_its_first_step_clean_up() -> None:
     told = operate(HANGING, {1.0: lambda run: run.stop("enough")})
     assert told.result.status == "stopped"
-    assert told.story[-3:] == ["!root/one cleaned up", "-root/one preempted", "-root preempted"]
+    assert told.lines[-3:] == ["!root/one cleaned up", "-root/one preempted", "-root preempted"]
     assert told.events[-1].time_s == pytest.approx(3.0)
 
 

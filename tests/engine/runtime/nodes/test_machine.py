@@ -19,7 +19,7 @@ CHAIN = """
 def test_outcomes_choose_the_next_state() -> None:
     """Entered and left in order, ended with the machine's outcome."""
     told = run_document(CHAIN)
-    assert told.story == ["+root", "+root/one", "-root/one a", "+root/two", "-root/two b", "-root good"]
+    assert told.lines == ["+root", "+root/one", "-root/one a", "+root/two", "-root/two b", "-root good"]
     assert (told.result.outcome, told.result.success, told.result.cause) == ("good", True, None)
 
 
@@ -127,7 +127,7 @@ def test_an_exception_ends_the_run_with_its_cause_and_place() -> None:
     assert cause.because is not None
     assert cause.where.startswith("test.yaml:")
     assert "fake_states.py:" in cause.because.where
-    assert told.story[-2:] == ["-root/r error", "-root error"]
+    assert told.lines[-2:] == ["-root/r error", "-root error"]
 
 
 def test_on_error_leads_on_with_the_cause() -> None:
@@ -160,7 +160,7 @@ def test_on_error_of_a_container_catches_what_is_inside() -> None:
                 transitions: {fine: good}
               rescue: {state: test.Give, transitions: {a: bad, b: bad, c: bad}}
     """)
-    assert told.story == [
+    assert told.lines == [
         "+root", "+root/inner", "+root/inner/r", "-root/inner/r error", "-root/inner error",
         "+root/rescue", "-root/rescue a", "-root bad",
     ]  # fmt: skip
@@ -177,7 +177,7 @@ def test_retry_runs_again_after_errors_with_growing_waits() -> None:
             states:
               r: {state: test.Raise, retry: {times: 2, backoff: 1 s}, on_error: bad, transitions: {done: good}}
     """)
-    assert told.story.count("+root/r") == 3
+    assert told.lines.count("+root/r") == 3
     assert (told.result.outcome, told.result.duration_s) == ("bad", pytest.approx(3.0))
 
 
@@ -194,7 +194,7 @@ def test_retry_on_an_outcome_gives_up_with_that_outcome() -> None:
                 retry: {times: 2, outcomes: [c]}
                 transitions: {a: good, b: good, c: bad}
     """)
-    assert (told.story.count("+root/g"), told.result.outcome) == (3, "bad")
+    assert (told.lines.count("+root/g"), told.result.outcome) == (3, "bad")
 
 
 def test_a_timeout_preempts_and_leads_on() -> None:
@@ -206,7 +206,7 @@ def test_a_timeout_preempts_and_leads_on() -> None:
             states:
               h: {state: test.Hang, timeout: {after: 500 ms, to: bad}, transitions: {never: good}}
     """)
-    assert told.story == ["+root", "+root/h", "!root/h cleaned up", "-root/h preempted", "-root bad"]
+    assert told.lines == ["+root", "+root/h", "!root/h cleaned up", "-root/h preempted", "-root bad"]
     assert told.result.cause is not None
     assert told.result.cause.chain()[-1].message == "no outcome within 0.5 s"
     assert told.result.duration_s == pytest.approx(0.5)
@@ -244,7 +244,7 @@ def test_a_loop_in_which_nothing_waits_is_an_error_that_names_it() -> None:
 def test_a_stop_before_the_start_is_honoured_before_anything_starts() -> None:
     """SMACH loses it."""
     told = run_document(CHAIN, stop_first=True)
-    assert (told.result.status, told.story) == ("stopped", [])
+    assert (told.result.status, told.lines) == ("stopped", [])
 
 
 def test_a_stop_cleans_up_every_level_once() -> None:
@@ -264,7 +264,7 @@ def test_a_stop_cleans_up_every_level_once() -> None:
     """,
         stop_at_s=1.0,
     )
-    assert told.story[3:] == [
+    assert told.lines[3:] == [
         "!root/outer/h cleaned up",
         "-root/outer/h preempted",
         "-root/outer preempted",
@@ -307,7 +307,7 @@ ONE = """
 def test_a_stop_beats_a_state_that_takes_no_notice() -> None:
     """It swallows the cancel and returns an outcome; its successor never starts."""
     told = run_document(ONE.format(state="test.Stubborn", more="", outcome="done"), stop_at_s=1.0)
-    assert (told.result.status, told.story[-2:]) == ("stopped", ["-root/s preempted", "-root preempted"])
+    assert (told.result.status, told.lines[-2:]) == ("stopped", ["-root/s preempted", "-root preempted"])
 
 
 @pytest.mark.parametrize("more", [", retry: {times: 3}", ", on_error: next", ", timeout: {after: 9 s, to: next}"])
@@ -315,9 +315,9 @@ def test_a_stop_beats_the_handlers_of_a_clean_up_that_fails(more: str) -> None:
     """No retry, no on_error, no timeout leads on; the failure is in the log."""
     told = run_document(ONE.format(state="test.Messy", more=more, outcome="done"), stop_at_s=1.0)
     assert told.result.status == "stopped"
-    assert told.story.count("+root/s") == 1
-    assert "+root/next" not in told.story
-    assert any("clean-up failed: " in line for line in told.story)
+    assert told.lines.count("+root/s") == 1
+    assert "+root/next" not in told.lines
+    assert any("clean-up failed: " in line for line in told.lines)
 
 
 @pytest.mark.parametrize(("timeout_s", "stop_s"), [(2.0, 1.0), (1.0, 2.0), (1.0, 1.0)])
@@ -325,11 +325,11 @@ def test_timeout_and_stop_together_never_cut_a_clean_up(timeout_s: float, stop_s
     """Whichever comes first, the clean-up of three seconds runs to its end once."""
     more = f", with: {{cleanup_s: 3.0}}, timeout: {{after: {timeout_s}, to: next}}"
     told = run_document(ONE.format(state="test.Hang", more=more, outcome="never"), stop_at_s=stop_s)
-    assert (told.result.status, told.story.count("!root/s cleaned up")) == ("stopped", 1)
+    assert (told.result.status, told.lines.count("!root/s cleaned up")) == ("stopped", 1)
     assert told.result.duration_s == pytest.approx(min(timeout_s, stop_s) + 3.0)
 
 
-def test_a_stray_cancellation_is_an_error_and_no_stop() -> None:
+def test_a_cancellation_from_elsewhere_is_an_error_and_no_stop() -> None:
     """Nobody asked the state to stop: the run says so, and on_error can handle it."""
     told = run_document(ONE.format(state="test.SelfCancelling", more="", outcome="done"))
     assert told.result.status == "errored"

@@ -40,7 +40,7 @@ def test_the_other_branch_stands_still_meanwhile() -> None:
 def test_a_stop_inside_a_priority_lets_everything_clean_up() -> None:
     told = operate(TEXT, {5.0: lambda run: run.stop("enough")})
     assert told.result.status == "stopped"
-    assert told.story[-5:] == [
+    assert told.lines[-5:] == [
         "-root/work preempted",
         "-root/alarm/handle/one preempted",
         "-root/alarm/handle preempted",
@@ -60,7 +60,7 @@ def test_of_two_priorities_at_one_instant_the_first_in_the_document_goes_first()
     text = "root:\n  concurrency:\n    states:" + branch.format(name="left") + branch.format(name="right")
     told = run_document(text + "    conditions: [{good: {left: out, right: out}}]\n")
     assert told.result.duration_s == pytest.approx(6.0)
-    assert told.story[:4] == ["+root", "+root/left", "+root/left/one", "-root/left/one a"]
+    assert told.lines[:4] == ["+root", "+root/left", "+root/left/one", "-root/left/one a"]
 
 
 def test_a_nested_priority_holds_the_branches_around_it_too() -> None:

@@ -168,7 +168,7 @@ def test_tests_write_them_as_a_mapping(tmp_path: Path) -> None:
         ("{at: root/look, outcome: a, with: {}}", "with", "`with` has no effect here"),
     ],
 )
-def test_what_does_not_fit_is_told_with_its_place(entry: str, at: str, says: str) -> None:
+def test_what_does_not_fit_is_reported_with_its_place(entry: str, at: str, says: str) -> None:
     with pytest.raises(DocumentError) as refusal:
         _plan(f"- {entry}\n")
     assert says in str(refusal.value)

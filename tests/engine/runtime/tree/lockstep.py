@@ -115,7 +115,7 @@ class Branching(composites.Composite):
 def run_lockstep(specimen: Specimen, *, until_s: float, instant_limit: int) -> Course:
     """Tick a plain py_trees tree in step with its scripts."""
     world = World()
-    root = _grown(specimen, "", world)
+    root = _built(specimen, "", world)
     instants = number = 0
     ticked: dict[Behaviour, tuple[int, float]] = {}
     woken: set[tuple[Behaviour, float]] = set()
@@ -162,11 +162,11 @@ def _due(
             yield (node, number), at_s + EVERY_S
 
 
-def _grown(specimen: Specimen, path: str, world: World) -> Behaviour:
+def _built(specimen: Specimen, path: str, world: World) -> Behaviour:
     here = f"{path}/{specimen.name}"
     if specimen.leaf is not None:
         return Scripted(here.removeprefix("/"), specimen.leaf, world)
-    children = [_grown(child, here, world) for child in specimen.children]
+    children = [_built(child, here, world) for child in specimen.children]
     said = specimen.arguments
     match specimen.kind:
         case "sequence":

@@ -26,7 +26,7 @@ class ObservedRun:
     events: tuple[Event, ...]
 
     @property
-    def story(self) -> list[str]:
+    def lines(self) -> list[str]:
         """What happened to leaves, with its time: `1 +path`, `2 -path outcome`, `2 !path message`."""
         return [line for event in self.events if (line := _line(event))]
 

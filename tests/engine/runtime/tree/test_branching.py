@@ -26,7 +26,7 @@ def test_what_runs_is_halted_and_cleaned_up_before_the_other_begins() -> None:
     """The condition changes after 1 s, in the middle of `do`; its clean-up takes another."""
     told = run_tree(WRITING, head=VALUE)
     assert told.entered("b") == [2.0]
-    assert "2 !while_do_else/sequence/machine/wait clean" in told.story
+    assert "2 !while_do_else/sequence/machine/wait clean" in told.lines
     assert (told.result.outcome, told.result.duration_s) == ("success", 4.0)
 
 

@@ -21,7 +21,7 @@ def test_an_inverter_turns_success_into_failure() -> None:
 def test_a_timeout_fails_after_the_clean_up_of_its_child() -> None:
     """Time is the run's, so 3 s pass at once in a test."""
     told = run_tree("timeout: {after: 3 s, child: {state: test.Act, with: {script: [[9, true]], cleanup_s: 1}}}")
-    assert told.story == ["0 +timeout/Act", "4 !timeout/Act clean", "4 -timeout/Act preempted"]
+    assert told.lines == ["0 +timeout/Act", "4 !timeout/Act clean", "4 -timeout/Act preempted"]
     assert told.why[1:] == ["did not end within 3 s"]
 
 
@@ -37,7 +37,7 @@ def test_a_timeout_counts_from_when_its_child_can_begin() -> None:
           - timeout: {{after: 1 s, child: {{state: test.Act, name: a, with: {{script: [[9, true]], cleanup_s: 2}}}}}}
           - timeout: {{after: 1 s, child: {_act("b", (0.5, True))}}}
     """)
-    assert told.story[-2:] == ["3 +selector/timeout_2/b", "3.5 -selector/timeout_2/b yes"]
+    assert told.lines[-2:] == ["3 +selector/timeout_2/b", "3.5 -selector/timeout_2/b yes"]
     assert told.result.outcome == "success"
 
 
@@ -45,7 +45,7 @@ def test_a_retry_waits_longer_each_time() -> None:
     """The first run, and up to three more after 1, 2 and 4 s."""
     told = run_tree(f"retry: {{times: 3, backoff: 1 s, child: {_act('grasp', (1, False))}}}")
     assert told.entered("grasp") == [0, 2, 5, 10]
-    assert [line for line in told.story if "*" in line] == ["1 *retry 2", "3 *retry 3", "6 *retry 4"]
+    assert [line for line in told.lines if "*" in line] == ["1 *retry 2", "3 *retry 3", "6 *retry 4"]
     assert told.why[1:] == ["failed 4 times", "grasp ended with no"]
 
 
@@ -57,7 +57,7 @@ def test_a_retry_takes_errors_below_it_as_failed_attempts() -> None:
           child:
             parallel: [{_act("hold", (9, True))}, {{sequence: [{_act("reach", (1, True))}, {{state: test.Raise}}]}}]
     """)
-    assert told.story == [
+    assert told.lines == [
         "0 +retry/parallel/hold", "0 +retry/parallel/sequence/reach", "1 -retry/parallel/sequence/reach yes",
         "1 +retry/parallel/sequence/Raise", "1 -retry/parallel/sequence/Raise error", "1 *retry 2",
         "1 !retry/parallel/hold clean", "1 -retry/parallel/hold preempted",
@@ -99,11 +99,11 @@ def test_a_cooldown_fails_until_its_time_has_passed_and_then_wakes_the_tree() ->
             - cooldown: {{after: 3 s, child: {_act("look", (1, False), (1, True))}}}
             - {_act("wait", (9, True))}
     """)
-    assert told.story[:5] == [
+    assert told.lines[:5] == [
         "0 +selector/cooldown/look", "1 -selector/cooldown/look no", "1 +selector/wait",
         "4 !selector/wait clean", "4 -selector/wait preempted",
     ]  # fmt: skip
-    assert told.story[5:] == ["4 +selector/cooldown/look", "5 -selector/cooldown/look yes"]
+    assert told.lines[5:] == ["4 +selector/cooldown/look", "5 -selector/cooldown/look yes"]
 
 
 def test_a_cooldown_says_that_it_is_cooling_down() -> None:
@@ -115,7 +115,7 @@ def test_a_cooldown_says_that_it_is_cooling_down() -> None:
 def test_a_guard_keeps_its_child_from_beginning() -> None:
     """The chain shows the condition."""
     told = run_tree(f"guard: {{when: '${{part > 1}}', child: {_act('x', (1, True))}}}", head="userdata: {part: 1}")
-    assert (told.story, told.why[1:]) == ([], ["${part > 1} is false"])
+    assert (told.lines, told.why[1:]) == ([], ["${part > 1} is false"])
 
 
 def test_a_guard_stops_its_child_when_the_condition_is_gone() -> None:
@@ -135,7 +135,7 @@ def test_a_guard_stops_its_child_when_the_condition_is_gone() -> None:
         """,
         head="userdata: {value: go}",
     )
-    assert told.story[-5:-1] == [
+    assert told.lines[-5:-1] == [
         "2 !selector/sequence/guard/machine/late cleaned up",
         "2 -selector/sequence/guard/machine/late preempted",
         "2 -selector/sequence/guard/machine preempted",
@@ -158,7 +158,7 @@ def test_a_guard_that_opens_wakes_the_tree() -> None:
         """,
         head="userdata: {value: stay}",
     )
-    assert told.story[-2:] == ["2 +selector/guard/better", "3 -selector/guard/better yes"]
+    assert told.lines[-2:] == ["2 +selector/guard/better", "3 -selector/guard/better yes"]
 
 
 def test_a_guard_that_is_no_truth_value_is_an_error() -> None:

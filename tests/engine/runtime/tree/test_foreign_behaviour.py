@@ -28,7 +28,7 @@ def _calls() -> Iterator[None]:
     Blackboard.clear()
 
 
-def _told(name: str, **arguments: object) -> str:
+def _scripted(name: str, **arguments: object) -> str:
     return json.dumps({"behaviour": f"{HERE}:Scripted", "name": name, "with": arguments})
 
 
@@ -55,7 +55,7 @@ def test_every_says_how_often_a_running_one_is_ticked() -> None:
 
 def test_its_methods_are_called_as_py_trees_calls_them() -> None:
     """Set up before the first tick, shut down when the tree has ended."""
-    run_tree(f"sequence: [{_told('a', ticks=1)}, {_told('b', ticks=0)}]")
+    run_tree(f"sequence: [{_scripted('a', ticks=1)}, {_scripted('b', ticks=0)}]")
     assert CALLS == [
         "a constructor", "b constructor", "a setup", "b setup",
         "a initialise", "a update", "a update", "a terminate SUCCESS",
@@ -66,7 +66,7 @@ def test_its_methods_are_called_as_py_trees_calls_them() -> None:
 
 def test_a_stop_terminates_it_once() -> None:
     """As does being halted by the tree."""
-    run_tree(_told("a"), stop_at_s=1.0)
+    run_tree(_scripted("a"), stop_at_s=1.0)
     assert [call for call in CALLS if "terminate" in call] == ["a terminate INVALID"]
 
 
@@ -75,10 +75,10 @@ def test_what_it_raises_is_an_error_that_names_it_and_leaves_nobody_running(meth
     """py_trees leaves siblings RUNNING after an exception, and may terminate a behaviour twice."""
     told = run_tree(f"""
         parallel:
-          - {_told("before")}
+          - {_scripted("before")}
           - {{state: test.Hang, with: {{cleanup_s: 1}}}}
-          - {_told("bad", ticks=1 if method != "terminate" else 0, raises=method)}
-          - {_told("after")}
+          - {_scripted("bad", ticks=1 if method != "terminate" else 0, raises=method)}
+          - {_scripted("after")}
     """)
     assert told.result.status == "errored"
     assert told.why[:2] == [
@@ -89,7 +89,7 @@ def test_what_it_raises_is_an_error_that_names_it_and_leaves_nobody_running(meth
     assert "before terminate INVALID" in terminated
     initialised = {call.split()[0] for call in CALLS if call.endswith("initialise")} - {"bad"}
     assert {call.split()[0] for call in terminated} - {"bad"} == initialised
-    assert [line for line in told.story if "Hang" in line] in (
+    assert [line for line in told.lines if "Hang" in line] in (
         [], ["0 +parallel/Hang", "1 !parallel/Hang cleaned up", "1 -parallel/Hang preempted"],
     )  # fmt: skip
     assert {line.split()[1]: line.split()[2] for line in told.statuses if line.startswith("0")}.items() <= {
@@ -100,23 +100,23 @@ def test_what_it_raises_is_an_error_that_names_it_and_leaves_nobody_running(meth
 
 def test_a_constructor_that_raises_is_an_error_that_names_it() -> None:
     """Nothing was begun then."""
-    told = run_tree(f"sequence: [{{state: test.Check}}, {_told('bad', raises='constructor')}]")
+    told = run_tree(f"sequence: [{{state: test.Check}}, {_scripted('bad', raises='constructor')}]")
     assert told.why[0] == "constructor of root/sequence/bad (Scripted) raised ZeroDivisionError: in constructor"
-    assert told.story == []
+    assert told.lines == []
 
 
-def test_a_shutdown_that_raises_is_told_and_changes_nothing() -> None:
+def test_a_shutdown_that_raises_is_reported_and_changes_nothing() -> None:
     """The tree has ended by then."""
-    told = run_tree(_told("a", ticks=0, raises="shutdown"))
+    told = run_tree(_scripted("a", ticks=0, raises="shutdown"))
     assert told.result.outcome == "success"
-    (line,) = told.story
+    (line,) = told.lines
     assert line.startswith("0 !root clean-up failed: ")
     assert "test.yaml:7:3: shutdown of root/a (Scripted) raised ZeroDivisionError" in line
 
 
 def test_a_retry_takes_its_exceptions_too() -> None:
     """They are errors of the tree like those of states."""
-    run_tree(f"retry: {{times: 2, child: {_told('bad', raises='update')}}}")
+    run_tree(f"retry: {{times: 2, child: {_scripted('bad', raises='update')}}}")
     assert [call for call in CALLS if "terminate" in call] == ["bad terminate INVALID"] * 3
 
 
@@ -138,7 +138,7 @@ def test_it_begins_only_after_what_was_halted_is_at_rest() -> None:
     told = run_tree(f"""
         selector:
           - timeout: {{after: 1 s, child: {{state: test.Hang, with: {{cleanup_s: 2}}}}}}
-          - {_told("next", ticks=0)}
+          - {_scripted("next", ticks=0)}
     """)
     assert told.statuses[-2:] == ["3 selector/next success", "3 selector success"]
 

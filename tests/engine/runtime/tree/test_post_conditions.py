@@ -80,7 +80,7 @@ def test_a_tree_that_is_stopped_halts_what_is_in_it() -> None:
     told = run_tree(tree, head=HEAD, stop_at_s=1.0)
     assert told.result.status == "stopped"
     assert [event.key for event in told.events if isinstance(event, UserdataWritten)] == ["count"]
-    assert any("post-condition failed" in line for line in told.story)
+    assert any("post-condition failed" in line for line in told.lines)
 
 
 def test_a_value_that_cannot_be_had_is_an_error_of_the_part() -> None:

@@ -89,7 +89,7 @@ def _plan(tree: str, *, head: str = "") -> Plan:
     return new_plan(parse_behavior(text, file="test.yaml"), {**CATALOGUE, **STATES})
 
 
-def _told(
+def _events_of(
     plan: Plan,
     *,
     held: Callable[[float], bool] = lambda now_s: now_s < HELD_UNTIL_S,
@@ -127,7 +127,7 @@ CARRY = "{state: test.Act, name: carry, with: {script: [[5, true]]}}"
 
 def test_a_part_that_is_dropped_is_not_carried_on() -> None:
     """The check is asked each 0.1 s; what stands behind it is halted, and the log tells of the one that mattered."""
-    told = _told(_plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {CARRY}]}}}}"))
+    told = _events_of(_plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {CARRY}]}}}}"))
     assert (told.result.outcome, _left(told, "carry")) == ("failure", [(1.1, True)])
     assert told.entered("CheckHeld") == [0.0, 1.1]
     assert len([event for event in told.events if isinstance(event, ServiceCalled)]) == 2
@@ -137,7 +137,7 @@ def test_its_period_can_be_given() -> None:
     """With `every` beside it, and for a class that does not say that it observes, too; that one is run each time."""
     for check in ("CheckHeld", "CheckUndeclared"):
         tree = f"{{sequence: {{memory: false, children: [{{state: test.{check}, every: 500 ms}}, {CARRY}]}}}}"
-        told = _told(_plan(tree))
+        told = _events_of(_plan(tree))
         assert _left(told, "carry") == [(1.5, True)]
         assert told.entered(check) == ([0.0, 1.5] if check == "CheckHeld" else [0.0, 0.5, 1.0, 1.5])
 
@@ -151,14 +151,14 @@ def test_a_selector_goes_back_to_what_stands_first() -> None:
           children: [{{inverter: {{child: {{state: test.CheckHeld}}}}}}, {CARRY}]
       - {{state: test.Act, name: after, with: {{script: [[1, true]]}}}}
     """
-    told = _told(_plan(f"\n{tree}"))
+    told = _events_of(_plan(f"\n{tree}"))
     assert told.result.outcome == "success"
     assert (_left(told, "carry"), told.entered("after")) == ([(1.1, True)], [1.1])
 
 
 def test_what_has_memory_is_not_asked_again() -> None:
     """A part that went before in a sequence with memory is over."""
-    told = _told(_plan(f"{{sequence: [{{state: test.CheckHeld}}, {CARRY}]}}"))
+    told = _events_of(_plan(f"{{sequence: [{{state: test.CheckHeld}}, {CARRY}]}}"))
     assert (told.result.outcome, _left(told, "carry")) == ("success", [(5.0, False)])
 
 
@@ -182,7 +182,7 @@ NUMBER = "userdata: {value: 0}"
 
 def test_a_check_that_reads_userdata_is_asked_when_it_is_written() -> None:
     """At that very instant, and never otherwise."""
-    told = _told(_plan(f"\n{WRITES}", head=NUMBER))
+    told = _events_of(_plan(f"\n{WRITES}", head=NUMBER))
     assert told.result.outcome == "failure"
     assert told.entered("check") == [0.0, 1.0]
     assert _left(told, "more") == [(1.0, True)]
@@ -191,15 +191,15 @@ def test_a_check_that_reads_userdata_is_asked_when_it_is_written() -> None:
 def test_what_changed_before_a_crash_is_met_after_it() -> None:
     """Wherever the engine died: also between the write and the tick that it makes due."""
     plan = _plan(f"\n{WRITES}", head=NUMBER)
-    whole = _told(plan)
+    whole = _events_of(plan)
     for count in range(1, len(whole.events)):
         known = [decode_event(encode_event(event)) for event in whole.events[:count]]
-        rest = _told(plan, checkpoint=ResumableState(plan, run="r").read(known).checkpoint())
+        rest = _events_of(plan, checkpoint=ResumableState(plan, run="r").read(known).checkpoint())
         assert rest.result.outcome == "failure", whole.events[count - 1]
         assert not [left for left in _left(rest, "more") if not left[1]], whole.events[count - 1]
 
 
-def test_a_check_that_reads_a_topic_is_asked_when_that_has_news() -> None:
+def test_a_check_that_reads_a_topic_is_asked_when_that_has_a_new_message() -> None:
     """A message that changes nothing leaves no trace."""
 
     def publish(run: Run, bus: SkillBus) -> None:
@@ -208,7 +208,9 @@ def test_a_check_that_reads_a_topic_is_asked_when_that_has_news() -> None:
         for at_s, closed in ((1.0, True), (2.0, True), (3.0, False)):
             loop.call_at(at_s, door.publish, Door(closed=closed))
 
-    told = _told(_plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckDoor}}, {CARRY}]}}}}"), do=publish)
+    told = _events_of(
+        _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckDoor}}, {CARRY}]}}}}"), do=publish
+    )
     assert (told.result.outcome, _left(told, "carry")) == ("failure", [(3.0, True)])
     assert told.entered("CheckDoor") == [0.0, 3.0]
 
@@ -223,7 +225,7 @@ def test_the_action_is_not_begun_anew_by_checks_that_say_the_same() -> None:
         - {{state: test.Act, name: first, with: {{script: [[1, true]]}}}}
         - {CARRY}
     """
-    told = _told(_plan(f"\n{tree}"), held=lambda now_s: now_s < 4.05)
+    told = _events_of(_plan(f"\n{tree}"), held=lambda now_s: now_s < 4.05)
     assert told.entered("first") == [0.0]
     assert _left(told, "carry") == [(4.1, True)]
 
@@ -236,7 +238,9 @@ def test_an_answer_that_was_observed_is_the_one_that_counts() -> None:
         asked.append(now_s)
         return len(asked) != 4
 
-    told = _told(_plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {CARRY}]}}}}"), held=held)
+    told = _events_of(
+        _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {CARRY}]}}}}"), held=held
+    )
     assert (told.result.outcome, _left(told, "carry"), len(asked)) == ("failure", [(0.3, True)], 4)
 
 
@@ -246,14 +250,14 @@ def test_a_slow_answer_holds_up_nothing() -> None:
         "{sequence: {memory: false, children: [{state: test.CheckHeld}, "
         "{state: test.Act, name: carry, with: {script: [[1.5, true]]}}]}}"
     )
-    told = _told(plan, held=lambda now_s: True, answer_after_s=0.8)
+    told = _events_of(plan, held=lambda now_s: True, answer_after_s=0.8)
     assert _left(told, "carry")[0] == (2.3, False)
 
 
 def test_what_only_running_tells_is_run() -> None:
     """A state that takes random numbers is not observed, for the next one would be given others."""
     tree = f"{{sequence: {{memory: false, children: [{{state: test.CheckRandom, every: 1 s}}, {CARRY}]}}}}"
-    told = _told(_plan(tree))
+    told = _events_of(_plan(tree))
     assert told.entered("CheckRandom") == [0.0, 1.0, 2.0]
     assert _left(told, "carry") == [(2.0, True)]
 
@@ -272,7 +276,7 @@ def test_nothing_is_asked_during_a_pause() -> None:
         asked.append(now_s)
         return now_s < 30.0
 
-    told = _told(
+    told = _events_of(
         _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {CARRY}]}}}}"), held=held, do=pause
     )
     assert told.result.outcome == "failure"
@@ -302,11 +306,11 @@ def test_a_tree_that_only_asks_for_ever_is_named_in_virtual_time() -> None:
 
     text = f"{HEAD}\nroot:\n  tree: \n{tree}\n"
     plan = new_plan(parse_behavior(text, file="test.yaml"), {**CATALOGUE, **STATES, "test.Never": Never})
-    told = _told(plan, held=lambda now_s: True, polling_limit=2_000)
+    told = _events_of(plan, held=lambda now_s: True, polling_limit=2_000)
     assert told.result.status == "errored"
     assert any("ticked sequence/CheckHeld again 2000 times" in line for line in told.why), told.why
     hour = "{state: test.Act, name: carry, with: {script: [[3600, true]]}}"
-    told = _told(
+    told = _events_of(
         _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {hour}]}}}}"),
         held=lambda now_s: True,
         polling_limit=2_000,
@@ -355,10 +359,10 @@ root:
 def test_a_tree_that_polls_for_ever_in_virtual_time_is_named() -> None:
     """A check under `condition`, ticked again and again, of which nobody can change the answer any more."""
     tree = "{condition: {status: success, every: 100 ms, child: {state: test.CheckHeld}}}"
-    told = _told(_plan(tree), held=lambda now_s: False, polling_limit=2_000)
+    told = _events_of(_plan(tree), held=lambda now_s: False, polling_limit=2_000)
     assert told.result.status == "errored"
     assert any("ticked condition/CheckHeld again 2000 times" in line for line in told.why), told.why
-    told = _told(_plan(tree), held=lambda now_s: now_s > 150.0, polling_limit=2_000)
+    told = _events_of(_plan(tree), held=lambda now_s: now_s > 150.0, polling_limit=2_000)
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(150.1))
 
 
@@ -368,7 +372,7 @@ def test_a_tree_that_polls_for_ever_in_virtual_time_is_named() -> None:
 def test_the_condition_of_a_loop_watches_over_what_it_runs(check: str) -> None:
     """Asked as checks are in a composite without memory; what it ends makes room for the other branch."""
     other = "{state: test.Act, name: other, with: {script: [[1, true]]}}"
-    told = _told(_plan(f"{{while_do_else: {{while: {check}, do: {CARRY}, else: {other}}}}}"))
+    told = _events_of(_plan(f"{{while_do_else: {{while: {check}, do: {CARRY}, else: {other}}}}}"))
     assert (told.result.outcome, _left(told, "carry")) == ("success", [(1.1, True)])
     assert (told.entered("CheckHeld"), told.entered("other")) == ([0.0, 1.1, 2.1], [1.1])
     assert len([event for event in told.events if isinstance(event, ServiceCalled)]) == 3

@@ -22,7 +22,7 @@ def _check(name: str, *script: tuple[float, bool]) -> str:
 def test_a_sequence_runs_its_children_one_after_the_other() -> None:
     """A plain list is a sequence with memory; each begins when the one before has succeeded."""
     told = run_tree(f"sequence: [{_act('grasp', (1, True))}, {_act('lift', (2, True))}]")
-    assert told.story == ["0 +sequence/grasp", "1 -sequence/grasp yes", "1 +sequence/lift", "3 -sequence/lift yes"]
+    assert told.lines == ["0 +sequence/grasp", "1 -sequence/grasp yes", "1 +sequence/lift", "3 -sequence/lift yes"]
     assert (told.result.outcome, told.result.success) == ("success", True)
     assert told.statuses == ["0 sequence running", "3 sequence success"]
 
@@ -30,14 +30,14 @@ def test_a_sequence_runs_its_children_one_after_the_other() -> None:
 def test_a_sequence_ends_with_the_first_failure_and_says_why() -> None:
     """The chain names the leaf and its outcome."""
     told = run_tree(f"sequence: [{_act('grasp', (1, False))}, {_act('lift', (2, True))}]")
-    assert told.story[-1] == "1 -sequence/grasp no"
+    assert told.lines[-1] == "1 -sequence/grasp no"
     assert (told.result.outcome, told.why) == ("failure", ["root ended with failure", "grasp ended with no"])
 
 
 def test_a_selector_runs_alternatives_until_one_succeeds() -> None:
     """The second alternative is tried when the first has failed."""
     told = run_tree(f"selector: [{_act('suction', (1, False))}, {_act('gripper', (1, True))}]")
-    assert [line for line in told.story if "+" in line] == ["0 +selector/suction", "1 +selector/gripper"]
+    assert [line for line in told.lines if "+" in line] == ["0 +selector/suction", "1 +selector/gripper"]
     assert told.result.outcome == "success"
 
 
@@ -62,7 +62,7 @@ def test_without_memory_a_check_is_asked_at_every_tick() -> None:
     """.replace("policy: one", "policy: [a, b]")
     )
     assert told.entered("clear") == [0, 1, 2]
-    assert told.story[-4:] == [
+    assert told.lines[-4:] == [
         "2 +parallel/sequence/clear",
         "2 -parallel/sequence/clear no",
         "2 !parallel/sequence/move clean",
@@ -85,7 +85,7 @@ def test_without_memory_a_better_alternative_takes_over() -> None:
                   - {lower}
             - {_act("tick", (3, True))}
     """)
-    assert told.story[4:] == [
+    assert told.lines[4:] == [
         "3 -parallel/tick yes",
         "3 +parallel/selector/sequence/better",
         "3 -parallel/selector/sequence/better yes",
@@ -100,7 +100,7 @@ def test_without_memory_a_better_alternative_takes_over() -> None:
 def test_a_parallel_waits_for_all_and_runs_none_of_them_twice() -> None:
     """`synchronise` is on unless switched off: what has succeeded is not run again."""
     told = run_tree(f"parallel: [{_act('left', (1, True))}, {_act('right', (2, True))}]")
-    assert told.story == [
+    assert told.lines == [
         "0 +parallel/left", "0 +parallel/right", "1 -parallel/left yes", "2 -parallel/right yes",
     ]  # fmt: skip
     assert told.result.outcome == "success"
@@ -110,7 +110,7 @@ def test_a_parallel_fails_at_once_and_its_other_children_clean_up() -> None:
     """The tree ends when the clean-up is done."""
     slow = _act("right", (9, True)).replace("with: {", "with: {cleanup_s: 2, ")
     told = run_tree(f"parallel: [{_act('left', (1, False))}, {slow}]")
-    assert told.story[2:] == ["1 -parallel/left no", "3 !parallel/right clean", "3 -parallel/right preempted"]
+    assert told.lines[2:] == ["1 -parallel/left no", "3 !parallel/right clean", "3 -parallel/right preempted"]
     assert (told.result.outcome, told.result.duration_s) == ("failure", pytest.approx(3.0))
 
 
@@ -132,6 +132,6 @@ def test_checks_that_end_at_once_need_no_tick_of_their_own() -> None:
     """Three checks and the first action belong to one tick: nothing lies between them in the log."""
     told = run_tree(f"sequence: [{YES}, {YES}, {YES}, {_act('move', (1, True))}]")
     assert told.statuses == ["0 sequence running", "1 sequence success"]
-    assert [line for line in told.story if line.startswith("0 +")] == [
+    assert [line for line in told.lines if line.startswith("0 +")] == [
         "0 +sequence/Check", "0 +sequence/Check_2", "0 +sequence/Check_3", "0 +sequence/move",
     ]  # fmt: skip

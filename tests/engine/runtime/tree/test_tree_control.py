@@ -83,7 +83,7 @@ def test_a_forced_outcome_of_the_tree_stops_all_leaves() -> None:
     """Its own outcomes are success and failure."""
     told = operate(TWO, {0.5: lambda run: run.control.force("root", "success")})
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(0.5))
-    assert "-root/sequence/first preempted" in told.story
+    assert "-root/sequence/first preempted" in told.lines
 
 
 def test_a_leaf_is_repeated() -> None:
@@ -107,5 +107,5 @@ def test_a_check_that_is_held_in_mid_tick_holds_the_tick() -> None:
         text,
         {0.5: lambda run: run.control.set_breakpoints([stop_here]), 6.0: _go_on},
     )
-    assert "-root/parallel/sequence/move preempted" not in told.story
+    assert "-root/parallel/sequence/move preempted" not in told.lines
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(9.0))

@@ -14,7 +14,7 @@ def test_an_error_of_a_leaf_preempts_the_others_and_fails_the_tree() -> None:
           - {state: test.Hang, with: {cleanup_s: 1}}
           - sequence: [{state: test.Act, with: {script: [[1, true]]}}, {state: test.Raise}]
     """)
-    assert told.story[-4:] == [
+    assert told.lines[-4:] == [
         "1 +parallel/sequence/Raise", "1 -parallel/sequence/Raise error",
         "2 !parallel/Hang cleaned up", "2 -parallel/Hang preempted",
     ]  # fmt: skip
@@ -45,7 +45,7 @@ def test_a_leaf_may_handle_its_own_errors() -> None:
     told = run_tree("{state: test.Hang, timeout: {after: 2 s, to: failure}}")
     assert told.why[1:] == ["Hang was left for failure", "no outcome within 2 s"]
     told = run_tree("{state: test.Hang, guard: {when: '${part == 2}', to: success}}", head="userdata: {part: 1}")
-    assert (told.result.outcome, told.story) == ("success", ["0 ~Hang guard success"])
+    assert (told.result.outcome, told.lines) == ("success", ["0 ~Hang guard success"])
 
 
 @pytest.mark.parametrize(

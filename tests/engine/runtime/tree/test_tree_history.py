@@ -74,7 +74,7 @@ def _due(plan: Plan, path: str, count: int, since_s: float) -> float:
     return since_s + script[min(count, len(script)) - 1][0]
 
 
-def _told(events: Sequence[Event], since_s: float, shift_s: float) -> list[str]:
+def _lines_after(events: Sequence[Event], since_s: float, shift_s: float) -> list[str]:
     """Say what happens after a moment, without what is begun anew at that moment itself."""
     lines: list[str] = []
     for event in events:
@@ -110,7 +110,7 @@ def test_a_tree_goes_on_as_if_it_had_not_been_cut(specimen: Specimen, data: st.D
     at_s = data.draw(st.sampled_from(moments))
     rest = _cut(plan, whole, at_s)
     # What coincides may come in another order: timers were begun in another order after the cut.
-    assert sorted(_told(rest.events, at_s, at_s)) == sorted(_told(whole.events, at_s, 0.0))
+    assert sorted(_lines_after(rest.events, at_s, at_s)) == sorted(_lines_after(whole.events, at_s, 0.0))
     assert rest.result.outcome == whole.result.outcome
     if whole.result.outcome is not None:
         assert rest.result.duration_s + at_s == pytest.approx(whole.result.duration_s)
@@ -124,7 +124,7 @@ def _goes_on(
     whole = run_plan(plan, stop_at_s=(END_S,), instant_limit=100)
     rest = _cut(plan, whole, at_s, branches)
     # What coincides may come in another order: timers were begun in another order after the cut.
-    assert sorted(_told(rest.events, at_s, at_s)) == sorted(_told(whole.events, at_s, 0.0))
+    assert sorted(_lines_after(rest.events, at_s, at_s)) == sorted(_lines_after(whole.events, at_s, 0.0))
     assert rest.result.outcome == whole.result.outcome
     return rest
 
@@ -180,7 +180,7 @@ def test_an_end_that_no_tick_had_read_is_read_first() -> None:
     seq = next(event.seq for event in told.events if isinstance(event, NodeExited) and event.path.endswith("/a"))
     cut = ObservedRun(told.result, tuple(event for event in told.events if event.seq <= seq))
     rest = _cut(plan, cut, 1.0)
-    assert (rest.story, rest.result.outcome) == (["0 +sequence/b", "0 -sequence/b yes"], "success")
+    assert (rest.lines, rest.result.outcome) == (["0 +sequence/b", "0 -sequence/b yes"], "success")
 
 
 @given(specimen=guarded_trees, data=st.data())

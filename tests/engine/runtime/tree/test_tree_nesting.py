@@ -133,7 +133,7 @@ root:
 """
     told = _run(text)
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(3.0))
-    assert told.story[-2:] == ["3 -left/sequence/Hang preempted", "3 -left preempted"]
+    assert told.lines[-2:] == ["3 -left/sequence/Hang preempted", "3 -left preempted"]
 
 
 def test_hundreds_of_nodes() -> None:

@@ -100,7 +100,7 @@ def test_a_stop_preempts_all_leaves_in_document_order() -> None:
         """,
         stop_at_s=1.0,
     )
-    assert told.story[5:] == [
+    assert told.lines[5:] == [
         "2 !parallel/c cleaned up", "2 -parallel/c preempted",
         "3 !parallel/a cleaned up", "3 -parallel/a preempted",
         "3 !parallel/sequence/b cleaned up", "3 -parallel/sequence/b preempted",
@@ -112,7 +112,7 @@ def test_a_stop_preempts_all_leaves_in_document_order() -> None:
 def test_a_leaf_that_commands_a_device_and_is_halted_in_the_same_tick_never_begins() -> None:
     """`running: failure` gives it no time at all."""
     told = run_tree("remap: {running: failure, child: {state: test.Act}}")
-    assert (told.story, told.why[1:]) == ([], ["RUNNING counts as FAILURE"])
+    assert (told.lines, told.why[1:]) == ([], ["RUNNING counts as FAILURE"])
 
 
 def test_a_check_under_the_same_decorator_has_this_instant() -> None:
@@ -120,7 +120,7 @@ def test_a_check_under_the_same_decorator_has_this_instant() -> None:
     told = run_tree("remap: {running: failure, child: {state: test.Check}}")
     assert told.result.outcome == "success"
     told = run_tree("remap: {running: failure, child: {state: test.Check, with: {script: [[1, true]]}}}")
-    assert told.story == ["0 +remap/Check", "0 !remap/Check clean", "0 -remap/Check preempted"]
+    assert told.lines == ["0 +remap/Check", "0 !remap/Check clean", "0 -remap/Check preempted"]
 
 
 def test_a_clean_up_that_fails_is_an_error_of_the_tree() -> None:

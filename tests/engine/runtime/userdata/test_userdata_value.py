@@ -106,7 +106,7 @@ root:
 def test_it_is_an_error_of_its_node_like_any_other(kind: type[State]) -> None:
     told = operate(ONE.replace("NAME", kind.state_name), {}, states={kind.state_name: kind})
     assert (told.result.status, told.result.outcome) == ("finished", "good")
-    assert sum(line.startswith("+root/one") for line in told.story) == 2
+    assert sum(line.startswith("+root/one") for line in told.lines) == 2
 
 
 def test_the_message_names_the_node() -> None:

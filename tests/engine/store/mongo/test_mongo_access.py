@@ -66,7 +66,7 @@ async def test_a_password_comes_from_the_environment(
         ("reader:r@", "the user reader has no permission: "),
     ],
 )
-def test_whoever_may_not_write_is_told_by_name(guarded_mongo: Mongod, login: str, says: str) -> None:
+def test_whoever_may_not_write_is_reported_by_name(guarded_mongo: Mongod, login: str, says: str) -> None:
     """Wrong password, no credentials, a role too small."""
     with pytest.raises(StoreError) as refusal:
         MongoStore.open(f"mongodb://{login}127.0.0.1:{guarded_mongo.port}")
@@ -75,7 +75,7 @@ def test_whoever_may_not_write_is_told_by_name(guarded_mongo: Mongod, login: str
     assert "wrong" not in str(refusal.value)
 
 
-def test_a_server_that_is_not_there_is_told_with_address_and_advice() -> None:
+def test_a_server_that_is_not_there_is_reported_with_address_and_advice() -> None:
     """Within the patience, not after the half minute that the driver waits by default."""
     with pytest.raises(
         StoreError,
@@ -85,14 +85,14 @@ def test_a_server_that_is_not_there_is_told_with_address_and_advice() -> None:
         MongoStore.open("mongodb://127.0.0.1:1", patience_s=0.3)
 
 
-async def test_a_server_too_old_for_the_driver_is_told_so() -> None:
+async def test_a_server_too_old_for_the_driver_is_reported_so() -> None:
     """Of MongoDB 3.6."""
     async with OldServer() as server:
         with pytest.raises(StoreError, match=r"the server is too old \(use MongoDB 5\.0 or newer\)"):
             await asyncio.to_thread(MongoStore.open, f"mongodb://127.0.0.1:{server.port}", patience_s=3.0)
 
 
-def test_a_server_too_old_for_any_field_name_is_told_with_its_version() -> None:
+def test_a_server_too_old_for_any_field_name_is_reported_with_its_version() -> None:
     """The driver would take 4.4, which refuses names such as `a.b`."""
     with pytest.raises(
         StoreError, match=r"here: .* the server is MongoDB 4\.4\.29, too old \(use MongoDB 5\.0 or newer\)"

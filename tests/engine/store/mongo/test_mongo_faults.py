@@ -127,7 +127,7 @@ async def test_a_write_whose_answer_is_lost_is_made_once(
             proxy.swallow_answer_to(request_name + b"\x00" + _length_of(lost) + lost.encode())
             writing = asyncio.create_task(store.put("record", "a", {"n": 2}, expected_revision=1))
             await asyncio.wait_for(proxy.swallowed.wait(), 60)
-            proxy.mend()
+            proxy.restore()
             assert (await asyncio.wait_for(writing, 60)).revision == 2
             assert [change.value for change in await store.history("record", "a")] == [{"n": 1}, {"n": 2}]
 
@@ -158,7 +158,7 @@ async def test_a_writer_that_is_late_shows_nothing_older_than_what_is_there(
     assert (shown.value, shown.revision) == ({"n": 3}, 3)
 
 
-async def test_a_network_that_stays_cut_is_told_and_reading_goes_on_afterwards(
+async def test_a_network_that_stays_cut_is_reported_and_reading_goes_on_afterwards(
     replicated_mongo: Mongod, tmp_path: Path
 ) -> None:
     """The message has the address, what to check, and that the write may have arrived."""
@@ -175,7 +175,7 @@ async def test_a_network_that_stays_cut_is_told_and_reading_goes_on_afterwards(
                 await store.put("record", "a", {"n": 2})
             with pytest.raises(StoreError, match="cannot be read: the server cannot be reached"):
                 await store.get("record", "a")
-            proxy.mend()
+            proxy.restore()
             value: object = None
             while value is None:
                 try:
@@ -198,7 +198,7 @@ async def test_a_follower_misses_nothing_over_a_broken_network(replicated_mongo:
             proxy.cut()
             await writing.put("record", "a", {"n": 2})
             await writing.put("record", "a", {"n": 3})
-            proxy.mend()
+            proxy.restore()
             assert [(await asyncio.wait_for(heard.get(), 60)).value for _ in range(2)] == [{"n": 2}, {"n": 3}]
 
 

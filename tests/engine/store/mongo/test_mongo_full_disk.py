@@ -60,7 +60,7 @@ async def write_on(server: Mongod, store: Store) -> None:
 
 
 @pytest.mark.parametrize("replicated", [True, False], ids=["replicated", "standalone"])
-async def test_a_full_disk_is_told_and_nothing_that_was_acknowledged_is_lost(disk: Disk, replicated: bool) -> None:
+async def test_a_full_disk_is_reported_and_nothing_that_was_acknowledged_is_lost(disk: Disk, replicated: bool) -> None:
     """The server says so, or ends itself, which it is told by then; each way the entries are there afterwards."""
     server = Mongod(replicated=replicated, folder=disk.folder)
     server.start()

@@ -47,7 +47,7 @@ async def test_the_loop_goes_on_while_a_write_waits_for_a_lock(tmp_path: Path) -
         assert (await writing).revision == 1
 
 
-async def test_a_cancelled_write_that_took_effect_is_still_told(tmp_path: Path) -> None:
+async def test_a_cancelled_write_that_took_effect_is_still_reported(tmp_path: Path) -> None:
     """Watchers hear what the database holds, whatever became of the caller."""
     heard: asyncio.Queue[EntryChange] = asyncio.Queue()
     async with SqliteStore.open(tmp_path / "s.db", busy_timeout_s=10.0) as store:

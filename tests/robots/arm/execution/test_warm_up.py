@@ -74,7 +74,7 @@ async def test_a_cell_that_closes_meanwhile_leaves_nothing_behind(monkeypatch: p
     assert gate.opened.is_set()
 
 
-async def test_what_cannot_be_loaded_is_told_by_the_goal_that_needs_it(
+async def test_what_cannot_be_loaded_is_reported_by_the_goal_that_needs_it(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The arm itself works."""

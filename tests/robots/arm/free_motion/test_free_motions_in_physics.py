@@ -59,10 +59,10 @@ async def test_an_obstacle_put_into_the_way_of_a_moving_arm_is_gone_around_witho
         assert any("would touch post" in message.reason for message in opened.told)
 
 
-def test_the_same_story_goes_the_same_way_twice(tmp_path: Path) -> None:
+def test_the_same_scenario_goes_the_same_way_twice(tmp_path: Path) -> None:
     """Bit for bit, searches and stops included."""
 
-    async def story(folder: Path) -> list[FreeMotionFeedback]:
+    async def scenario(folder: Path) -> list[FreeMotionFeedback]:
         async with free_cell(folder) as opened:
             await opened.go(THERE)
             handle = opened.send(free(ACROSS))
@@ -71,7 +71,7 @@ def test_the_same_story_goes_the_same_way_twice(tmp_path: Path) -> None:
             await handle.result()
             return opened.told
 
-    first, second = run_virtual(story(tmp_path)), run_virtual(story(tmp_path))
+    first, second = run_virtual(scenario(tmp_path)), run_virtual(scenario(tmp_path))
     assert first == second
     assert first[-1].replans == 1
 

@@ -130,7 +130,7 @@ async def test_half_the_speed_override_takes_twice_the_time() -> None:
 
 
 @pytest.mark.virtual
-async def test_the_status_is_told_at_every_change_and_names_what_goes_on() -> None:
+async def test_the_status_is_reported_at_every_change_and_names_what_goes_on() -> None:
     """Connected, moving, at rest, other settings, reflex, recovered."""
     async with served() as cell:
         topic = cell.bus.topic("left/status", ArmStatus)
@@ -174,7 +174,7 @@ async def test_after_a_reflex_goals_are_rejected_until_it_is_recovered_from() ->
 
 
 @pytest.mark.virtual
-async def test_a_reflex_of_an_idle_arm_is_told_at_once_with_its_reason_until_it_is_recovered_from() -> None:
+async def test_a_reflex_of_an_idle_arm_is_reported_at_once_with_its_reason_until_it_is_recovered_from() -> None:
     """Nobody has to ask, and no time passes; the rejection says it as well."""
     async with served() as cell:
         heard: list[ArmStatus] = []

@@ -15,7 +15,7 @@ from tests.robots.control.spring_wall import Wall, WallRig
 START, END = np.array([0.2, 0.9]), np.array([0.5, 1.1])
 
 
-def way(duration_s: float = 1.0) -> JointTrajectory:
+def trajectory(duration_s: float = 1.0) -> JointTrajectory:
     """Return a minimum-jerk motion that moves the tool along +y, mostly."""
     u = np.linspace(0.0, 1.0, 501)[:, None]
     return JointTrajectory(
@@ -26,7 +26,9 @@ def way(duration_s: float = 1.0) -> JointTrajectory:
 
 
 def new_guarded(contact: ContactCondition, *, duration_s: float = 1.0) -> GuardedMotion:
-    playback = TrajectoryPlayback(way(duration_s), acceleration_rad_s2=np.full(2, 15.0), shortest_stop_s=GUARDED_STOP_S)
+    playback = TrajectoryPlayback(
+        trajectory(duration_s), acceleration_rad_s2=np.full(2, 15.0), shortest_stop_s=GUARDED_STOP_S
+    )
     return GuardedMotion(playback, contact)
 
 

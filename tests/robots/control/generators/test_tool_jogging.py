@@ -40,7 +40,7 @@ class Jog:
             self.watch.look()
 
 
-def test_the_tool_goes_straight_as_fast_as_it_is_told() -> None:
+def test_the_tool_goes_straight_as_fast_as_commanded() -> None:
     jog = Jog(BENT)
     start = jog.tip()
     jog.run(0.0, 0.2, 400)

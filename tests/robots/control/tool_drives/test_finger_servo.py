@@ -33,7 +33,7 @@ class Fingers:
             self.width_m, self.velocity_m_s = self.wall_m, max(self.velocity_m_s, 0.0)
         return events
 
-    def until_told(self, limit: int = 6000) -> tuple[AnyMotionEvent, int]:
+    def until_event(self, limit: int = 6000) -> tuple[AnyMotionEvent, int]:
         for step in range(limit):
             for event in self.step():
                 return event, step
@@ -43,7 +43,7 @@ class Fingers:
 def test_without_an_object_the_fingers_reach_the_width_at_the_speed() -> None:
     fingers = Fingers(wall_m=0.0)
     fingers.servo.close_to(1, width_m=0.03, speed_m_s=0.1, force_n=40.0, now_m=fingers.width_m)
-    event, steps = fingers.until_told()
+    event, steps = fingers.until_event()
     assert isinstance(event, MotionFinished)
     assert (event.end, event.progress) == ("reached", pytest.approx(1.0, abs=0.02))
     assert fingers.width_m == pytest.approx(0.03, abs=0.001)
@@ -53,7 +53,7 @@ def test_without_an_object_the_fingers_reach_the_width_at_the_speed() -> None:
 def test_against_an_object_the_force_builds_up_is_never_exceeded_and_stays() -> None:
     fingers = Fingers(wall_m=0.03)
     fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=fingers.width_m)
-    event, _ = fingers.until_told()
+    event, _ = fingers.until_event()
     assert isinstance(event, MotionFinished)
     assert event.end == "reached"
     for _ in range(500):
@@ -64,7 +64,7 @@ def test_against_an_object_the_force_builds_up_is_never_exceeded_and_stays() -> 
 def test_the_force_follows_an_object_that_gives() -> None:
     fingers = Fingers(wall_m=0.03)
     fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=fingers.width_m)
-    fingers.until_told()
+    fingers.until_event()
     fingers.wall_m = 0.028
     for _ in range(300):
         fingers.step()
@@ -74,7 +74,7 @@ def test_the_force_follows_an_object_that_gives() -> None:
 def test_a_stronger_grip_takes_over_without_letting_go() -> None:
     fingers = Fingers(wall_m=0.03)
     fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=20.0, now_m=fingers.width_m)
-    fingers.until_told()
+    fingers.until_event()
     fingers.servo.close_to(2, width_m=0.0, speed_m_s=0.05, force_n=50.0, now_m=fingers.width_m)
     weakest = 50.0
     for _ in range(400):
@@ -87,7 +87,7 @@ def test_a_stronger_grip_takes_over_without_letting_go() -> None:
 def test_a_servo_that_takes_over_from_another_presses_on_with_the_same_force() -> None:
     before, after = Fingers(wall_m=0.03), Fingers(wall_m=0.03)
     before.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=before.width_m)
-    before.until_told()
+    before.until_event()
     after.width_m = before.width_m
     after.servo.take_over(before.servo.command)
     for _ in range(500):
@@ -128,7 +128,7 @@ def test_fingers_that_are_stopped_for_a_cause_fail_with_it_and_stay_where_they_a
     for _ in range(200):
         assert fingers.step() == ()
     fingers.servo.stop("the engine was silent")
-    event, _ = fingers.until_told()
+    event, _ = fingers.until_event()
     assert isinstance(event, MotionFinished)
     assert (event.end, event.reason) == ("failed", "the engine was silent")
     left_at_m = fingers.width_m

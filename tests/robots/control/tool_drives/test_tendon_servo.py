@@ -33,7 +33,7 @@ class Tendon:
         self.passed_s += STEP_S
         return self.servo.step(STEP_S, pulled_m=self.pulled_m, velocity_m_s=self.velocity_m_s)
 
-    def until_told(self, limit: int = 20_000) -> AnyMotionEvent:
+    def until_event(self, limit: int = 20_000) -> AnyMotionEvent:
         for _ in range(limit):
             for event in self.step():
                 return event
@@ -50,7 +50,7 @@ def finished(event: AnyMotionEvent) -> tuple[str, str]:
 def test_a_free_hand_closes_by_the_share_in_the_time(share: float, time_s: float) -> None:
     tendon = Tendon()
     tendon.servo.close_to(1, share=share, time_s=time_s)
-    assert finished(tendon.until_told()) == ("reached", "")
+    assert finished(tendon.until_event()) == ("reached", "")
     assert tendon.servo.closed_share == pytest.approx(share)
     # Its seconds are a sum of steps.
     assert time_s - 1e-9 < tendon.passed_s < time_s + 0.5
@@ -59,14 +59,14 @@ def test_a_free_hand_closes_by_the_share_in_the_time(share: float, time_s: float
 def test_a_time_too_short_is_as_fast_as_the_motor_can() -> None:
     tendon = Tendon()
     tendon.servo.close_to(1, share=1.0, time_s=0.01)
-    tendon.until_told()
+    tendon.until_event()
     assert tendon.passed_s > TRAVEL_M / 0.15
 
 
 def test_a_blocked_hand_stalls_at_its_whole_force_and_keeps_it() -> None:
     tendon = Tendon(blocked_m=0.08)
     tendon.servo.close_to(1, share=1.0, time_s=1.0)
-    assert finished(tendon.until_told()) == ("reached", "")
+    assert finished(tendon.until_event()) == ("reached", "")
     for _ in range(500):
         tendon.step()
         assert tendon.servo.force_n == pytest.approx(FORCE_N, rel=0.05)
@@ -88,14 +88,14 @@ def test_a_held_hand_stands_still_and_goes_on_when_resumed() -> None:
     for _ in range(400):
         assert tendon.step() == ()
     tendon.servo.hold(1, request=1)
-    assert tendon.until_told() == MotionHeld(motion=1, request=1)
+    assert tendon.until_event() == MotionHeld(motion=1, request=1)
     share = tendon.servo.closed_share
     for _ in range(300):
         assert tendon.step() == ()
     assert tendon.servo.closed_share == share < 0.5
     tendon.servo.resume(1, request=2)
-    assert tendon.until_told() == MotionResumed(motion=1, request=2)
-    assert finished(tendon.until_told()) == ("reached", "")
+    assert tendon.until_event() == MotionResumed(motion=1, request=2)
+    assert finished(tendon.until_event()) == ("reached", "")
 
 
 def test_a_cancelled_hand_stays_where_it_is() -> None:
@@ -104,7 +104,7 @@ def test_a_cancelled_hand_stays_where_it_is() -> None:
     for _ in range(1000):
         tendon.step()
     tendon.servo.cancel(1)
-    assert finished(tendon.until_told()) == ("canceled", "")
+    assert finished(tendon.until_event()) == ("canceled", "")
     share = tendon.servo.closed_share
     for _ in range(500):
         tendon.step()
@@ -114,7 +114,7 @@ def test_a_cancelled_hand_stays_where_it_is() -> None:
 def test_a_motor_that_takes_over_from_another_pulls_on() -> None:
     before, after = Tendon(blocked_m=0.08), Tendon(blocked_m=0.08)
     before.servo.close_to(1, share=0.6, time_s=1.0)
-    before.until_told()
+    before.until_event()
     after.pulled_m = before.pulled_m
     after.servo.take_over(before.servo.command)
     for _ in range(300):

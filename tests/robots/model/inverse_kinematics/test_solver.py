@@ -107,7 +107,7 @@ def test_a_redundant_arm_gives_a_sample_that_is_called_one() -> None:
 
 @settings(max_examples=15, deadline=None)
 @given(configurations(margin_rad=0.3))
-def test_a_nearby_pose_is_reached_by_a_small_motion(joints: Array) -> None:
+def test_a_pose_close_by_is_reached_by_a_small_motion(joints: Array) -> None:
     """The elbow stays where it is, unless the arm is next to a singularity."""
     kinematics = panda_kinematics()
     if kinematics.dexterity(joints) < 0.1:

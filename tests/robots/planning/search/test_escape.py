@@ -59,7 +59,7 @@ def gaps_along(scene: PlanningScene, path: Array) -> list[float]:
     return found
 
 
-def way(answer: PlanAnswer) -> Array:
+def path_of(answer: PlanAnswer) -> Array:
     assert isinstance(answer, PathPlan), answer
     return answer.path
 
@@ -71,7 +71,7 @@ def test_a_start_within_the_margin_is_left_and_the_margin_kept_from_there_on(
 ) -> None:
     scene = beside(gap_m)
     answer = PLANNER.plan(request(scene, goal))
-    path = way(answer)
+    path = path_of(answer)
     assert tuple(path[0]) == HOME
     assert tuple(path[-1]) == goal
     gaps = gaps_along(scene, path)
@@ -90,7 +90,7 @@ def test_what_is_left_may_be_what_cameras_see() -> None:
         if not PLANNER.prepared(PANDA, ARM, occupancy=_seen(x)).checker.in_collision(np.array(HOME))
     )
     answer = PLANNER.plan(msgspec.structs.replace(request(PANDA), occupancy=_seen(first_free)))
-    path = way(answer)
+    path = path_of(answer)
     assert len(path) > 2
     checker = PLANNER.prepared(PANDA, ARM, occupancy=_seen(first_free), margin_m=MARGIN_M).checker
     assert checker.first_collision(path[1:]) is None
@@ -136,11 +136,11 @@ def test_leaving_ends_where_the_whole_margin_is_kept_for_once() -> None:
 
 def test_the_same_start_is_left_along_the_same_way() -> None:
     scene = beside(0.003)
-    first, second = (way(ScenePlanner(check_s=2e-5).plan(request(scene))) for _ in range(2))
+    first, second = (path_of(ScenePlanner(check_s=2e-5).plan(request(scene))) for _ in range(2))
     assert np.array_equal(first, second)
 
 
-def given_way(scene: PlanningScene, *rows: tuple[float, ...], **changes: object) -> PlanAnswer:
+def given_path(scene: PlanningScene, *rows: tuple[float, ...], **changes: object) -> PlanAnswer:
     base = msgspec.structs.replace(request(scene), margin_m=0.0, goal=PathGoal(waypoints_rad=rows))
     return PLANNER.plan(msgspec.structs.replace(base, **changes))
 
@@ -150,7 +150,7 @@ BACK = (0.0, -1.3, *HOME[2:])
 
 
 def test_a_given_way_is_confirmed_and_timed_as_it_is() -> None:
-    answer = given_way(beside(0.1), HOME, MIDDLE, AWAY)
+    answer = given_path(beside(0.1), HOME, MIDDLE, AWAY)
     assert isinstance(answer, PathPlan)
     assert answer.waypoints_rad == (HOME, MIDDLE, AWAY)
     assert answer.stats.found_by == GIVEN_PATH
@@ -163,7 +163,7 @@ def test_a_given_way_is_confirmed_and_timed_as_it_is() -> None:
 
 def test_a_given_way_that_is_blocked_is_refused_with_what_is_in_it() -> None:
     scene = PANDA.with_obstacles(box("wall", (0.3, 0.05, 0.6), (0.2, 0.35, 0.5)))
-    answer = given_way(scene, HOME, MIDDLE, AWAY)
+    answer = given_path(scene, HOME, MIDDLE, AWAY)
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "way_blocked"
     assert all("wall" in pair for pair in answer.pairs)
@@ -171,25 +171,25 @@ def test_a_given_way_that_is_blocked_is_refused_with_what_is_in_it() -> None:
 
 
 def test_a_given_way_may_begin_within_the_margin() -> None:
-    assert isinstance(given_way(beside(0.02), HOME, BACK, margin_m=MARGIN_M), PathPlan)
-    back = given_way(beside(0.02), HOME, BACK, HOME, margin_m=MARGIN_M)
+    assert isinstance(given_path(beside(0.02), HOME, BACK, margin_m=MARGIN_M), PathPlan)
+    back = given_path(beside(0.02), HOME, BACK, HOME, margin_m=MARGIN_M)
     assert isinstance(back, PlanRefusal)
     assert back.reason == "way_blocked"
 
 
 def test_a_given_way_that_cannot_be_is_refused_with_the_reason() -> None:
-    touching = given_way(beside(-0.01), HOME, AWAY)
+    touching = given_path(beside(-0.01), HOME, AWAY)
     assert isinstance(touching, PlanRefusal)
     assert touching.reason == "start_in_collision"
-    outside = given_way(PANDA, HOME, (9.0, *HOME[1:]))
+    outside = given_path(PANDA, HOME, (9.0, *HOME[1:]))
     assert isinstance(outside, PlanRefusal)
     assert outside.reason == "goal_outside_limits"
     assert "waypoint 1" in outside.message
-    tilted = given_way(PANDA, HOME, (*HOME[:5], HOME[5] + 0.5, HOME[6]), keep_orientation=PathOrientationConstraint())
+    tilted = given_path(PANDA, HOME, (*HOME[:5], HOME[5] + 0.5, HOME[6]), keep_orientation=PathOrientationConstraint())
     assert isinstance(tilted, PlanRefusal)
     assert tilted.reason == "way_blocked"
     assert isinstance(
-        given_way(PANDA, HOME, AWAY, keep_orientation=PathOrientationConstraint(free_about=(0, 0, 1))), PathPlan
+        given_path(PANDA, HOME, AWAY, keep_orientation=PathOrientationConstraint(free_about=(0, 0, 1))), PathPlan
     )
     with pytest.raises(CellError, match="does not begin at the start configuration"):
-        given_way(PANDA, AWAY, HOME)
+        given_path(PANDA, AWAY, HOME)

@@ -147,7 +147,7 @@ def _grazed(checker: ExactChecker, way: JointTrajectory, first_s: float, until_s
     return longest <= checker.step_m
 
 
-def test_an_arm_that_would_touch_itself_is_found_although_only_the_exact_checker_can_tell() -> None:
+def test_an_arm_that_would_touch_itself_is_found_although_only_the_exact_checker_can_decide() -> None:
     way = line(np.array([0.0, 0.0, 0.0, -1.5, 0.0, 1.6, 0.0]), np.array([0.0, 1.2, 0.0, -3.0, 0.0, 0.1, 0.0]))
     checker = ExactChecker(PANDA, ARM)
     exact_s = first_touch_s(checker, way)

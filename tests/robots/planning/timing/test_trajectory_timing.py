@@ -27,7 +27,7 @@ LIMITS = PANDA.limits
 SPEED, PUSH = np.array(LIMITS.velocity_rad_s), np.array(LIMITS.acceleration_rad_s2)
 
 
-def random_way(seed: int) -> Array:
+def random_path(seed: int) -> Array:
     random = np.random.default_rng(seed)
     steps = random.normal(size=(int(random.integers(2, 9)), 7)) * random.choice([0.001, 0.05, 0.5])
     # Some joints stand still, some lines turn back, some waypoints are double.
@@ -64,7 +64,7 @@ def changes(trajectory: JointTrajectory) -> tuple[Array, Array]:
 @settings(deadline=None, max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), speed=st.sampled_from([1.0, 0.3]), soft=st.sampled_from([1.0, 0.1, 0.02]))
 def test_a_trajectory_keeps_to_the_limits_and_to_the_way(seed: int, speed: float, soft: float) -> None:
-    way, limits = random_way(seed), softer(soft)
+    way, limits = random_path(seed), softer(soft)
     found = time_path(way, limits=limits, is_free=lambda _: True, speed=speed)
     trajectory = found.trajectory
     assert np.array_equal(trajectory.position_rad[0], way[0])
@@ -81,7 +81,7 @@ def test_a_trajectory_keeps_to_the_limits_and_to_the_way(seed: int, speed: float
 @settings(deadline=None, max_examples=30)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_where_no_corner_may_be_cut_the_arm_stops_there_and_stays_on_the_lines(seed: int) -> None:
-    way = random_way(seed)
+    way = random_path(seed)
     found = time_path(way, limits=LIMITS, is_free=lambda _: False)
     assert distance_to(way, found.trajectory.position_rad).max() <= 1e-6
     check_speed(LIMITS, PANDA.arm_joints, found.trajectory)
@@ -100,7 +100,7 @@ def test_a_straight_line_takes_as_long_as_the_best_profile_for_it(soft: float) -
 
 
 def test_the_softer_an_arm_the_longer_it_takes() -> None:
-    way = random_way(5)
+    way = random_path(5)
     took = [time_path(way, limits=softer(soft), is_free=lambda _: True).duration_s for soft in (1.0, 0.1, 0.01)]
     assert took == sorted(took)
     assert took[-1] > 1.1 * took[0]

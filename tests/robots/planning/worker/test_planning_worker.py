@@ -148,7 +148,7 @@ async def test_a_process_that_hangs_is_ended_and_one_that_still_loads_the_arms_i
 
 
 def test_in_virtual_time_planning_is_inline_takes_the_time_of_its_work_and_repeats() -> None:
-    async def story() -> list[object]:
+    async def scenario() -> list[object]:
         clock = LoopClock()
         service = new_plan_service(clock)
         assert isinstance(service, InlinePlanner)
@@ -172,17 +172,17 @@ def test_in_virtual_time_planning_is_inline_takes_the_time_of_its_work_and_repea
             found += [failed, clock.now_s()]
         return found
 
-    assert run_virtual(story()) == run_virtual(story())
+    assert run_virtual(scenario()) == run_virtual(scenario())
 
 
 def test_without_a_clock_planning_takes_no_time() -> None:
-    async def story() -> float:
+    async def scenario() -> float:
         clock = LoopClock()
         async with InlinePlanner() as planner:
             assert isinstance(await planner.plan(SHELF), PathPlan)
         return clock.now_s()
 
-    assert run_virtual(story()) == 0.0
+    assert run_virtual(scenario()) == 0.0
 
 
 async def test_a_start_goes_on_when_who_waits_for_it_is_cancelled_and_ends_with_the_worker() -> None:

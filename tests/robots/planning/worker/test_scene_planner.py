@@ -46,7 +46,7 @@ def plan(request: PlanRequest, **changes: object) -> PlanAnswer:
     return PLANNER.plan(msgspec.structs.replace(request, **changes))
 
 
-def way(answer: PlanAnswer) -> Array:
+def path_of(answer: PlanAnswer) -> Array:
     assert isinstance(answer, PathPlan), answer
     return answer.path
 
@@ -64,24 +64,24 @@ def confirm(request: PlanRequest, path: Array) -> None:
 @pytest.mark.parametrize("title", list(CASES))
 def test_the_fast_planner_finds_a_confirmed_way_in_every_experiment(title: str) -> None:
     for seed in range(3):
-        confirm(CASES[title], way(plan(CASES[title], seed=seed)))
+        confirm(CASES[title], path_of(plan(CASES[title], seed=seed)))
 
 
 def test_where_nothing_is_in_the_way_the_way_is_the_straight_line() -> None:
     answer = plan(CASES["IRB4600, free"])
-    assert len(way(answer)) == 2
+    assert len(path_of(answer)) == 2
 
 
 @pytest.mark.parametrize("planner", ["stomp", *(nightly(name) if name in SLOW else name for name in OMPL_PLANNERS)])
 def test_every_planner_finds_a_confirmed_way_around_a_box(planner: str) -> None:
-    confirm(IRB_BOX, way(plan(IRB_BOX, planner=planner, time_s=30.0)))
+    confirm(IRB_BOX, path_of(plan(IRB_BOX, planner=planner, time_s=30.0)))
 
 
 @pytest.mark.parametrize("planner", ["fast", "stomp", "RRTConnect", "KPIECE1"])
 def test_the_same_seed_gives_the_same_way(planner: str) -> None:
-    first, second = (way(ScenePlanner(check_s=2e-5).plan(_with(IRB_BOX, planner, 5))) for _ in range(2))
+    first, second = (path_of(ScenePlanner(check_s=2e-5).plan(_with(IRB_BOX, planner, 5))) for _ in range(2))
     assert np.array_equal(first, second)
-    assert not np.array_equal(first, way(plan(IRB_BOX, planner=planner, seed=6, time_s=30.0)))
+    assert not np.array_equal(first, path_of(plan(IRB_BOX, planner=planner, seed=6, time_s=30.0)))
 
 
 def _with(request: PlanRequest, planner: str, seed: int) -> PlanRequest:
@@ -91,13 +91,13 @@ def _with(request: PlanRequest, planner: str, seed: int) -> PlanRequest:
 @pytest.mark.parametrize("seed", range(8))
 def test_random_shelves_with_clutter_are_solved(seed: int) -> None:
     request = random_case(seed).request
-    confirm(request, way(plan(request)))
+    confirm(request, path_of(plan(request)))
 
 
 def test_a_pose_is_reached_by_whichever_configuration_is_free() -> None:
     goal = Pose(xyz=(0.2, 0.45, 0.3), xyzw=DOWN)
     request = PlanRequest(scene=shelf_scene(), arm=ARM, start_rad=HOME, goal=PoseGoal(pose=goal))
-    path = way(plan(request))
+    path = path_of(plan(request))
     reached = ArmKinematics(robot_model("panda"), base=ORIGIN).tool_pose(path[-1])
     assert reached.distance_m(RigidTransform.from_pose(goal)) < 1e-4
     assert reached.angle_rad(RigidTransform.from_pose(goal)) < 1e-3
@@ -112,14 +112,14 @@ def test_the_arm_goes_around_something_rather_than_straight_to_a_far_configurati
     near = goal.joints_rad[0]
     far = (near[0], near[1], near[2], near[3], near[4], near[5] + 2.0 * np.pi)
     alone_first = plan(IRB_BOX)
-    assert len(way(alone_first)) > 2
+    assert len(path_of(alone_first)) > 2
     both = plan(IRB_BOX, goal=JointGoal(joints_rad=(far, (*start[:5], start[5] + 3.0), near)))
-    assert way(both)[-1].tolist() == list(near)
+    assert path_of(both)[-1].tolist() == list(near)
 
 
 def test_a_margin_is_kept_from_obstacles() -> None:
     request = msgspec.structs.replace(IRB_BOX, margin_m=0.1)
-    confirm(request, way(plan(request)))
+    confirm(request, path_of(plan(request)))
 
 
 def test_a_held_rod_makes_the_way_wider() -> None:
@@ -129,11 +129,11 @@ def test_a_held_rod_makes_the_way_wider() -> None:
     turned = (1.57 + 0.9, *HOME[1:])
     start = (1.57 - 0.9, *HOME[1:])
     request = PlanRequest(scene=scene, arm=ARM, start_rad=start, goal=JointGoal(joints_rad=(turned,)))
-    assert len(way(plan(request))) == 2
+    assert len(path_of(plan(request))) == 2
     rod = Solid(shape=Box(size_m=(0.6, 0.02, 0.02)), pose=Pose(xyz=(0.0, 0.0, 0.02)))
     held = scene.with_attached(AttachedPart(name="rod", arm=ARM, solids=(rod,)))
     carrying = msgspec.structs.replace(request, scene=held)
-    path = way(plan(carrying))
+    path = path_of(plan(carrying))
     assert len(path) > 2
     confirm(carrying, path)
 
@@ -148,7 +148,7 @@ def test_a_start_next_to_something_is_left_although_the_spheres_are_larger_than_
     assert 0.002 < start_gap < 0.004
     goal = (1.2, *HOME[1:])
     request = PlanRequest(scene=scene, arm=ARM, start_rad=HOME, goal=JointGoal(joints_rad=(goal,)))
-    confirm(request, way(plan(request)))
+    confirm(request, path_of(plan(request)))
 
 
 @pytest.mark.parametrize("free_about", [(0.0, 0.0, 1.0), None])
@@ -163,7 +163,7 @@ def test_the_tool_keeps_its_orientation_on_the_whole_way(free_about: tuple[float
         keep_orientation=PathOrientationConstraint(tolerance_rad=0.15, free_about=free_about),
         time_s=20.0,
     )
-    path = way(plan(request))
+    path = path_of(plan(request))
     confirm(request, path)
     kinematics = ArmKinematics(robot_model("panda"), base=ORIGIN)
     begin = kinematics.tool_pose(path[0])
@@ -273,6 +273,6 @@ def test_a_small_ball_in_the_way_of_the_elbow_is_avoided_too() -> None:
     middle = kinematics.tool_pose(np.array((0.8, *HOME[1:]))).to_pose("world")
     scene = alone("panda").with_obstacles(msgspec.structs.replace(ball, pose=middle))
     request = PlanRequest(scene=scene, arm=ARM, start_rad=HOME, goal=JointGoal(joints_rad=((1.57, *HOME[1:]),)))
-    path = way(plan(request))
+    path = path_of(plan(request))
     assert len(path) > 2
     confirm(request, path)

@@ -92,7 +92,7 @@ async def test_the_force_is_what_was_asked_for_within_the_grippers_range(asked_n
 
 
 @pytest.mark.virtual
-async def test_without_a_part_the_fingers_close_on_nothing_and_the_judgement_says_so() -> None:
+async def test_without_a_part_the_fingers_close_on_nothing_and_the_check_says_so() -> None:
     async with reaching(scene("ur10", "robotiq_2f85", fixtures=(TABLE,))) as reach:
         await reach_for(reach)
         assert (await close(reach, force_n=60.0)).end is MotionEnd.REACHED

@@ -24,14 +24,14 @@ RACK = FixtureBody(
 )
 
 
-def standing(diameter_m: float, *, bottom_m: float, mass_kg: float) -> PartBody:
+def upright_tube(diameter_m: float, *, bottom_m: float, mass_kg: float) -> PartBody:
     pose = Pose(xyz=(X, Y, bottom_m + 0.1))
     return PartBody(name="tube", shape="cylinder", size_m=(diameter_m, 0.2), mass_kg=mass_kg, pose=pose)
 
 
-TUBE = scene("servo_arm", "servo_claw", parts=(standing(0.02, bottom_m=0.0001, mass_kg=0.02),), fixtures=(TABLE,))
+TUBE = scene("servo_arm", "servo_claw", parts=(upright_tube(0.02, bottom_m=0.0001, mass_kg=0.02),), fixtures=(TABLE,))
 TEST_CYLINDER = scene(
-    "servo_arm", "servo_claw", parts=(standing(0.01, bottom_m=0.0051, mass_kg=0.03),), fixtures=(TABLE, RACK)
+    "servo_arm", "servo_claw", parts=(upright_tube(0.01, bottom_m=0.0051, mass_kg=0.03),), fixtures=(TABLE, RACK)
 )
 
 
@@ -98,7 +98,7 @@ async def test_the_test_cylinder_is_pulled_out_of_its_rack_and_held() -> None:
 
 
 @pytest.mark.virtual
-async def test_without_a_tube_the_claw_closes_on_nothing_and_the_judgement_says_so() -> None:
+async def test_without_a_tube_the_claw_closes_on_nothing_and_the_check_says_so() -> None:
     async with reaching(scene("servo_arm", "servo_claw")) as reach:
         await swing(reach, AT_RAD)
         await close(reach)

@@ -30,9 +30,7 @@ async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> No
         assert (await motion.report()).end.value == "reached"
 
 
-async def test_an_arm_comes_to_rest_by_itself_while_the_loop_of_its_parent_is_blocked_and_moves_again_when_told() -> (
-    None
-):
+async def test_an_arm_comes_to_rest_by_itself_while_the_loop_of_its_parent_is_blocked_and_then_moves_again() -> None:
     host = ProcessHost(watched(one_arm()))
     async with SimWorld(one_arm(), host=host) as world:
         arm = world.arm("left")

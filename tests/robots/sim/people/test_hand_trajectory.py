@@ -15,14 +15,16 @@ places = st.tuples(_metre, _metre, _metre).map(np.array)
 speeds = st.floats(0.1, 3.0)
 
 
-def _standing(xyz: Array) -> HandMotion:
+def _at_rest(xyz: Array) -> HandMotion:
     return HandMotion(xyz=xyz, velocity=np.zeros(3))
 
 
 @settings(deadline=None)
 @given(places, places, speeds)
-def test_from_rest_it_is_a_straight_line_that_is_no_faster_than_told(start: Array, goal: Array, speed: float) -> None:
-    way = plan_hand_trajectory(_standing(start), goal, speed_m_s=speed)
+def test_from_rest_it_is_a_straight_line_that_is_no_faster_than_requested(
+    start: Array, goal: Array, speed: float
+) -> None:
+    way = plan_hand_trajectory(_at_rest(start), goal, speed_m_s=speed)
     reached, acceleration = way.peaks()
     assert reached <= speed * 1.001
     assert acceleration <= GREATEST_ACCELERATION_M_S2 * 1.01
@@ -33,7 +35,7 @@ def test_from_rest_it_is_a_straight_line_that_is_no_faster_than_told(start: Arra
 
 
 def test_it_takes_as_long_as_a_minimum_jerk_motion_of_that_peak_speed_does() -> None:
-    way = plan_hand_trajectory(_standing(np.zeros(3)), np.array([0.4, 0.0, 0.0]), speed_m_s=0.5)
+    way = plan_hand_trajectory(_at_rest(np.zeros(3)), np.array([0.4, 0.0, 0.0]), speed_m_s=0.5)
     assert way.duration_s == pytest.approx(1.875 * 0.4 / 0.5)
     assert way.peaks()[0] == pytest.approx(0.5, rel=1e-3)
 
@@ -43,7 +45,7 @@ def test_it_takes_as_long_as_a_minimum_jerk_motion_of_that_peak_speed_does() -> 
 def test_sent_elsewhere_in_mid_motion_it_goes_on_from_where_it_is_at_the_speed_that_it_has(
     start: Array, first: Array, second: Array, speed: float, then: float, share: float
 ) -> None:
-    before = plan_hand_trajectory(_standing(start), first, speed_m_s=speed)
+    before = plan_hand_trajectory(_at_rest(start), first, speed_m_s=speed)
     turned_off = before.at(share * before.duration_s)
     way = plan_hand_trajectory(turned_off, second, speed_m_s=then)
     begin, end = way.at(0.0), way.at(way.duration_s)

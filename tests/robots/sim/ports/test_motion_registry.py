@@ -47,7 +47,7 @@ async def test_an_answer_to_an_older_request_is_none_to_a_newer_one() -> None:
 
 
 @pytest.mark.virtual
-async def test_the_answer_to_the_newest_request_answers_those_before() -> None:
+async def test_the_answer_to_the_latest_request_answers_those_before() -> None:
     """The world never tells of a hold that was overtaken by a resume."""
     asked = Asked()
     hold = await asked.ask(asked.motion.hold())

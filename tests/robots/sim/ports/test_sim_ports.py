@@ -40,7 +40,7 @@ async def test_a_motion_that_could_not_be_sent_leaves_nothing_behind() -> None:
 
 
 @pytest.mark.virtual
-async def test_a_hold_that_could_not_be_sent_is_told_and_the_next_one_works() -> None:
+async def test_a_hold_that_could_not_be_sent_is_reported_and_the_next_one_works() -> None:
     host = DeafHost(one_arm())
     async with SimWorld(one_arm(), host=host) as world:
         motion = world.arm("left").follow(smooth(HOME, HOME + 0.1, 0.5), tolerance=Tolerance())

@@ -62,7 +62,7 @@ async def test_the_servos_of_the_small_arm_show_0_and_160_degrees_at_home() -> N
 
 @pytest.mark.virtual
 @pytest.mark.parametrize("model", ["irb4600", "ur10"])
-async def test_where_both_are_the_same_nothing_is_told_twice(model: str) -> None:
+async def test_where_both_are_the_same_nothing_is_reported_twice(model: str) -> None:
     async with opened(one(model)) as world:
         bus = SkillBus(new_clock())
         world.register(bus)

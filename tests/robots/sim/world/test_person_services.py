@@ -44,7 +44,7 @@ def hand_xyz(bus: SkillBus) -> Vector3:
 
 
 @both_hosts_nightly
-async def test_a_hand_is_there_at_the_time_that_was_promised_and_returns_when_told(host: str) -> None:
+async def test_a_hand_is_there_at_the_time_that_was_promised_and_returns_when_requested(host: str) -> None:
     async with with_bus(with_anna(SimScene(fixtures=(TABLE,)))) as (world, bus):
         asked_s = world.measured().time_s
         reaching = await bus.call(Reach(person="anna", hand_m=OVER_TABLE, speed_m_s=1.5), to="cell")
@@ -65,7 +65,7 @@ async def test_a_hand_is_there_at_the_time_that_was_promised_and_returns_when_to
 
 
 @both_hosts_nightly
-async def test_contacts_are_told_by_the_names_of_the_bodies(host: str) -> None:
+async def test_contacts_are_reported_by_the_names_of_the_bodies(host: str) -> None:
     async with with_bus(with_anna(one_arm())) as (world, bus):
         await bus.call(Reach(person="anna", hand_m=AT_LEFT_HAND, speed_m_s=1.0), to="cell")
         await passed(world, 1.6)

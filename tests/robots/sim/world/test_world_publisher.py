@@ -53,7 +53,7 @@ async def test_streams_come_at_their_rates_in_world_time() -> None:
 
 
 @pytest.mark.virtual
-async def test_what_an_arm_feels_is_told_as_wrench_and_joint_torques() -> None:
+async def test_what_an_arm_feels_is_reported_as_wrench_and_joint_torques() -> None:
     async with opened(one_arm()) as world:
         bus = SkillBus(new_clock())
         world.register(bus)

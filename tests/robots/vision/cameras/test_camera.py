@@ -51,7 +51,7 @@ def test_the_height_of_an_image_spans_the_field_of_view(size: tuple[int, int], f
 
 
 @given(PLACES, PLACES)
-def test_a_camera_looks_at_what_it_is_told_to_with_up_being_up(at: Vector3, target: Vector3) -> None:
+def test_a_camera_looks_at_its_target_with_up_being_up(at: Vector3, target: Vector3) -> None:
     if not apart(at, target):
         return
     pose = RigidTransform.from_pose(optical_frame_pose(at, target))

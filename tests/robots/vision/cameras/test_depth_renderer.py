@@ -19,7 +19,7 @@ from engine.messages.sensing import DepthImage
 from robots.vision.camera_rig import CameraRig
 from robots.vision.cameras.camera import camera_of, depths, points_seen
 from robots.vision.cameras.depth_image import frame_number, measured_image
-from tests.robots.vision.watched_cell import FRONT, PANDA, block, cameras, look, scene, sight
+from tests.robots.vision.watched_cell import FRONT, PANDA, block, cameras, look, perception_setup, scene
 
 _ROOT = Path(__file__).parents[4]
 # A camera above a block whose top is at 0.4 m: everything that it measures there is 1.6 m away.
@@ -30,7 +30,7 @@ BLOCK = block((0.5, 0.0, 0.2), (0.4, 0.3, 0.4))
 def seen_by(camera: DepthCamera, *blocks: object) -> DepthImage:
     """Return the image of a camera above the block."""
     what = scene(BLOCK)
-    rig = CameraRig(sight(what, *cameras(front=camera)), repeatable=True)
+    rig = CameraRig(perception_setup(what, *cameras(front=camera)), repeatable=True)
     return rig.look(look(what)).images[0]
 
 
@@ -75,12 +75,12 @@ def test_noise_depends_on_camera_frame_and_seed_alone() -> None:
 def test_an_unknown_way_to_make_images_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FLEXCELL_DEPTH", "magic")
     with pytest.raises(CellError, match=r"FLEXCELL_DEPTH is magic \(set it to egl, osmesa or rays\)"):
-        CameraRig(sight(scene()), repeatable=True)
+        CameraRig(perception_setup(scene()), repeatable=True)
 
 
 def test_an_arm_is_seen_where_the_physics_has_it() -> None:
     what = scene(arms=(PANDA,))
-    rig = CameraRig(sight(what, *cameras(front=FRONT)), repeatable=True)
+    rig = CameraRig(perception_setup(what, *cameras(front=FRONT)), repeatable=True)
     points = points_seen(rig.look(look(what)).images[0])
     arm = points[points[:, 2] > 0.02]
     # The Panda at home reaches 0.31 m ahead with its flange, and its elbow is below 0.9 m.
@@ -97,7 +97,7 @@ def test_opengl_and_rays_measure_the_same() -> None:
 import json
 import numpy as np
 from tests.robots.vision.cameras.test_depth_renderer import ABOVE, BLOCK
-from tests.robots.vision.watched_cell import PANDA, cameras, look, scene, sight
+from tests.robots.vision.watched_cell import PANDA, cameras, look, scene, perception_setup
 from robots.vision.cameras.camera import depths
 from robots.vision.camera_rig import CameraRig
 import robots.vision.cameras.depth_rays as rays, os
@@ -106,7 +106,7 @@ what = scene(BLOCK, arms=(PANDA,))
 seen = []
 for kind in ("egl", "rays"):
     os.environ["FLEXCELL_DEPTH"] = kind
-    rig = CameraRig(sight(what, *cameras(front=ABOVE)), repeatable=True)
+    rig = CameraRig(perception_setup(what, *cameras(front=ABOVE)), repeatable=True)
     seen.append(depths(rig.look(look(what)).images[0]))
     rig.close()
 both = np.isfinite(seen[0]) & np.isfinite(seen[1])

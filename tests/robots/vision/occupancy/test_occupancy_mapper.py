@@ -20,7 +20,7 @@ from robots.vision.camera_rig import CameraRig
 from robots.vision.cameras.camera import optical_frame_pose, pinhole
 from robots.vision.known_geometry import KnownGeometry, MeasuredState
 from robots.vision.occupancy.occupancy_mapper import LONE_IMAGES, MISSES_TO_CLEAR, OccupancyMapper
-from tests.robots.vision.watched_cell import BOX, block, cameras, look, scene, sight, voxels
+from tests.robots.vision.watched_cell import BOX, block, cameras, look, perception_setup, scene, voxels
 
 LENS = pinhole((160, 120), 1.0)
 DOWN = optical_frame_pose((0.5, 0.0, 2.0), (0.5, 0.0, 0.0))
@@ -152,7 +152,7 @@ def test_one_camera_fills_what_the_other_does_not_see_and_neither_clears_what_th
     told = KnownGeometry(obstacles=(Obstacle.of("floor", Box(size_m=(4.0, 4.0, 0.04)), Pose(xyz=(0.0, 0.0, -0.02))),))
     faces: dict[tuple[str, ...], tuple[bool, bool]] = {}
     for names in (("front",), ("back",), ("front", "back")):
-        eye = CameraRig(sight(what, *seen_by), repeatable=True)
+        eye = CameraRig(perception_setup(what, *seen_by), repeatable=True)
         eye.know(told)
         grids = [eye.look(look(what, names)).grid for _ in range(4)]
         assert len({grid.occupied for grid in grids[2:] if grid is not None}) == 1
