@@ -82,8 +82,8 @@ def test_a_line_starts_and_ends_exactly_at_rest() -> None:
     ("move", "turn", "duration_s"),
     [
         ((0.001, 0.0, 0.0), (0.0, 0.0, 0.0), 6.0),
-        ((0.0, 0.2, 0.0), (0.0, 0.0, 0.0), 2.0),
-        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.8), 2.0),
+        ((0.0, 0.2, 0.0), (0.0, 0.0, 0.0), 1.0),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.8), 0.8),
     ],
 )
 def test_the_joints_are_solved_often_enough_in_time_in_space_and_in_angle(

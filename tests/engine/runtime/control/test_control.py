@@ -202,6 +202,18 @@ def test_who_waits_at_the_gate_is_shown_with_the_reasons() -> None:
     assert seen == [(wait,), (replace(wait, reasons=("pause", "lock", "autonomy")),)]
 
 
+def test_a_run_says_in_a_word_whom_it_waits_for() -> None:
+    """A question comes before a pause, a pause before a lock."""
+    seen: list[str] = []
+
+    def look(run: Run) -> None:
+        seen.append(run.control.view().waits)
+
+    before: dict[float, Act] = {0.5: attach, 1.0: lock, 1.5: look, 3.0: look, 4.0: pause, 4.5: look}
+    operate(ASKS, {**before, 5.0: answer, 5.5: look, 6.0: resume, 6.5: look, 7.0: end}, supervision=options("hold"))
+    assert seen == ["", "asks", "asks", "paused", "locked"]
+
+
 def test_who_has_commanded_sees_what_came_of_it_at_once() -> None:
     seen: list[tuple[str, ...]] = []
 

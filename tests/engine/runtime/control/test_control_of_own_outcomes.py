@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import pytest
 
-from engine.event import GateReached, OutcomeRequested, OutcomeWithdrawn, PauseConfirmed
+from engine.event import GateReached, MessageLogged, OutcomeRequested, OutcomeWithdrawn, PauseConfirmed
 from engine.runtime.control import LossPolicy
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
@@ -79,6 +79,28 @@ def test_with_enough_autonomy_an_offer_passes_at_once() -> None:
     at = RunOptions(autonomy="full", demand_operator=True)
     told = operate(PROPOSE, {}, supervision=at, states=STATES)
     assert (told.result.outcome, told.result.duration_s) == ("good", 0.0)
+
+
+class Late(State, frozen=True, kw_only=True):
+    """Offer `a` after a second, and end with it."""
+
+    state_name: ClassVar[str] = "test.Late"
+    outcomes: ClassVar[tuple[str, ...]] = ("a",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        await asyncio.sleep(1.0)
+        await ctx.offer("a")
+        ctx.log("offered")
+        return Outcome("a")
+
+
+def test_an_offer_that_asks_nobody_passes_in_a_pause_and_the_exit_waits() -> None:
+    text = "root: {machine: {initial: one, states: {one: {state: test.Late, transitions: {a: good}}}}}"
+    acts: dict[float, Act] = {0.5: lambda run: run.control.pause(), 3.0: lambda run: run.control.resume()}
+    told = operate(text, acts, states={"test.Late": Late})
+    assert [e.time_s for e in told.events if isinstance(e, MessageLogged)] == [1.0]
+    assert [(e.point, e.time_s) for e in told.events if isinstance(e, GateReached)] == [("after", 1.0)]
+    assert told.result.duration_s == pytest.approx(3.0)
 
 
 def test_a_state_is_notified_of_pause_and_resume() -> None:

@@ -328,21 +328,65 @@ def test_orders_for_what_is_being_undone_are_refused_and_a_stop_ends_it() -> Non
     operator = Operator()
     said: list[str] = []
 
-    def force(run: Run) -> None:
-        with pytest.raises(FlexcellError) as refused:
-            run.control.force("root/two", "there")
-        said.append(str(refused.value))
+    def order(run: Run) -> None:
+        for act in (lambda: run.control.force("root/two", "there"), run.control.step):
+            with pytest.raises(FlexcellError) as refused:
+                act()
+            said.append(str(refused.value))
 
     told = operator.run(
-        TWO, {2.0: pause, 3.0: operator.back(), 3.25: force, 3.5: operator.back(), 3.75: lambda run: run.stop("enough")}
+        TWO, {2.0: pause, 3.0: operator.back(), 3.25: order, 3.5: operator.back(), 3.75: lambda run: run.stop("enough")}
     )
-    assert said == ["root/two: this node is being undone (wait until the run is at rest, or stop it)"]
+    assert said == ["root/two: this node is being undone (wait until the run is at rest, or stop it)"] * 2
     assert operator.said[1].startswith("refused: root/two: this node is being undone")
     assert told.result.status == "stopped"
     assert [e.preempted for e in told.events if isinstance(e, UndoEnded)] == [True]
     assert not [e for e in told.events if isinstance(e, RunSteppedBack)]
     assert operator.slide is not None
     assert 1.0 < operator.slide.at_m < 2.0
+
+
+def test_while_a_node_cleans_up_for_an_order_nothing_is_stepped_back() -> None:
+    operator = Operator()
+
+    async def force_and_step_back(run: Run) -> None:
+        run.control.force("root/two", "failed")
+        await operator.back()(run)
+
+    told = operator.run(TWO, {2.0: pause, 3.0: force_and_step_back, 7.0: resume})
+    assert operator.said == ["refused: the run is executing another command (wait until it is at rest)"]
+    assert told.result.outcome == "bad"
+
+
+def test_a_branch_with_priority_holds_no_undo_in_another() -> None:
+    text = """
+    root:
+      concurrency:
+        states:
+          low:
+            machine:
+              initial: one
+              states:
+                one: {state: test.MoveSlide, transitions: {there: rest, failed: out}}
+                rest: {state: flow.Wait, with: {duration_s: 30}, transitions: {done: out}}
+          high:
+            machine:
+              initial: first
+              states:
+                first: {state: flow.Wait, with: {duration_s: 2}, transitions: {done: urgent}}
+                urgent:
+                  priority:
+                    initial: last
+                    states:
+                      last: {state: flow.Wait, with: {duration_s: 20}, transitions: {done: out}}
+                  transitions: {out: out}
+        conditions: [{good: {low: out, high: out}}]
+    """
+    operator = Operator()
+    back = operator.back("root/low")
+    told = operator.run(text, {3.0: pause, 4.0: back, 6.0: back, 10.0: operator.look, 11.0: resume})
+    assert operator.said == ["undoes root/low/rest", "undoes root/low/one", "before root/low/one rests 0 m"]
+    assert told.result.outcome == "good"
 
 
 def test_a_behavior_tree_and_all_rounds_of_a_loop_are_taken_back_as_one() -> None:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from engine.errors import RobotError
 from engine.messages.demonstrations import Trajectory
 from robots.motion.dmp import integrate_joints, integrate_pose, learn_cart_dmp, learn_joint_dmp
-from robots.motion.dmp.quaternions import conjugate, log, product, toward
+from robots.motion.dmp.quaternions import conjugate, exp, log, product, toward
+from robots.motion.min_jerk import min_jerk
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import interpolated, led_joints, led_tool, seeds
 
@@ -119,6 +120,47 @@ def test_a_recording_that_begins_in_motion_is_learned_with_its_speed() -> None:
     assert learned.fit.max_rad < 2e-3
 
 
+def test_a_tool_that_is_in_motion_at_both_ends_is_learned_with_its_poses_and_speeds() -> None:
+    """`y0` and `goal` are where it was at the first and at the last sample."""
+    times = np.linspace(0.0, 1.0, 51)
+    xyz, turns = times[:, None] * np.array([0.3, -0.1, 0.2]), times[:, None] * np.array([0.0, 0.8, 0.0])
+    poses = np.hstack((xyz, exp(turns)))
+    learned = learn_cart_dmp(Trajectory(times_s=tuple(times.tolist()), poses=tuple(map(tuple, poses.tolist()))))
+    assert learned.dmp.dy0 == pytest.approx((0.3, -0.1, 0.2, 0.0, 0.8, 0.0), abs=1e-6)
+    assert learned.dmp.y0 == pytest.approx(poses[0], abs=1e-6)
+    assert learned.dmp.goal == pytest.approx(poses[-1], abs=1e-6)
+    assert learned.fit.max_m < 2e-3
+
+
+@pytest.mark.parametrize("turn_rad", [1.0, 4.0])
+def test_the_reported_error_of_a_tool_is_that_of_the_rolled_out_motion(turn_rad: float) -> None:
+    """Root mean square and maximum of places and angles, and both at the end, past half a turn too."""
+    led = led_tool(2, noise_m=2e-4, noise_rad=1e-3, turn_rad=turn_rad)
+    learned = learn_cart_dmp(led.recorded, kernels=20)
+    path, times, cut = integrate_pose(learned.dmp), np.array(led.recorded.times_s), learned.fit.cut
+    taken = (times >= cut.start_s - 1e-9) & (times <= cut.end_s + 1e-9)
+    shares = (times[taken] - cut.start_s) / learned.dmp.tau
+    recorded = np.array(led.recorded.poses)[taken]
+    away = np.linalg.norm(interpolated(shares, path.shares, path.xyz) - recorded[:, :3], axis=1)
+    turns = interpolated(shares, path.shares, path.xyzw)
+    pairs = zip(turns / np.linalg.norm(turns, axis=1, keepdims=True), recorded[:, 3:], strict=True)
+    angles = np.array([angle_rad(one, other) for one, other in pairs])
+    fit = learned.fit
+    assert (fit.max_m, fit.rms_m) == pytest.approx((away.max(), np.sqrt((away**2).mean())))
+    assert (fit.max_rad, fit.rms_rad) == pytest.approx((angles.max(), np.sqrt((angles**2).mean())), rel=1e-5)
+    assert fit.end_m == pytest.approx(np.linalg.norm(path.xyz[-1] - np.array(learned.dmp.goal[:3])), rel=1e-6)
+    assert fit.end_rad == pytest.approx(angle_rad(path.xyzw[-1], np.array(learned.dmp.goal[3:])), rel=1e-6)
+
+
+def test_a_recording_may_begin_at_any_time() -> None:
+    """What was cut off counts from its first sample."""
+    times = np.arange(320) / 128.0
+    joints = tuple((angle, -angle) for angle in min_jerk((times - 0.25) / 2.0).tolist())
+    recordings = [Trajectory(times_s=tuple((times + since_s).tolist()), joints=joints) for since_s in (0.0, 512.0)]
+    early, late = map(learn_joint_dmp, recordings)
+    assert late == early
+
+
 def test_uneven_samples_with_a_gap_are_learned() -> None:
     """A recorder that lost a tenth of a second leaves the rest as it is."""
     led = led_joints(8)
@@ -134,6 +176,15 @@ def test_a_whole_turn_of_the_tool_is_refused() -> None:
     """There the way to the goal is not defined."""
     with pytest.raises(RobotError, match="in the recording, which one primitive cannot represent"):
         learn_cart_dmp(led_tool(1, turn_rad=7.0).recorded)
+
+
+def test_the_last_sample_counts_for_how_far_the_tool_turns() -> None:
+    """Also where it still turns fast."""
+    turns = np.linspace(0.0, 6.1, 12)[:, None] * np.array([0.0, 0.0, 1.0])
+    poses = np.hstack((np.zeros((12, 3)), exp(turns)))
+    recorded = Trajectory(times_s=tuple(k / 10 for k in range(12)), poses=tuple(map(tuple, poses.tolist())))
+    with pytest.raises(RobotError, match="the tool turns by 350° in the recording"):
+        learn_cart_dmp(recorded)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from robots.motion.dmp import (
     learn_cart_dmp,
     learn_joint_dmp,
 )
-from robots.motion.dmp.quaternions import conjugate, log, product
+from robots.motion.dmp.quaternions import conjugate, exp, log, product
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import interpolated, led_joints, led_tool, seeds
 
@@ -95,6 +95,35 @@ def test_a_tool_held_back_stops_the_phase() -> None:
             running.step(STEP_S, actual=(running.xyz, running.xyzw))
         assert running.xyz == pytest.approx(dmp.goal[:3], abs=1e-3)
         assert abs(float(running.xyzw @ np.array(dmp.goal[3:]))) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_an_arm_that_lags_pulls_the_motion_to_itself_as_published() -> None:
+    """By `a_py` times its distance in each step, place and turn alike."""
+    dmp = learn_cart_dmp(led_tool(4, duration_s=2.0).recorded, kernels=15).dmp
+    one, other = (OnlineCartDmp(dmp, stopping=PhaseStopping(a_py=20.0)) for _ in range(2))
+    for _ in range(100):
+        one.step(STEP_S)
+        other.step(STEP_S)
+    lag, turn = np.array([0.01, -0.02, 0.005]), np.array([0.0, 0.03, -0.01])
+    one.step(STEP_S)
+    other.step(STEP_S, actual=(other.xyz + lag, product(exp(turn), other.xyzw)))
+    share = 20.0 * STEP_S / dmp.tau
+    assert other.xyz - one.xyz == pytest.approx(share * lag, abs=1e-9)
+    assert log(product(other.xyzw, conjugate(one.xyzw))) == pytest.approx(share * turn, abs=1e-6)
+
+
+def test_quaternions_that_are_not_quite_unit_are_the_orientations_they_mean() -> None:
+    """As stored by another program with few digits, say."""
+    dmp = learn_cart_dmp(led_tool(4, duration_s=2.0).recorded, kernels=15).dmp
+    longer = {
+        name: (*pose[:3], *(1.0005 * part for part in pose[3:])) for name, pose in (("y0", dmp.y0), ("goal", dmp.goal))
+    }
+    plain, scaled = OnlineCartDmp(dmp), OnlineCartDmp(msgspec.structs.replace(dmp, **longer))
+    for _ in range(200):
+        plain.step(STEP_S)
+        scaled.step(STEP_S)
+    assert scaled.xyz == pytest.approx(plain.xyz, abs=1e-12)
+    assert scaled.xyzw == pytest.approx(plain.xyzw, abs=1e-12)
 
 
 @settings(max_examples=5, deadline=None)

@@ -16,9 +16,12 @@ from engine.messages.primitives import CartDmp
 from robots.model.transform import RigidTransform, quaternion_of
 from robots.model.transform import product as turned
 from robots.motion.dmp import integrate_pose, learn_cart_dmp, plan_cart_dmp, transform_dmp
+from robots.motion.dmp.plan_cart import resting_pose
 from robots.motion.dmp.quaternions import exp, product
 from robots.motion.min_jerk import min_jerk
 from robots.port import JointTrajectory
+from tests.robots.motion.dmp.demonstrations import seeds
+from tests.robots.motion.dmp.test_integration import new_cart_dmp
 from tests.robots.panda_arm import BASE, home, panda_kinematics, panda_model, played
 
 LIMITS = panda_model().limits
@@ -71,6 +74,34 @@ def test_the_tool_follows_the_primitive() -> None:
     end = panda_kinematics().tool_pose(way.position_rad[-1])
     assert end.distance_m(goal_of(dmp)) < 1e-6
     assert end.angle_rad(goal_of(dmp)) < 1e-6
+
+
+def test_without_forces_the_tool_is_drawn_to_its_goal_as_by_a_damped_spring() -> None:
+    """At every sample, also where that falls between two steps of the integration."""
+    none = (0.0,) * led_tool_from_home().N
+    dmp = msgspec.structs.replace(
+        led_tool_from_home(), tau=15.0, w1=none, w2=none, w3=none, w4=none, w5=none, w6=none, dy0=(0.0,) * 6
+    )
+    way, start, end = plan(dmp), RigidTransform.of(dmp.y0[:3], dmp.y0[3:]), goal_of(dmp)
+    passed = np.linspace(0.0, dmp.a_z / 2.0, len(way.position_rad))
+    for joints, left in zip(way.position_rad, (1.0 + passed) * np.exp(-passed), strict=True):
+        tool = panda_kinematics().tool_pose(joints)
+        assert tool.xyz == pytest.approx(end.xyz + left * (start.xyz - end.xyz), abs=2e-6)
+        assert tool.angle_rad(end) == pytest.approx(left * start.angle_rad(end), abs=1e-3)
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds)
+def test_a_motion_that_is_not_quite_at_rest_at_its_ends_is_brought_to_rest_there(seed: int) -> None:
+    """Of any primitive; rates are the slopes of the places up to both ends, without a jump of the acceleration."""
+    dmp = msgspec.structs.replace(new_cart_dmp(seed, strength=20.0), dy0=(0.1, -0.2, 0.1, 0.2, 0.1, -0.1))
+    path = resting_pose(dmp, RigidTransform.of(dmp.y0[:3], dmp.y0[3:]))
+    step = path.shares[1]
+    slopes, means = np.diff(path.xyz, axis=0) / step, (path.rate[1:, :3] + path.rate[:-1, :3]) / 2.0
+    assert path.xyz[-1] == pytest.approx(dmp.goal[:3])
+    assert path.rate[[0, -1]] == pytest.approx(np.zeros((2, 6)), abs=1e-9)
+    assert np.abs(slopes - means).max() < 2e-3 * np.abs(path.rate).max()
+    assert np.abs(path.rate[-2]).max() < 0.05 * step * np.abs(path.push).max()
 
 
 offsets = st.tuples(*[st.floats(-0.1, 0.1)] * 3).map(np.array)

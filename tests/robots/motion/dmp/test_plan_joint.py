@@ -14,9 +14,11 @@ from engine.errors import RobotError
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import JointDmp
 from robots.motion.dmp import integrate_joints, learn_joint_dmp, plan_joint_dmp
+from robots.motion.dmp.plan_joint import resting_joints
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array, JointTrajectory
 from tests.robots.motion.dmp.demonstrations import seeds
+from tests.robots.motion.dmp.test_integration import new_joint_dmp
 from tests.robots.panda_arm import home, panda_model, played
 
 LIMITS, NAMES = panda_model().limits, panda_model().arm_joints
@@ -70,6 +72,19 @@ def test_an_arm_at_the_start_follows_the_primitive_itself() -> None:
     dmp = led_from_home()
     way = plan(dmp, np.array(dmp.y0))
     assert np.abs(way.position_rad - integrate_joints(dmp).position).max() < 1e-3
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds)
+def test_a_motion_that_is_not_quite_at_rest_at_its_ends_is_brought_to_rest_there(seed: int) -> None:
+    """Of any primitive; rates are the slopes of the joints up to both ends, without a jump."""
+    dmp = new_joint_dmp(seed, strength=2.0)
+    path = resting_joints(dmp, np.array(dmp.y0) + 0.05)
+    step = path.shares[1]
+    slopes, means = np.diff(path.position, axis=0) / step, (path.rate[1:] + path.rate[:-1]) / 2.0
+    assert (path.position[0], path.position[-1]) == (pytest.approx(np.array(dmp.y0) + 0.05), pytest.approx(dmp.goal))
+    assert not path.rate[[0, -1]].any()
+    assert np.abs(slopes - means).max() < 2e-3 * np.abs(path.rate).max()
 
 
 @settings(max_examples=15, deadline=None)
@@ -129,6 +144,13 @@ def test_what_cannot_be_done_is_refused_with_the_reason(change: dict[str, object
     dmp = msgspec.convert({**msgspec.to_builtins(_with_ten_kernels()), **change}, JointDmp)
     with pytest.raises(RobotError, match=words):
         plan(dmp, home())
+
+
+def test_a_goal_that_is_no_number_is_refused() -> None:
+    goal = home()
+    goal[2] = np.nan
+    with pytest.raises(RobotError, match="the goal has a value that is not finite"):
+        plan(led_from_home(), home(), goal=goal)
 
 
 def test_a_task_transformation_maps_start_way_and_goal() -> None:
