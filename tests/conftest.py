@@ -15,7 +15,7 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
-from tests.tiers import SECOND_TRY, kinds_of
+from tests.tiers import SECOND_TRY, ThisRun, kinds_of
 
 # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
 settings.register_profile("flexcell", deadline=None)
@@ -28,7 +28,7 @@ PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.pos
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add what chooses how much is run."""
-    parser.addoption("--nightly", action="store_true", help="also run the values marked `nightly`: more of the same")
+    parser.addoption("--nightly", action="store_true", help="more of the same: values marked `nightly`, examples")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -42,6 +42,7 @@ def pytest_configure(config: pytest.Config) -> None:
         "nightly: more of what other values show already; run with --nightly",
     ):
         config.addinivalue_line("markers", line)
+    ThisRun.nightly = bool(config.getoption("--nightly"))
     if _is_fast(config):
         sys.addaudithook(_refuse_process)
 

@@ -24,6 +24,8 @@ KINDS = {
     "engine.cell.open_cell": "physics",
     "engine.project.cell_runner": "physics",
     "engine.project.session": "physics",
+    "engine.testing": "physics",
+    "robots.simulated_cell": "physics",
 }
 FOLDERS = {
     "tests/behaviors": "physics",
@@ -50,6 +52,17 @@ SECOND_TRY = pytest.mark.flaky(reruns=1, only_rerun=[BROWSER_DIED])
 def nightly(*values: object) -> ParameterSet:
     """Make a value of a parametrized test, or those of one row, one of those that only run with `--nightly`."""
     return pytest.param(*values, marks=pytest.mark.nightly)
+
+
+class ThisRun:
+    """What the options of pytest ask for; set before tests are read."""
+
+    nightly = False
+
+
+def examples(usual: int, *, nightly: int) -> int:
+    """Return how many random examples a test takes, others in each run: `usual`, or `nightly` with `--nightly`."""
+    return nightly if ThisRun.nightly else usual
 
 
 @cache

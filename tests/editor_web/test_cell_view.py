@@ -31,9 +31,9 @@ from tests.editor_web.fake_sights import (
     detections,
     frames_with_a_person,
     occupancy,
+    planned_path,
     planning_scene,
     scene_with_a_person,
-    planned_path,
 )
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.viser_page import opened_view

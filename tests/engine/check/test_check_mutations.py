@@ -15,6 +15,7 @@ from engine.document import load_source
 from engine.registry import load_states
 from tests.engine.check.data_states import CATALOGUE as DATA_STATES
 from tests.engine.check.random_behaviors import behaviors
+from tests.tiers import examples
 
 ROOT = Path(__file__).resolve().parents[3]
 CATALOGUE = {**load_states(), **DATA_STATES, "tests.engine.check.data_states:Put": DATA_STATES["data.Put"]}
@@ -90,7 +91,7 @@ def changed(document: Any, path: tuple[str | int, ...], how: str, value: object)
 
 
 @settings(
-    max_examples=100,
+    max_examples=examples(60, nightly=200),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
@@ -128,7 +129,11 @@ CELLS = [
 ODD: st.SearchStrategy[Any] = VALUES | st.sampled_from(["panda", "./x", "../x/y", {"kind": "x"}, [1e300] * 3, -400])
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(
+    max_examples=examples(60, nightly=300),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
 @given(st.data())
 def test_a_cell_with_anything_in_it_gives_findings_and_no_exception(tmp_path_factory: Any, data: st.DataObject) -> None:
     """Up to three changes to a cell, or to entries, that come with the project."""

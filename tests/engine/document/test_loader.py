@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from engine.document import Behavior, load_behavior, parse_behavior, read_behavior, write_yaml
 from engine.errors import DocumentError, Position
 from tests.engine.document.example_documents import BEHAVIORS, Plain
+from tests.tiers import examples
 
 GOOD = """flexcell: 1
 name: transfer
@@ -186,7 +187,7 @@ def test_durations_are_seconds() -> None:
 
 
 @given(BEHAVIORS)
-@settings(max_examples=150)
+@settings(max_examples=examples(60, nightly=300))
 def test_a_document_written_and_read_again_means_the_same(document: Plain) -> None:
     """As YAML, as JSON and from the models themselves."""
     behavior = parse_behavior(json.dumps(document), file="x.json")

@@ -17,6 +17,7 @@ from engine.document.text.yaml_source import parse_source
 from engine.editing.draft import Draft
 from tests.engine.editing.layouts import Layout, Plain, chances, documents, scalars, trees
 from tests.engine.editing.random_changes import at, leaves, mappings, mutate, set_at
+from tests.tiers import examples
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 FILES = sorted([*BEHAVIORS.rglob("*.yaml"), *BEHAVIORS.rglob("*.json")])
@@ -41,7 +42,7 @@ def test_changing_any_one_value_changes_its_line_only(file: Path) -> None:
         assert "changed" in after[different[0]]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(60, nightly=300), deadline=None)
 @given(data=documents, chance=chances)
 def test_any_layout_is_kept_without_a_change(data: Plain, chance: random.Random) -> None:
     text = Layout(chance).document(data)
@@ -63,7 +64,7 @@ def test_windows_line_ends_stay(data: Plain, chance: random.Random) -> None:
     assert parse_source(made, file="x").data == draft.data
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(60, nightly=300), deadline=None)
 @given(data=documents, chance=chances, changes=st.data())
 def test_any_change_of_any_layout_is_written_and_nothing_else(
     data: Plain, chance: random.Random, changes: st.DataObject
@@ -78,7 +79,7 @@ def test_any_change_of_any_layout_is_written_and_nothing_else(
     assert _shown(parse_source(made, file="x.yaml").data) == _shown(expected)
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(60, nightly=200), deadline=None)
 @given(data=documents, chance=chances, changes=st.data())
 def test_a_new_value_touches_no_other_line(data: Plain, chance: random.Random, changes: st.DataObject) -> None:
     text = Layout(chance).document(data)
@@ -94,7 +95,7 @@ def test_a_new_value_touches_no_other_line(data: Plain, chance: random.Random, c
     assert after[len(after) - tail :] == before[len(before) - tail :]
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(60, nightly=200), deadline=None)
 @given(data=documents, chance=chances, changes=st.data())
 def test_adding_and_taking_away_again_gives_the_same_text(
     data: Plain, chance: random.Random, changes: st.DataObject
@@ -114,7 +115,7 @@ def test_adding_and_taking_away_again_gives_the_same_text(
     assert made == text or made.rstrip("\n") == text.rstrip("\n")
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(60, nightly=300), deadline=None)
 @given(data=documents, chance=chances, changes=st.data())
 def test_a_renamed_key_changes_its_own_line_only(data: Plain, chance: random.Random, changes: st.DataObject) -> None:
     text = Layout(chance).document(data)
@@ -150,7 +151,7 @@ def test_reordering_keeps_every_comment(data: Plain, chance: random.Random, chan
     assert sorted(re.findall(r"# note \d+\.", made)) == sorted(re.findall(r"# note \d+\.", text))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(60, nightly=300), deadline=None)
 @given(data=documents, changes=st.data(), indent=st.sampled_from([None, 2, 4]))
 def test_json_stays_json(data: Plain, changes: st.DataObject, indent: int | None) -> None:
     text = json.dumps(data, indent=indent, ensure_ascii=False)

@@ -18,6 +18,7 @@ from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import context
 from tests.engine.editing.layouts import Layout, Plain, chances
 from tests.engine.editing.random_edits import any_edits
+from tests.tiers import examples
 
 HEAD = "flexcell: 1\nname: x\noutcomes: [done]\nroot:\n"
 WAIT = "      {name}: {{state: flow.Wait, with: {{duration_s: 1}}, transitions: {{done: {to}}}}}\n"
@@ -50,7 +51,7 @@ def _check(draft: Draft) -> None:
     assert draft.data == again.data
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(60, nightly=200), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_any_edits_leave_the_tree_of_a_full_read(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
     draft = Draft(Layout(chance).document(data), file="x.yaml")

@@ -18,6 +18,7 @@ from engine.errors import RecordingError
 from engine.recording import Recording, load_recording, part_file
 from engine.recording.description import RECORD_NAME
 from tests.engine.replay.rig import record_run
+from tests.tiers import examples
 
 TEXT = """
 root:
@@ -28,6 +29,11 @@ root:
       look: {state: bench.Look, with: {times: 3}, transitions: {a: good, b: good, c: bad}}
 """
 MAGIC = bytes([137, 77, 67, 65, 80, 48, 13, 10])
+DAMAGING = settings(
+    max_examples=examples(80, nightly=400),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +62,7 @@ def _read(content: bytes, path: Path) -> Recording | None:
     return None
 
 
-@settings(max_examples=200, deadline=None)
+@settings(DAMAGING)
 @given(content=st.binary(max_size=300))
 @example(content=b"")
 @example(content=MAGIC)
@@ -69,7 +75,9 @@ def test_garbage_is_refused(content: bytes, scratch: Path) -> None:
     assert _read(MAGIC + content, scratch / "garbage.mcap.part") is None
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(80, nightly=400), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(data=st.data())
 def test_a_recording_that_was_cut_off_is_refused(good: Path, scratch: Path, data: st.DataObject) -> None:
     whole = good.read_bytes()
@@ -77,7 +85,9 @@ def test_a_recording_that_was_cut_off_is_refused(good: Path, scratch: Path, data
     assert _read(whole[:length], scratch / "cut.mcap") is None
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(80, nightly=400), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(data=st.data())
 def test_a_recording_with_damaged_bytes_is_refused_or_read(good: Path, scratch: Path, data: st.DataObject) -> None:
     content = bytearray(good.read_bytes())

@@ -15,6 +15,7 @@ from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter, TooLong
 from tests.engine.reference.random_behaviors import STOPS, Case, cases, preempting_cases
 from tests.engine.reference.schedule import Schedule
+from tests.tiers import examples
 
 ORDERS = 12
 """Orders of the branches of an instant that are tried to see whether they matter."""
@@ -26,14 +27,14 @@ COMPARING = settings(
 
 
 @given(cases(), STOPS)
-@settings(COMPARING, max_examples=300)
+@settings(COMPARING, max_examples=examples(120, nightly=1000))
 def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -> None:
     """Status, outcome, userdata, and every activation with its times."""
     compare(case, stop_at_s)
 
 
 @given(preempting_cases(), STOPS)
-@settings(COMPARING, max_examples=300)
+@settings(COMPARING, max_examples=examples(100, nightly=1000))
 def test_conditions_preempt_the_branches_that_the_reference_preempts(case: Case, stop_at_s: float) -> None:
     """While the others go on."""
     compare(case, stop_at_s)

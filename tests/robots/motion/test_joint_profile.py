@@ -13,6 +13,7 @@ from engine.errors import RobotError
 from robots.motion import plan_joints
 from robots.port import Array, JointTrajectory
 from tests.robots.panda_arm import configurations, home, panda_model, played
+from tests.tiers import examples
 
 LIMITS = panda_model().limits
 NAMES = panda_model().arm_joints
@@ -23,14 +24,14 @@ def plan(start: Array, goal: Array, *, speed: float, jerk_limited: bool = False)
     return plan_joints(start, goal, speed=speed, limits=LIMITS, joint_names=NAMES, jerk_limited=jerk_limited)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=120), deadline=None)
 @given(configurations(), configurations(), st.floats(0.05, 1.0), st.booleans())
 def test_a_profile_starts_and_ends_exactly_at_rest_and_never_exceeds_a_limit(
     start: Array, goal: Array, speed: float, jerk_limited: bool
 ) -> None:
     """Also between the samples, as a port interpolates them."""
     way = plan(start, goal, speed=speed, jerk_limited=jerk_limited)
-    position, velocity, acceleration = played(way)
+    position, velocity, acceleration = played(way, between=3)
     assert (way.position_rad[0] == start).all()
     assert (way.position_rad[-1] == goal).all()
     assert not way.velocity_rad_s[[0, -1]].any()
@@ -111,7 +112,7 @@ def test_where_a_joint_was_measured_at_its_limit_it_can_go_again() -> None:
 def test_the_slowest_motion_has_no_more_samples_than_a_long_one() -> None:
     model = panda_model()
     way = plan_joints(home(), home() + 0.3, speed=1e-5, limits=model.limits, joint_names=model.arm_joints)
-    _, velocity, acceleration = played(way)
+    _, velocity, acceleration = played(way, between=3)
     assert len(way.position_rad) <= 20_001
     assert (np.abs(velocity) <= 1e-5 * np.array(model.limits.velocity_rad_s)).all()
     assert (np.abs(acceleration) <= np.array(model.limits.acceleration_rad_s2)).all()

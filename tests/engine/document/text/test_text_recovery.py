@@ -15,6 +15,7 @@ from engine.document import survey_behavior
 from engine.document.text.text_recovery import recover_text
 from tests.engine.document.test_partial_behavior import HEAD, KINDS, behavior_of, lines_of
 from tests.engine.fake_states import CATALOGUE
+from tests.tiers import examples
 
 FIRST = HEAD.count("\n") + 1
 SLIPS: tuple[Callable[[str], str], ...] = (
@@ -87,7 +88,7 @@ def test_where_nothing_is_left_the_mistakes_are_all_there_is(text: str) -> None:
     check_survey(survey, Path("x.yaml"), CATALOGUE)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=examples(80, nightly=400))
 @given(st.text(st.sampled_from("ab:-{}[]'\"*&!|>#%@ \n\t,?0")), st.integers(0, 400))
 def test_any_text_put_anywhere_is_reported_and_never_raises(text: str, at: int) -> None:
     whole = behavior_of(list(KINDS))

@@ -41,6 +41,7 @@ from tests.engine.at_once import at_once
 from tests.engine.fake_states import CATALOGUE, Give
 from tests.engine.runtime.control.operate import Act, operate
 from tests.engine.runtime.control.turntable import Turn, TurnTable, Turntable
+from tests.tiers import examples
 
 TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
 MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
@@ -262,7 +263,7 @@ def _let_go(run: Run) -> None:
     run.control.resume()
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(70, nightly=300), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     root=TREES,
     orders=st.lists(st.tuples(MOMENTS, st.sampled_from(range(len(ORDERS)))), max_size=8, unique_by=lambda o: o[0]),

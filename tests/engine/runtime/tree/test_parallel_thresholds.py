@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from engine.errors import DocumentError
 from engine.event import NodeExited
 from tests.engine.runtime.tree.run_tree import run_tree, tree_plan
+from tests.tiers import examples
 
 Ends = list[tuple[float, bool]]
 """When each child ends, and whether it succeeds."""
@@ -39,7 +40,7 @@ def _expected(ends: Ends, needed: int, bearable: int) -> tuple[str, float]:
 @given(
     ends=st.lists(st.tuples(st.sampled_from([1.0, 2.0, 3.0]), st.booleans()), min_size=1, max_size=5), data=st.data()
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(50, nightly=200), deadline=None)
 def test_it_ends_as_soon_as_its_end_is_certain(ends: Ends, data: st.DataObject) -> None:
     """Those that are still at work are stopped, those that have ended were run once."""
     needed = data.draw(st.integers(1, len(ends)))

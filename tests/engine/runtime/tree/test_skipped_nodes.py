@@ -11,6 +11,7 @@ from engine.errors import DocumentError
 from tests.engine.runtime.tree.course import engine_course
 from tests.engine.runtime.tree.run_tree import run_tree, tree_plan
 from tests.engine.runtime.tree.skipping import Guarded, guarded_trees, run_guarded
+from tests.tiers import examples
 
 UNTIL_S = 6.0
 LIMIT = 120
@@ -22,7 +23,7 @@ def _act(name: str, *script: tuple[float, bool], more: str = "") -> str:
 
 
 @given(specimen=guarded_trees)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(60, nightly=300), deadline=None)
 def test_a_random_tree_with_guards_goes_the_way_of_the_reference(specimen: Guarded) -> None:
     """Through every composite, as BehaviorTree.CPP has SKIPPED."""
     expected = run_guarded(specimen, until_s=UNTIL_S, instant_limit=LIMIT)

@@ -14,6 +14,7 @@ from engine.event import MessageLogged, NodeEntered, NodeExited
 from engine.journal import encode_event_log
 from tests.engine.runtime.tree.run_tree import ObservedRun, run_tree
 from tests.engine.runtime.tree.specimen import SLOTS, Specimen, specimens
+from tests.tiers import examples
 
 stops = st.none() | st.sampled_from([0.0, 0.5, 0.75, 1.0, 2.5])
 
@@ -53,7 +54,7 @@ def _only_checks(specimen: Specimen) -> Specimen:
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25, 0.5, 3.0]))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(50, nightly=300), deadline=None)
 def test_every_leaf_that_was_entered_is_left_once(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:
@@ -70,7 +71,7 @@ def test_every_leaf_that_was_entered_is_left_once(
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25, 3.0]))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(50, nightly=300), deadline=None)
 def test_without_a_parallel_one_device_is_never_commanded_twice(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:
@@ -80,7 +81,7 @@ def test_without_a_parallel_one_device_is_never_commanded_twice(
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(25, nightly=100), deadline=None)
 def test_twice_the_same_tree_gives_the_same_bytes(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:

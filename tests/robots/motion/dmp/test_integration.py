@@ -15,6 +15,7 @@ from robots.motion.dmp import GaussianKernels, GoalChange, integrate_joints, int
 from robots.motion.dmp.quaternions import conjugate, exp, log, product
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import seeds
+from tests.tiers import examples
 
 A_Z, A_X = 48.0, 2.0
 
@@ -74,7 +75,7 @@ def test_joints_follow_the_published_equations(seed: int) -> None:
     assert fine < 0.2 * coarse + 1e-5
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(8, nightly=30), deadline=None)
 @given(seeds)
 def test_smaller_steps_change_nothing(seed: int) -> None:
     """The integration converges: eight times the steps move neither joints nor poses noticeably."""
@@ -85,7 +86,7 @@ def test_smaller_steps_change_nothing(seed: int) -> None:
     assert np.linalg.norm(log(product(fine.xyzw[::8], conjugate(path.xyzw))), axis=1).max() < 1e-3
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(8, nightly=30), deadline=None)
 @given(seeds)
 def test_rates_are_the_slopes_of_what_is_rolled_out(seed: int) -> None:
     """Positions and orientations, with the angular velocity along the world's axes."""

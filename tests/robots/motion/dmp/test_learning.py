@@ -16,6 +16,7 @@ from robots.motion.dmp.quaternions import conjugate, exp, log, product, toward
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import interpolated, led_joints, led_tool, seeds
+from tests.tiers import examples
 
 TENTH_OF_A_DEGREE = math.radians(0.1)
 
@@ -25,7 +26,7 @@ def angle_rad(first: Array, second: Array) -> float:
     return float(np.linalg.norm(log(product(toward(first, second), conjugate(second)))))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(10, nightly=50), deadline=None)
 @given(seeds, st.floats(0.8, 8.0), st.sampled_from([0.002, 0.01]))
 def test_a_joint_primitive_ends_where_the_demonstration_did(seed: int, duration_s: float, period_s: float) -> None:
     """Within 0.1°, and it is never more than 3 mrad off on the way."""
@@ -37,7 +38,7 @@ def test_a_joint_primitive_ends_where_the_demonstration_did(seed: int, duration_
     assert learned.fit.end_rad < TENTH_OF_A_DEGREE
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(10, nightly=50), deadline=None)
 @given(seeds, st.floats(0.8, 8.0), st.floats(0.0, 4.0))
 def test_a_cartesian_primitive_ends_where_the_demonstration_did(seed: int, duration_s: float, turn_rad: float) -> None:
     """Within 1 mm and 0.1°, also past half a turn and with quaternions of either sign."""
@@ -66,7 +67,7 @@ def test_noise_is_smoothed_and_not_learned(seed: int, noise_rad: float) -> None:
     assert np.abs(path.position[-1] - led.truth[-1]).max() < max(2.5 * noise_rad, 1e-3)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(10, nightly=40), deadline=None)
 @given(seeds, st.floats(0.0, 5e-4))
 def test_the_reported_error_is_that_of_the_rolled_out_motion(seed: int, noise_rad: float) -> None:
     """Root mean square and maximum over the samples that were used, and the joint that has it."""

@@ -78,13 +78,14 @@ def test_an_arm_at_the_start_follows_the_primitive_itself() -> None:
 @given(seeds)
 def test_a_motion_that_is_not_quite_at_rest_at_its_ends_is_brought_to_rest_there(seed: int) -> None:
     """Of any primitive; rates are the slopes of the joints up to both ends, without a jump."""
-    dmp = new_joint_dmp(seed, strength=2.0)
+    dmp = new_joint_dmp(seed, strength=20.0)
     path = resting_joints(dmp, np.array(dmp.y0) + 0.05)
     step = path.shares[1]
     slopes, means = np.diff(path.position, axis=0) / step, (path.rate[1:] + path.rate[:-1]) / 2.0
     assert (path.position[0], path.position[-1]) == (pytest.approx(np.array(dmp.y0) + 0.05), pytest.approx(dmp.goal))
     assert not path.rate[[0, -1]].any()
     assert np.abs(slopes - means).max() < 2e-3 * np.abs(path.rate).max()
+    assert np.abs(slopes - means)[-50:].max() < 0.01
 
 
 @settings(max_examples=15, deadline=None)
