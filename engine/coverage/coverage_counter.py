@@ -44,7 +44,7 @@ class CoverageCounter:
                 self._count_diversion(step)
             case "preempts":
                 rules = self._inventory.rules.get(step.path, ())
-                name = next((rule.name for rule in rules if rule.condition.said == step.name), "")
+                name = next((rule.name for rule in rules if rule.condition.text == step.name), "")
                 self._count(("condition", step.path, name))
             case "ticked":
                 self._count_tick(step)

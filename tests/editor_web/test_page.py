@@ -140,32 +140,31 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
         expect(tree.get_by_role("treeitem", name="approach")).to_have_attribute("aria-expanded", "false")
 
 
-def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> None:
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_page_is_accessible(visit: Visit, site: Site, scheme: Scheme) -> None:
     """axe-core finds nothing on any page, idle, running, failed, and while logging in."""
     site.backend.step_s = LASTING_S
-    with visit("/", scheme="dark") as page:
+    with visit("/", scheme=scheme) as page:
         require_accessible(page, "home without runs")
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
-    schemes: tuple[Scheme, ...] = ("light", "dark")
-    for scheme in schemes:
-        with visit("/", scheme=scheme) as page:
-            require_accessible(page, f"home, {scheme}")
-            page.get_by_role("link", name="two_arm_transfer").first.click()
-            expect(page.locator(".leaf.is-active")).to_have_count(2)
-            require_accessible(page, f"running, {scheme}")
-            page.get_by_role("tab", name="Outline").click()
-            page.get_by_role("treeitem").nth(2).click()
-            require_accessible(page, f"outline, {scheme}")
-            page.get_by_role("link", name="palletise").click()
-            expect(page.locator(".finding")).to_be_visible()
-            expect(page.get_by_role("button", name="Start")).to_be_disabled()
-            require_accessible(page, f"broken, {scheme}")
-            page.set_viewport_size({"width": 390, "height": 844})
-            require_accessible(page, f"small, {scheme}")
-        # The browser itself reports the refusal.
-        with visit("/", scheme=scheme, quiet=False) as page:
-            page.goto(f"{site.running.url}login?t=wrong")
-            require_accessible(page, f"login, {scheme}")
+    with visit("/", scheme=scheme) as page:
+        require_accessible(page, "home")
+        page.get_by_role("link", name="two_arm_transfer").first.click()
+        expect(page.locator(".leaf.is-active")).to_have_count(2)
+        require_accessible(page, "running")
+        page.get_by_role("tab", name="Outline").click()
+        page.get_by_role("treeitem").nth(2).click()
+        require_accessible(page, "outline")
+        page.get_by_role("link", name="palletise").click()
+        expect(page.locator(".finding")).to_be_visible()
+        expect(page.get_by_role("button", name="Start")).to_be_disabled()
+        require_accessible(page, "broken")
+        page.set_viewport_size({"width": 390, "height": 844})
+        require_accessible(page, "small")
+    # The browser itself reports the refusal.
+    with visit("/", scheme=scheme, quiet=False) as page:
+        page.goto(f"{site.running.url}login?t=wrong")
+        require_accessible(page, "login")
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), nightly(820, 1180), nightly(1366, 768), (3840, 2160)])

@@ -413,5 +413,5 @@ def overdue_policy(execution: Execution, path: str) -> OverduePolicy:
         tell=report,
         abandon=abandon,
         abandon_after_s=execution.abandon_after_s + grace_s,
-        stands_still=execution.branch_holds.held,
+        stands_still=execution.branch_holds.stands_still,
     )

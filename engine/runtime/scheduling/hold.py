@@ -90,6 +90,13 @@ class BranchHolds:
         """Return whether the branch of `path` is held."""
         return any(covers(path) for covers in self._reasons.values()) and not self._is_cleaning_up(path)
 
+    def stands_still(self, path: str) -> bool:
+        """Return whether the branch of `path` is held, or work or a timer inside it, for which its end may wait."""
+        if not self._reasons:
+            return False
+        paths = {timer.path for timer in self._timers.values()} | {each.work.path for each in self._members.values()}
+        return self.held(path) or any(is_inside(path, other) and self.held(other) for other in paths)
+
     def reasons(self, path: str) -> tuple[str, ...]:
         """Return the reasons that hold `path`."""
         return tuple(reason for reason, covers in self._reasons.items() if covers(path))

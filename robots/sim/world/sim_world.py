@@ -95,7 +95,7 @@ class SimWorld:
     @property
     def status(self) -> DeviceStatus:
         """FAULT once the world's process is lost."""
-        if self._status is DeviceStatus.READY and self._board.under_way():
+        if self._status is DeviceStatus.READY and self._board.active():
             return DeviceStatus.MOVING
         return self._status
 
@@ -164,7 +164,7 @@ class SimWorld:
         Raises:
             RobotError: something moves, the world is lost, or the snapshot is of another world.
         """
-        if self._board.under_way():
+        if self._board.active():
             raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
         await self._take_over(self._unsealed(snapshot))
 
@@ -283,7 +283,7 @@ class SimWorld:
         owners = {arm: owner for arm in self._arms if (owner := leases.owner(arm)) is not None}
         for arm, owner in owners.items():
             raise SkillFailed(f"{arm} is commanded by run {owner}", where=self.name, hint="wait for its end or stop it")
-        if self._board.under_way():
+        if self._board.active():
             raise SkillFailed("something moves", where=self.name, hint="stop it first")
         self._host.send(ResetPartsCommand())
         return ResetPartsResult(parts=tuple(part.name for part in self._scene.parts))
@@ -294,7 +294,7 @@ class SimWorld:
         Raises:
             RobotError: an arm did not come to rest, or the world is lost.
         """
-        motions = self._board.under_way()
+        motions = self._board.active()
         self._host.send(StopAll())
         reports = await asyncio.gather(*(motion.report() for motion in motions))
         moving = [report.reason for report in reports if not report.at_rest]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -39,11 +40,22 @@ def test_on_its_way_a_redundant_arm_drifts_from_a_joint_limit(side: float) -> No
     moves = np.linspace(0.0, 0.25, 51)
     there = [RigidTransform(xyz=here.xyz + np.array([0.0, -side * move, -move]), xyzw=here.xyzw) for move in moves]
     to_and_fro = [*there, *there[-2::-1]]
-    knots = follow_tool_path(panda_kinematics(), start, path_along([*to_and_fro, *to_and_fro[1:], *to_and_fro[1:]]))
-    away = side * (start[6] - knots[:, 6])
-    assert away[-1] > 0.05
+    path = path_along([*to_and_fro, *to_and_fro[1:], *to_and_fro[1:]])
+    knots = follow_tool_path(panda_kinematics(), start, path)
+    careless = follow_tool_path(panda_kinematics(), start, replace(path, drifts=np.zeros_like(path.drifts)))
+    assert side * (start[6] - knots[-1, 6]) > 0.05
+    assert side * (careless[-1, 6] - knots[-1, 6]) > 0.05
     for joints, pose in zip(knots[:51], there, strict=True):
         assert panda_kinematics().tool_pose(joints).distance_m(pose) < 1e-6
+
+
+def test_in_the_middle_of_their_ranges_joints_do_not_drift() -> None:
+    here = panda_kinematics().tool_pose(home())
+    moves = np.linspace(0.0, 0.1, 21)
+    path = path_along([RigidTransform(xyz=here.xyz + np.array([0.0, move, 0.0]), xyzw=here.xyzw) for move in moves])
+    careless = replace(path, drifts=np.zeros_like(path.drifts))
+    knots = [follow_tool_path(panda_kinematics(), home(), each) for each in (path, careless)]
+    assert knots[0] == pytest.approx(knots[1], abs=1e-9)
 
 
 def test_an_arm_of_few_joints_says_how_far_it_keeps_position_and_orientation() -> None:

@@ -10,6 +10,7 @@ from typing import ClassVar
 import pytest
 
 from engine.event import MessageLogged
+from engine.runtime.control import Breakpoint
 from engine.runtime.run import Run
 from engine.state import Context, Outcome, State
 from tests.engine.run_document import ObservedRun
@@ -59,6 +60,11 @@ def force(path: str, outcome: str = "never") -> Act:
 
 def repeat(path: str) -> Act:
     return lambda run: run.control.repeat(path)
+
+
+def pause_before(path: str) -> Act:
+    """Pause where a node is entered."""
+    return lambda run: run.control.set_breakpoints([Breakpoint(path=path)])
 
 
 def one(kind: type[State]) -> str:
@@ -162,6 +168,47 @@ def test_a_clean_up_that_a_pause_holds_is_not_given_up() -> None:
     told = operate(text, {1.5: pause, 100.0: resume})
     assert told.result.abandoned == ()
     assert (told.result.outcome, told.result.duration_s, len(cleaned(told))) == ("good", 102.5, 1)
+
+
+def test_only_the_clean_up_for_an_order_is_let_end_in_a_pause_and_not_a_later_one() -> None:
+    """Repeated, the node runs again; then its time is over, in a pause."""
+    text = ONE.replace("transitions: {never: two}", "timeout: {after: 2, to: two}, transitions: {never: two}")
+    told = operate(text, {0.5: pause, 1.0: repeat("root/one"), 3.5: resume, 6.0: pause, 100.0: resume})
+    ended = [
+        event.time_s for event in told.events if isinstance(event, MessageLogged) and event.message == "cleaned up"
+    ]
+    assert ended == [3.0, 101.5]
+
+
+def test_a_clean_up_that_a_pause_holds_beside_a_step_is_not_given_up() -> None:
+    """The step frees the other branch and the container around both, whose time is then over."""
+    text = """
+root:
+  machine:
+    initial: both
+    states:
+      both:
+        concurrency:
+          states:
+            left: {state: test.Hang, with: {cleanup_s: 2}}
+            right:
+              machine:
+                initial: first
+                states:
+                  first: {state: test.Give, with: {after_s: 1}, transitions: {a: last, b: last, c: last}}
+                  last: {state: test.Give, with: {after_s: 9}, transitions: {a: out, b: out, c: out}}
+          conditions: [{a: {right: out}}, {a: {left: never}}]
+        timeout: {after: 2, to: late}
+        transitions: {a: good}
+      late: {state: test.Give, transitions: {a: good, b: good, c: bad}}
+"""
+
+    def step(run: Run) -> None:
+        run.control.step("into", "root/both/right")
+
+    told = operate(text, {0.5: pause_before("root/both/right/last"), 10.0: step, 100.0: resume})
+    assert told.result.abandoned == ()
+    assert (told.result.outcome, len(cleaned(told))) == ("good", 1)
 
 
 class Defiant(State, frozen=True, kw_only=True):

@@ -81,6 +81,9 @@ def test_with_enough_autonomy_an_offer_passes_at_once() -> None:
     assert (told.result.outcome, told.result.duration_s) == ("good", 0.0)
 
 
+LATE = "test.Late, autonomy: {a: high}, transitions: {a: good}"
+
+
 class Late(State, frozen=True, kw_only=True):
     """Offer `a` after a second, and end with it."""
 
@@ -95,9 +98,9 @@ class Late(State, frozen=True, kw_only=True):
 
 
 def test_an_offer_that_asks_nobody_passes_in_a_pause_and_the_exit_waits() -> None:
-    text = "root: {machine: {initial: one, states: {one: {state: test.Late, transitions: {a: good}}}}}"
+    text = PROPOSE.replace("test.Propose, autonomy: {a: high, b: off}, transitions: {a: good, b: bad}", LATE)
     acts: dict[float, Act] = {0.5: lambda run: run.control.pause(), 3.0: lambda run: run.control.resume()}
-    told = operate(text, acts, states={"test.Late": Late})
+    told = operate(text, acts, supervision=RunOptions(autonomy="low"), states={"test.Late": Late})
     assert [e.time_s for e in told.events if isinstance(e, MessageLogged)] == [1.0]
     assert [(e.point, e.time_s) for e in told.events if isinstance(e, GateReached)] == [("after", 1.0)]
     assert told.result.duration_s == pytest.approx(3.0)

@@ -433,7 +433,8 @@ def test_every_activation_is_entered_and_left_once_and_an_undo_has_a_number_of_i
 
 def test_a_pause_is_confirmed_once_the_undoing_is_done_and_not_before() -> None:
     operator = Operator()
-    told = operator.run(TWO, {2.0: pause, 3.0: operator.back(), 6.0: resume})
+    told = operator.run(TWO, {2.0: pause, 3.0: operator.back(), 3.25: operator.look, 6.0: resume})
+    assert operator.said == ["undoes root/two", "moves 1.75 m"]
     confirmed = [e.time_s for e in told.events if isinstance(e, PauseConfirmed)]
     stepped = [e.time_s for e in told.events if isinstance(e, RunSteppedBack)]
     assert confirmed == [2.0, *stepped]

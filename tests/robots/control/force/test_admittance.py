@@ -60,11 +60,11 @@ def test_the_whole_offset_keeps_its_reach_and_speed_and_comes_back_without_windi
 def test_giving_way_does_not_press_on_but_yields_to_more_than_is_wanted() -> None:
     loop = AdmittanceLoop(Admittance(active=ONLY_Y))
     for _ in range(300):
-        loop.give_way(STEP_S, measured=NONE, wanted=along_y(-10.0), feed_forward=NONE)
+        loop.relieve(STEP_S, measured=NONE, wanted=along_y(-10.0), feed_forward=NONE)
     assert loop.total[1] == 0.0
     for _ in range(300):
-        loop.give_way(STEP_S, measured=along_y(-10.9), wanted=along_y(-10.0), feed_forward=NONE)
+        loop.relieve(STEP_S, measured=along_y(-10.9), wanted=along_y(-10.0), feed_forward=NONE)
     assert loop.total[1] == 0.0
     for _ in range(300):
-        loop.give_way(STEP_S, measured=along_y(-30.0), wanted=along_y(-10.0), feed_forward=NONE)
+        loop.relieve(STEP_S, measured=along_y(-30.0), wanted=along_y(-10.0), feed_forward=NONE)
     assert loop.total[1] < -0.01

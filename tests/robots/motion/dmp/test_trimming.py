@@ -15,7 +15,7 @@ REST = 2e-3
 TIMES = np.arange(385) / 128.0
 
 
-def rests(joint: Array) -> RestEnds:
+def rest_ends(joint: Array) -> RestEnds:
     """At which ends of its motion a joint is at rest."""
     return find_motion_window(TIMES, [MotionChannel(values=joint[:, None], rest=REST)]).rests
 
@@ -42,7 +42,7 @@ def test_the_window_is_that_of_the_motion_whenever_the_recording_began() -> None
 def test_a_tenth_of_a_second_of_rest_is_rest_and_none_is_none() -> None:
     """At each end by itself."""
     turns = np.sin(TIMES) + 2.0 * TIMES
-    assert rests(turns) == RestEnds(start=False, end=False)
-    assert rests(min_jerk((TIMES - 0.05) / 2.9)) == RestEnds(start=True, end=True)
-    assert rests(min_jerk(0.5 * (TIMES - 0.05) / 2.9)) == RestEnds(start=True, end=False)
-    assert rests(min_jerk(0.5 + 0.5 * (TIMES - 0.05) / 2.9)) == RestEnds(start=False, end=True)
+    assert rest_ends(turns) == RestEnds(start=False, end=False)
+    assert rest_ends(min_jerk((TIMES - 0.05) / 2.9)) == RestEnds(start=True, end=True)
+    assert rest_ends(min_jerk(0.5 * (TIMES - 0.05) / 2.9)) == RestEnds(start=True, end=False)
+    assert rest_ends(min_jerk(0.5 + 0.5 * (TIMES - 0.05) / 2.9)) == RestEnds(start=False, end=True)
