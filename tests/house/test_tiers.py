@@ -19,6 +19,8 @@ from tests.tiers import ROOT, kinds_of
         ("tests/engine/cli/commands/test_check.py", "process"),
         ("tests/robots/arm/test_arm_in_physics.py", "physics"),
         ("tests/editor_web/cell_view/test_cell_view_of_real_cells.py", "physics"),
+        ("tests/engine/testing/test_testing_how_to.py", "physics"),
+        ("tests/robots/test_simulated_cell.py", "physics"),
     ],
 )
 def test_a_file_has_the_markers_of_what_it_and_its_helpers_import(file: str, kind: str) -> None:

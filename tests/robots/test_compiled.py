@@ -34,7 +34,7 @@ def test_linear_algebra_is_compiled_as_ever() -> None:
     """numba asks for scipy's when a function is compiled that needs it."""
 
     def solved(matrix: Array, right: Array) -> float:
-        return float(np.linalg.solve(matrix @ matrix, right)[0] + np.dot(right, right))
+        return float(np.linalg.det(matrix) + np.dot(right, right))
 
     homeless = FunctionType(solved.__code__.replace(co_filename="<nowhere>"), {"np": np, "float": float})
-    assert compiled()(homeless)(np.diag([2.0, 4.0]), np.array([8.0, 0.0])) == 2.0 + 64.0
+    assert compiled()(homeless)(np.diag([2.0, 4.0]), np.array([8.0, 0.0])) == 8.0 + 64.0

@@ -306,14 +306,14 @@ def test_a_tree_that_only_asks_for_ever_is_named_in_virtual_time() -> None:
 
     text = f"{HEAD}\nroot:\n  tree: \n{tree}\n"
     plan = new_plan(parse_behavior(text, file="test.yaml"), {**CATALOGUE, **STATES, "test.Never": Never})
-    told = _events_of(plan, held=lambda now_s: True, polling_limit=2_000)
+    told = _events_of(plan, held=lambda now_s: True, polling_limit=1_000)
     assert told.result.status == "errored"
-    assert any("ticked sequence/CheckHeld again 2000 times" in line for line in told.why), told.why
+    assert any("ticked sequence/CheckHeld again 1000 times" in line for line in told.why), told.why
     hour = "{state: test.Act, name: carry, with: {script: [[3600, true]]}}"
     told = _events_of(
         _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {hour}]}}}}"),
         held=lambda now_s: True,
-        polling_limit=2_000,
+        polling_limit=1_000,
     )
     assert told.result.outcome == "success"
 
