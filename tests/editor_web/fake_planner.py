@@ -16,9 +16,9 @@ from tests.editor_web.fake_sights import (
     description,
     frames_with_a_person,
     occupancy,
+    planned_path,
     planning_scene,
     scene_with_a_person,
-    way,
 )
 
 CONFIRMED_ID = "behaviors/confirmed.yaml"
@@ -52,7 +52,7 @@ class FakePlanner:
 
     def __init__(self, bus: SkillBus) -> None:
         self._previews = bus.topic("left/planned_path", PathPreview)
-        self._previews.publish(way("left", "none"))
+        self._previews.publish(planned_path("left", "none"))
         for arm in ("left", "right"):
             bus.topic(f"{arm}/description", RobotDescription).publish(description(arm))
         bus.topic("cell/scene", SceneDescription).publish(scene_with_a_person())
@@ -65,12 +65,12 @@ class FakePlanner:
 
     def show(self, state: Literal["none", "proposed", "moving", "blocked"], *, reason: str = "") -> None:
         """Let the way stand so."""
-        self._previews.publish(way("left", state, reason=reason))
+        self._previews.publish(planned_path("left", state, reason=reason))
 
     async def _plan(self, goal: PlanMotion, handle: ActiveGoal[PlanFeedback]) -> PlannedMotion:
         del goal
         handle.accept()
-        found = way("left")
+        found = planned_path("left")
         self._previews.publish(found)
         return PlannedMotion(
             robot="left",
