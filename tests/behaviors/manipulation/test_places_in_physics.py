@@ -8,7 +8,7 @@ import pytest
 
 from engine.event import GoalFinished, GoalSent
 from engine.testing.behavior_run import CompletedRun
-from tests.behaviors.manipulation.test_parts_in_physics import BEHAVIORS, PANDA_HAND, run, told
+from tests.behaviors.manipulation.test_parts_in_physics import BEHAVIORS, PANDA_HAND, ended, run
 
 CELL = BEHAVIORS / "cells" / "dual_panda.yaml"
 FREE = "xyz: [-0.11, -0.28, 0.0275]"
@@ -46,11 +46,11 @@ def test_a_part_is_not_put_into_something_else_and_the_reason_names_both(tmp_pat
     ran = run(tmp_path, CELL, HIGH.replace(FREE, f"xyz: {xyz}"))
     assert ran.result.cause is not None
     why = ran.result.cause.chain()[-1].message
-    assert (ran.outcome, "hca_north" in why, other in why, went(ran)) == ("blocked", True, True, 2), told(ran)
+    assert (ran.outcome, "hca_north" in why, other in why, went(ran)) == ("blocked", True, True, 2), ended(ran)
 
 
 def test_a_part_is_put_onto_another_one(tmp_path: Path) -> None:
     """40 mm higher, where it would be 1 mm in the other part."""
     higher = "region: {center_m: [0.11, -0.28], size_m: [0.02, 0.02], height_m: [0.06, 0.07]}"
     steps = PANDA_HAND.replace(FREE, "xyz: [0.11, -0.28, 0.065]").replace(THERE, higher)
-    assert told(run(tmp_path, CELL, steps)) == ("placed", "")
+    assert ended(run(tmp_path, CELL, steps)) == ("placed", "")
