@@ -5,7 +5,17 @@ Files of other subjects (shapes, sensing, demonstrations, primitives, pose algeb
 those who use them.
 """
 
-from engine.messages.geometry import FramePoses, FrameTransform, Message, PartPoses, Pose, Quaternion, Vector3, Wrench
+from engine.messages.geometry import (
+    FramePoses,
+    FrameTransform,
+    Message,
+    PartPoses,
+    Pose,
+    Quaternion,
+    Vector3,
+    Vector6,
+    Wrench,
+)
 from engine.messages.robot_states import (
     ExternalTorque,
     GripperState,
@@ -31,6 +41,7 @@ __all__ = [
     "RobotDescription",
     "SceneDescription",
     "Vector3",
+    "Vector6",
     "VisualGeometry",
     "Wrench",
 ]

@@ -10,6 +10,8 @@ import msgspec
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+Vector6 = tuple[float, float, float, float, float, float]
+"""Along x y z, then about x y z."""
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -10,14 +10,13 @@ from typing import Annotated
 
 import msgspec
 
-from engine.messages import Message, Pose, Wrench
+from engine.messages import Message, Pose, Vector6, Wrench
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service
 from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 
-Six = tuple[float, float, float, float, float, float]
 Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 selects it by the fit")]
 GainZ = Annotated[float, msgspec.Meta(gt=0, description="Gain of the transformation system")]
 GainX = Annotated[float, msgspec.Meta(gt=0, description="Gain of the phase")]
@@ -59,10 +58,10 @@ class Compliance(Message, frozen=True, kw_only=True):
     and `turn_rad_s`.
     """
 
-    active: Six = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    mass: Six = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
-    damping: Six = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
-    stiffness: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    active: Vector6 = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    mass: Vector6 = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
+    damping: Vector6 = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
+    stiffness: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     frame: Axes = "world"
     reach_m: Annotated[float, msgspec.Meta(gt=0.0)] = 0.05
     turn_rad: Annotated[float, msgspec.Meta(gt=0.0)] = 0.3

@@ -126,9 +126,9 @@ class Simulation:
                 for device in self._devices():
                     device.cancel(command.motion)
             case PushSimBody():
-                self._hands.push(command)
+                self._hands.push(command.push)
             case MovePersonHand():
-                self._people.send(command)
+                self._people.send(command.reach)
             case ResetFreeParts():
                 self._qpos[self._cell.part_qpos] = self._start_poses
                 self._qvel[self._cell.part_dof] = 0.0

@@ -250,7 +250,7 @@ class SimWorld:
             raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
         if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
             raise RobotError("a push has values that are not finite", where=self.name)
-        self._host.send(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+        self._host.send(PushSimBody(push=PushBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m)))
 
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
