@@ -7,7 +7,6 @@ those who use them.
 
 from engine.messages.geometry import (
     FramePoses,
-    FrameTransform,
     Message,
     PartPoses,
     Pose,
@@ -29,7 +28,6 @@ from engine.messages.scene import SceneDescription, VisualGeometry
 __all__ = [
     "ExternalTorque",
     "FramePoses",
-    "FrameTransform",
     "GripperState",
     "HandState",
     "JointState",

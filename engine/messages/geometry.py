@@ -34,15 +34,6 @@ class Wrench(Message, frozen=True, kw_only=True):
     frame: str
 
 
-class FrameTransform(Message, frozen=True, kw_only=True):
-    """The pose of `child` in `parent`."""
-
-    parent: str
-    child: str
-    xyz: Vector3
-    xyzw: Quaternion
-
-
 class FramePoses(Message, frozen=True, kw_only=True):
     """World poses of all moving frames at one instant: row i is names[i], xyz and xyzw."""
 

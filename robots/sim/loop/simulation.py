@@ -54,7 +54,7 @@ class Simulation:
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
-        self._ctrl, self._bias = physics.motors, physics.bias
+        self._ctrl = physics.motors
         self._wanted_acceleration = np.zeros(physics.dof_count)
         self._inertia_torque = np.zeros(physics.dof_count)
         self._start_poses = self._qpos[cell.part_qpos].copy()

@@ -138,14 +138,6 @@ def depths(image: DepthImage) -> Image:
     return np.frombuffer(image.depth_m, dtype=np.float32).reshape(shape)
 
 
-def points_seen(image: DepthImage) -> Array:
-    """Return the measured points of an image in the world, (k, 3)."""
-    depth = depths(image).astype(np.float64).ravel()
-    measured = np.isfinite(depth) & (depth > 0.0)
-    pose = RigidTransform.from_pose(image.pose)
-    return (directions(image.intrinsics)[measured] * depth[measured, None]) @ pose.rotation.T + pose.xyz
-
-
 def _quaternion(rotation: Array) -> Array:
     """Return x y z w of a rotation matrix, by its largest component."""
     trace = float(np.trace(rotation))
