@@ -165,8 +165,8 @@ class LearnedCartDmp(Message, frozen=True, kw_only=True):
     fit: CartFit
 
 
-class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
-    """Learn a joint DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+class RecordedMotion(msgspec.Struct, frozen=True, kw_only=True):
+    """What a DMP is learned from: the entry of kind `trajectory`, or `trajectory` itself.
 
     `trim` removes the time at rest at both ends.
     """
@@ -183,20 +183,12 @@ class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
             raise ValueError("give either `entry` or `trajectory`")
 
 
-class LearnCartDmp(Service[LearnedCartDmp], frozen=True, kw_only=True):
-    """Learn a Cartesian DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+class LearnJointDmp(RecordedMotion, Service[LearnedJointDmp], frozen=True, kw_only=True):
+    """Learn a joint DMP from a recorded motion."""
 
-    The tool poses of a recording without them are computed by forward kinematics. `trim` removes the time
-    at rest at both ends.
+
+class LearnCartDmp(RecordedMotion, Service[LearnedCartDmp], frozen=True, kw_only=True):
+    """Learn a Cartesian DMP from a recorded motion.
+
+    The tool poses of a recording without them are computed by forward kinematics.
     """
-
-    entry: str = ""
-    trajectory: Trajectory | None = None
-    N: Kernels = 0
-    a_z: GainZ = 48.0
-    a_x: GainX = 2.0
-    trim: bool = True
-
-    def __post_init__(self) -> None:
-        if bool(self.entry) == (self.trajectory is not None):
-            raise ValueError("give either `entry` or `trajectory`")
