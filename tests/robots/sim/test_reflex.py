@@ -79,12 +79,12 @@ async def test_it_presses_less_and_shorter_than_without_a_reflex() -> None:
 @both_hosts_nightly
 async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str) -> None:
     async with opened(one_arm()) as world:
-        arm = await tripped(world, push_s=100.0)
+        arm = await tripped(world, push_s=60.0)
         at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 0.4)
         # Five times as soft as before: 40 N are 50 mm instead of 10.
         assert np.abs(arm.sample().position_rad - HOME).max() > 0.03
-        world.push(TOOL, force_n=(0.0, 0.0, 0.0), duration_s=0.0)
+        world.push(TOOL, force_n=(0.0, 0.0, 0.0), duration_s=0.01)
         at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 2.0)
         assert np.abs(arm.sample().position_rad - HOME).max() < 0.01
@@ -117,7 +117,7 @@ async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_to
         arm.recover()
         await until(lambda: not arm.sample().reflex)
         arm.configure(TORQUE)
-        world.push(TOOL, force_n=(0.0, 60.0, 0.0), duration_s=100.0)
+        world.push(TOOL, force_n=(0.0, 60.0, 0.0), duration_s=60.0)
         while not arm.sample().reflex:
             os.sched_yield()
         said = arm.reflex_reason
