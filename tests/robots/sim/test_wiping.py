@@ -29,7 +29,7 @@ def test_on_a_flat_surface_ten_newtons_stay_within_half_a_newton_while_moving(
 ) -> None:
     wiping = Wiping(subject, slope=0.0, way_m=0.12, settings=ControlSettings(controller=law))
     made = wiping.wipe(learned=None, peak_m_s=0.1)
-    assert made.report.end == MotionEnd.REACHED.value
+    assert made.report.end is MotionEnd.REACHED
     assert np.abs(made.steady(after_s=SETTLED_S, step_s=0.001)).max() < 0.5
     assert made.record.wrenches()[-1, 2] == pytest.approx(FORCE_N, abs=0.5)
 
