@@ -8,13 +8,9 @@ address of a skill is `<namespace>/<skill_name>`.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import Any, Generic, TypeVar, get_args, get_origin
 
 import msgspec
-
-from engine.event import Cause
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -45,28 +41,6 @@ class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
     def feedback_type(cls) -> Any:
         """Return the type of the feedback messages."""
         return _type_arguments(cls)[1]
-
-
-class GoalStatus(StrEnum):
-    """The status of a goal; the last four are final."""
-
-    PENDING = "pending"
-    ACTIVE = "active"
-    HELD = "held"
-    CANCELING = "canceling"
-    SUCCEEDED = "succeeded"
-    CANCELED = "canceled"
-    ABORTED = "aborted"
-    REJECTED = "rejected"
-
-
-@dataclass(frozen=True)
-class GoalEnd(Generic[R]):
-    """The end of a goal; `result` may be partial unless it succeeded, `cause` is the reason of a failure."""
-
-    status: GoalStatus
-    result: R | None
-    cause: Cause | None
 
 
 def _type_arguments(cls: type[Any]) -> tuple[Any, ...]:

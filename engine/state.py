@@ -26,8 +26,9 @@ import msgspec
 
 from engine.clock import Clock
 from engine.event import Cause
-from engine.skill import Action, GoalEnd, Service
+from engine.skill import Action, Service
 from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
+from engine.skills.goal_end import GoalEnd
 
 R = TypeVar("R")
 F = TypeVar("F")

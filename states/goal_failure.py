@@ -7,7 +7,8 @@ from typing import Any
 from engine.cause_chain import wrap_cause
 from engine.errors import PathBlocked
 from engine.event import Cause
-from engine.skill import Action, GoalEnd
+from engine.skill import Action
+from engine.skills.goal_end import GoalEnd
 
 _BLOCKED = PathBlocked.__name__
 _NO_REASON = {

@@ -7,7 +7,7 @@ from engine.bus.json_bus import JsonBus
 from engine.bus.lease import Holder, Lease, LeaseTable
 from engine.bus.parameter_server import BusParameter, ParameterServer
 from engine.bus.topic import Subscription, Topic, TopicStream
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 __all__ = [
     "ANONYMOUS_HOLDER",

@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 from engine.bus.lease import Holder
 from engine.cause_chain import cause_of
 from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")

@@ -19,7 +19,8 @@ from engine.bus.parameter_server import ParameterServer
 from engine.bus.topic import Topic
 from engine.clock import Clock
 from engine.errors import BusError, FlexcellError, GoalRejected, NoSuchSkill, SkillFailed
-from engine.skill import Action, GoalEnd, Service, Skill
+from engine.skill import Action, Service, Skill
+from engine.skills.goal_end import GoalEnd
 from engine.suggestions import did_you_mean
 
 R = TypeVar("R")

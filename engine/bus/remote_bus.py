@@ -14,7 +14,7 @@ from engine.bus.bus import BusEntry
 from engine.errors import BusError
 from engine.event import Cause
 from engine.host.state_folder_names import SERVER_FILE
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 
 class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):

@@ -14,7 +14,8 @@ from engine.bus.lease import Lease
 from engine.bus.topic import Topic
 from engine.document.parameter_spec import any_value
 from engine.errors import BusError, FlexcellError
-from engine.skill import Action, GoalEnd
+from engine.skill import Action
+from engine.skills.goal_end import GoalEnd
 
 Schema = dict[str, Any]
 

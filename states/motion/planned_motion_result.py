@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.cause_chain import links_from_root
 from engine.event import Cause
-from engine.skill import GoalEnd
+from engine.skills.goal_end import GoalEnd
 from engine.skills.planning import FreeMotionResult
 
 

@@ -44,7 +44,7 @@ from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.run_options import RunOptions
-from engine.skill import GoalEnd
+from engine.skills.goal_end import GoalEnd
 from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER
 from tests.editor_web.fake_scene import frames_at, new_scene
 

@@ -10,7 +10,8 @@ import msgspec
 from engine.clock import LoopClock
 from engine.errors import NoSuchSkill
 from engine.event import Cause
-from engine.skill import Action, GoalEnd, GoalStatus, Service
+from engine.skill import Action, Service
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")

@@ -26,7 +26,8 @@ from engine.runtime.nodes.execution import Execution
 from engine.runtime.record.nonfinite import encode_nonfinite
 from engine.runtime.record.recorder import Recorder
 from engine.runtime.record.skill_port import Goal
-from engine.skill import Action, GoalEnd, GoalStatus, Service
+from engine.skill import Action, Service
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")

@@ -21,7 +21,8 @@ from engine.runtime.nodes.node import Node
 from engine.runtime.record.node_exit import NodeExit, guard_closed_cause
 from engine.runtime.scheduling.observed_answers import ObservedAnswer
 from engine.runtime.userdata.userdata import Scope
-from engine.skill import Action, GoalEnd, Service
+from engine.skill import Action, Service
+from engine.skills.goal_end import GoalEnd
 from engine.state import Outcome
 
 R = TypeVar("R")

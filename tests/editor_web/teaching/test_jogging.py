@@ -10,7 +10,7 @@ import pytest
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.teaching_messages import StartJog
 from engine.errors import BusError
-from engine.skill import GoalEnd
+from engine.skills.goal_end import GoalEnd
 from tests.editor_web.fake_backend import TopicBus
 
 JOG = StartJog(arm="left", space="joints")

@@ -6,7 +6,7 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import GripperState
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove, GripperOpen
 from engine.state import Outcome, State
 from states.gripper.check_held import CheckHeld

@@ -8,7 +8,8 @@ import msgspec
 import pytest
 
 from engine.errors import StateError
-from engine.skill import Action, GoalEnd, GoalStatus
+from engine.skill import Action
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove, GripperOpen, GripperSetting
 from engine.state import ActivationRecord, RequestRecord, State
 from states.gripper.grasp import Grasp

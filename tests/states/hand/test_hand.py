@@ -6,7 +6,7 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import HandState
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.hand import HandClose, HandOpen, HandResult
 from engine.state import Outcome, State
 from states.hand.check_held import CheckHeld

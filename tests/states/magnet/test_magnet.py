@@ -6,7 +6,7 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import MagnetState
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.magnet import MagnetResult, MagnetSwitch
 from engine.state import Outcome, State
 from states.magnet.check_held import CheckHeld

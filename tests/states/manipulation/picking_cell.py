@@ -8,7 +8,7 @@ import msgspec
 
 from engine.event import Cause
 from engine.messages import GripperState, HandState, MagnetState, PartPoses, Pose
-from engine.skill import GoalEnd, GoalStatus
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult
 from engine.skills.hand import HandResult
 from engine.skills.magnet import MagnetResult

@@ -9,8 +9,8 @@ import pytest
 
 from engine.errors import SkillFailed
 from engine.messages import GripperState, PartPoses, Pose
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills.arm_control import SetLoad
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GripperGrasp
 from engine.skills.magnet import MagnetResult
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, InverseKinematicsSolutions

@@ -7,8 +7,8 @@ import pytest
 
 from engine.errors import SkillFailed
 from engine.messages import GripperState, Pose
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills.arm_control import SetLoad
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.state import Outcome
 from states.manipulation.place_part import PlacePart
 from states.motion.motion_target import ShownPoseTarget

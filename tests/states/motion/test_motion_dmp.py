@@ -11,7 +11,6 @@ from engine.errors import EntryNotFound, SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
 from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills.dmp import (
     CartAdmitDMP,
     CartAdmitResult,
@@ -24,6 +23,7 @@ from engine.skills.dmp import (
     TrimInterval,
 )
 from engine.skills.entries import EntryRecord, ReadEntry, WriteEntry
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import CartMotionResult, CartTrapVel, JointMotionResult, JointTrapVel
 from engine.state import Outcome
 from states.motion.follow_cart_dmp import FollowCartDmp

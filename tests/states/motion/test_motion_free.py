@@ -7,9 +7,9 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import Pose
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills import planning
 from engine.skills.entries import EntryRecord
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.planning import (
     Adaptation,
     FreeMotionResult,

@@ -6,9 +6,9 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import Pose, Wrench
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills import contact
 from engine.skills.contact import ContactResult
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.guiding import GuideArm, GuideResult
 from engine.state import Outcome
 from states.motion.guide import Guide

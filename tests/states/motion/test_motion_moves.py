@@ -10,8 +10,8 @@ import pytest
 from engine.errors import EntryNotFound, StateError
 from engine.event import Cause
 from engine.messages import Pose
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills.entries import EntryRecord, ReadEntry
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,

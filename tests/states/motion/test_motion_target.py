@@ -12,10 +12,10 @@ from engine.event import Cause
 from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import JointDmp
-from engine.skill import GoalEnd, GoalStatus
 from engine.skills import planning
 from engine.skills.dmp import JointDMP, JointFit, LearnedJointDmp, LearnJointDmp, TrimInterval
 from engine.skills.entries import EntryRecord
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,

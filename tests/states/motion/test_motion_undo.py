@@ -10,7 +10,8 @@ import pytest
 from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import Pose
-from engine.skill import Action, GoalEnd, GoalStatus
+from engine.skill import Action
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,
