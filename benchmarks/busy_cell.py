@@ -23,7 +23,7 @@ from engine.recording import RecordingOptions, collect_documents
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
-from robots.port import ControllerName
+from engine.skills.arm_control import ControllerName
 from robots.sim.host.process_host import ProcessHost
 from robots.sim.world.sim_world import SimWorld
 

@@ -15,20 +15,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.messages import Pose
+from engine.skills.arm_control import ControlSettings
+from engine.skills.dmp import Compliance
 from robots.control.motion_event import MotionFinished
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, quaternion_of
 from robots.motion.cart_line import plan_line
 from robots.motion.min_jerk import PEAK_SPEED
 from robots.port import (
-    Admittance,
-    ArmSettings,
     Array,
     ContactCondition,
     ForceRecord,
     ForceTask,
     JointTrajectory,
     MotionEnd,
+    MotionReport,
     Tolerance,
 )
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
@@ -66,7 +67,7 @@ class Pass:
     forces_n: Array
     """At every control period of the pass."""
     record: ForceRecord
-    report: MotionFinished
+    report: MotionReport
 
     def steady(self, *, after_s: float, step_s: float) -> Array:
         """Return the errors of the force after the first `after_s`."""
@@ -86,7 +87,7 @@ class Wiping:
         slope: float,
         way_m: float = 0.2,
         step_s: float = 0.001,
-        settings: ArmSettings | None = None,
+        settings: ControlSettings | None = None,
         first_touch: float | None = None,
     ) -> None:
         placement = ArmPlacement(
@@ -128,7 +129,7 @@ class Wiping:
             skin_friction=FRICTION,
         )
 
-    def approach(self) -> MotionFinished:
+    def approach(self) -> MotionReport:
         """Go down until contact."""
         joints = self.control.motion.position.copy()
         here = self._kinematics.tool_pose(joints)
@@ -171,14 +172,14 @@ class Wiping:
         self._number += 1
         self.simulation.apply(FollowTrajectory(arm="arm", motion=self._number, trajectory=way, tolerance=Tolerance()))
         report, _ = self._finished()
-        assert report.end == MotionEnd.REACHED.value, report
+        assert report.end is MotionEnd.REACHED, report
 
-    def _finished(self) -> tuple[MotionFinished, Array]:
+    def _finished(self) -> tuple[MotionReport, Array]:
         forces: list[float] = []
         while True:
             for event in self.simulation.step():
                 if isinstance(event, MotionFinished):
-                    return event, np.array(forces)
+                    return event.report, np.array(forces)
             forces.append(float(self.control.state.wrench[2]))
             assert len(forces) < 100_000
 
@@ -189,7 +190,7 @@ def pressing(way: JointTrajectory, *, learned: ForceRecord | None, slow_per_n: f
     wrench = np.zeros((samples, 6))
     wrench[:, 2] = FORCE_N
     offset = np.zeros((samples, 6)) if learned is None else smoothed(learned, samples=samples)
-    return ForceTask(trajectory=way, offset=offset, wrench=wrench, admittance=Admittance(), slow_per_n=slow_per_n)
+    return ForceTask(trajectory=way, offset=offset, wrench=wrench, admittance=Compliance(), slow_per_n=slow_per_n)
 
 
 def smoothed(record: ForceRecord, *, samples: int) -> Array:
@@ -230,7 +231,7 @@ def main() -> None:
     for subject in (PANDA, UR10):
         for controller in ("joint_impedance", "cartesian_impedance"):
             for slope in (0.0, 0.05):
-                settings = ArmSettings(controller=controller)
+                settings = ControlSettings(controller=controller)
                 wiping = Wiping(subject, slope=slope, settings=settings, first_touch=options.first_touch)
                 start, from_s = time.thread_time(), wiping.simulation.time_s
                 passes = three_passes(wiping, peak_m_s=options.speed)

@@ -28,7 +28,7 @@ from benchmarks.swinging_arms import CELL, swing_for_ever
 from benchmarks.timing_jitter import Punctuality, watch
 from engine.bus import SkillBus
 from engine.document.cell import load_cell
-from robots.port import ArmSettings, ControllerName
+from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.scene.scene_builder import build_scene
 from robots.sim.host.loop_timing import LoopTiming
 from robots.sim.host.process_host import ProcessHost
@@ -95,7 +95,7 @@ async def alone(controller: ControllerName, seconds: float) -> Row:
     host = ProcessHost(scene)
     async with SimWorld(scene, host=host) as world:
         for name in world.arm_names():
-            world.arm(name).configure(ArmSettings(controller=controller))
+            world.arm(name).configure(ControlSettings(controller=controller))
         swinging = [asyncio.create_task(swing_for_ever(world, name)) for name in world.arm_names()]
         await measure(row, host, seconds)
         for task in swinging:

@@ -24,7 +24,7 @@ from benchmarks.step_cost import step_cost
 from benchmarks.swinging_arms import CELL, Swinging, swing_for_ever
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, PartPoses, Pose
-from robots.port import ArmSettings, ControllerName
+from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import PartBody, SimScene
 from robots.sim.commands.arm_commands import ConfigureArm
@@ -58,7 +58,7 @@ def timed(work: Callable[[], object], count: int) -> tuple[float, float]:
     return (time.perf_counter() - wall) / count, (time.process_time() - cpu) / count
 
 
-def lockstep(scene: SimScene, seconds: float, settings: ArmSettings) -> None:
+def lockstep(scene: SimScene, seconds: float, settings: ControlSettings) -> None:
     """Measure stepping in this process."""
     start = time.perf_counter()
     cell = build_cell(scene)
@@ -102,7 +102,7 @@ def lockstep(scene: SimScene, seconds: float, settings: ArmSettings) -> None:
     row("one frame message (30 Hz)", f"{messages_cpu * 1e6:.1f} us")
 
 
-async def real_time(scene: SimScene, seconds: float, settings: ArmSettings) -> None:
+async def real_time(scene: SimScene, seconds: float, settings: ControlSettings) -> None:
     """Measure the world's own process beside a parent that is busy with JSON all the time."""
     start = time.perf_counter()
     host = ProcessHost(scene)
@@ -166,7 +166,7 @@ def main() -> None:
         virtual_time(drawn, options.seconds)
         return
     scene = filled(drawn, options.parts, options.step_ms / 1000.0)
-    settings = ArmSettings(controller=options.controller)
+    settings = ControlSettings(controller=options.controller)
     row("machine", f"{platform.machine()}, Python {platform.python_version()}")
     lockstep(scene, options.seconds, settings)
     asyncio.run(real_time(scene, options.seconds, settings))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.swinging_arms import Swinging
-from robots.port import ArmSettings, ControllerName
+from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import ConfigureArm
 from robots.sim.loop.arm_loop import SimArmLoop
@@ -46,7 +46,7 @@ def step_cost(scene: SimScene, controller: ControllerName, seconds: float) -> St
     """Build a world, let its parts settle, and step it for so long (simulated)."""
     simulation = Simulation(build_cell(scene))
     for arm in simulation.summary.arms:
-        simulation.apply(ConfigureArm(arm=arm.name, settings=ArmSettings(controller=controller)))
+        simulation.apply(ConfigureArm(arm=arm.name, settings=ControlSettings(controller=controller)))
     swinging = Swinging(simulation)
     for _ in range(round(_SETTLE_S / simulation.step_s)):
         swinging.step()

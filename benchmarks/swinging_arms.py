@@ -8,7 +8,7 @@ import numpy as np
 
 from robots.control.motion_event import MotionFinished
 from robots.model.registry import model_by_name
-from robots.port import Array, JointTrajectory, Tolerance
+from robots.port import Array, JointTrajectory, MotionEnd, Tolerance
 from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.loop.simulation import Simulation
 from robots.sim.world.sim_world import SimWorld
@@ -57,8 +57,8 @@ class Swinging:
         """Let one step pass and start the next swing where one has ended."""
         for event in self._simulation.step():
             if isinstance(event, MotionFinished):
-                if event.end != "reached":
-                    raise RuntimeError(f"an arm did not get there: {event.reason}")
+                if event.report.end != MotionEnd.REACHED:
+                    raise RuntimeError(f"an arm did not get there: {event.report.reason}")
                 arm, way = self._arms.pop(event.motion)
                 self._start(arm, 1 - way)
 

@@ -8,7 +8,7 @@ address of a skill is `<namespace>/<skill_name>`.
 from __future__ import annotations
 
 import re
-from typing import Any, ClassVar, Generic, TypeVar, get_args, get_origin
+from typing import Any, Generic, TypeVar, get_args, get_origin
 
 import msgspec
 
@@ -36,8 +36,6 @@ class Service(Skill[R], Generic[R], frozen=True, kw_only=True):
 
 class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
     """A goal that takes time: it is accepted or rejected, sends feedback, and can be held and cancelled."""
-
-    holdable: ClassVar[bool] = True
 
     @classmethod
     def feedback_type(cls) -> Any:

@@ -20,8 +20,7 @@ be undone also has an `undo`.
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
@@ -29,6 +28,7 @@ from engine.clock import Clock
 from engine.event import Cause
 from engine.skill import Action, Service
 from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
+from engine.skills.goal_end import GoalEnd
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -44,15 +44,6 @@ class Outcome(msgspec.Struct, frozen=True):
     name: str
     outputs: Mapping[str, object] = _NO_OUTPUT
     cause: Cause | None = None
-
-
-@dataclass(frozen=True)
-class ActionEnd(Generic[R]):
-    """The end of an action goal; `status` is succeeded, canceled, aborted or rejected."""
-
-    status: str
-    result: R | None
-    cause: Cause | None
 
 
 class RequestRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -103,7 +94,7 @@ class Context(Protocol):
         """
         ...
 
-    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+    async def perform(self, goal: Action[R, F], *, to: str) -> GoalEnd[R]:
         """Send a goal to `<to>/<skill_name>` and wait for its end.
 
         A preempted state cancels the goal and waits until the device confirms rest before

@@ -8,7 +8,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import PathBlocked
 from engine.event import Cause
 from engine.skill import Action
-from engine.state import ActionEnd
+from engine.skills.goal_end import GoalEnd
 
 _BLOCKED = PathBlocked.__name__
 _NO_REASON = {
@@ -17,7 +17,7 @@ _NO_REASON = {
 }
 
 
-def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: str, where: str, kind: str) -> Cause:
+def goal_cause(what: str, goal: Action[Any, Any], end: GoalEnd[Any], *, to: str, where: str, kind: str) -> Cause:
     """Return the cause chain of a failed goal.
 
     Args:
@@ -33,6 +33,6 @@ def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: st
     return wrap_cause(f"{what}: {skill} was {end.status}", end.cause or fallback, where=where, kind=kind)
 
 
-def is_path_blocked(end: ActionEnd[Any]) -> bool:
+def is_path_blocked(end: GoalEnd[Any]) -> bool:
     """Tell whether a goal was refused because the planning scene blocks its path."""
     return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

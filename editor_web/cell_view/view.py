@@ -76,10 +76,6 @@ class CellView:
         )
         self._thread.start()
 
-    def request_tunnel(self) -> str | None:
-        """Return viser's response to a page that requests a public tunnel: always None."""
-        return self._server.request_share_url() if self._server else None
-
     def show(self, page: str, groups: frozenset[LayerGroup]) -> None:
         """Show exactly these groups on a page; the page's name is in the path from which it loads the view."""
         if self._groups is not None:

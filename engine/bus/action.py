@@ -10,40 +10,16 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
-from enum import Enum
 from typing import Any, Generic, TypeVar
 
 from engine.bus.lease import Holder
 from engine.cause_chain import cause_of
 from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
-from engine.event import Cause
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")
 _log = logging.getLogger("flexcell.bus")
-
-
-class GoalStatus(Enum):
-    """The status of a goal; the last four are final."""
-
-    PENDING = "pending"
-    ACTIVE = "active"
-    HELD = "held"
-    CANCELING = "canceling"
-    SUCCEEDED = "succeeded"
-    CANCELED = "canceled"
-    ABORTED = "aborted"
-    REJECTED = "rejected"
-
-
-@dataclass(frozen=True)
-class GoalEnd(Generic[R]):
-    """The end of a goal; `result` may be partial unless it succeeded, `cause` is the reason of a failure."""
-
-    status: GoalStatus
-    result: R | None
-    cause: Cause | None
 
 
 class GoalCanceledEarly(BusError):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self, TypeVar, cast
 
-from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, execute_goal
+from engine.bus.action import ActiveGoal, GoalHandle, execute_goal
 from engine.bus.handler_signature import verify_handler
 from engine.bus.lease import Holder, LeaseTable
 from engine.bus.parameter_server import ParameterServer
@@ -20,6 +20,7 @@ from engine.bus.topic import Topic
 from engine.clock import Clock
 from engine.errors import BusError, FlexcellError, GoalRejected, NoSuchSkill, SkillFailed
 from engine.skill import Action, Service, Skill
+from engine.skills.goal_end import GoalEnd
 from engine.suggestions import did_you_mean
 
 R = TypeVar("R")

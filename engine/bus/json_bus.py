@@ -8,11 +8,12 @@ from typing import Any, Protocol
 
 import msgspec
 
-from engine.bus.action import GoalEnd, GoalHandle
+from engine.bus.action import GoalHandle
 from engine.bus.bus import BusEntry, SkillBus
 from engine.bus.lease import Holder
 from engine.errors import BusError
 from engine.skill import Action, Service
+from engine.skills.goal_end import GoalEnd
 
 CLI_HOLDER = Holder("cli")
 

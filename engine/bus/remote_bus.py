@@ -10,11 +10,11 @@ from typing import Any, Self
 import httpx
 import msgspec
 
-from engine.bus.action import GoalEnd, GoalStatus
 from engine.bus.bus import BusEntry
 from engine.errors import BusError
 from engine.event import Cause
 from engine.host.state_folder_names import SERVER_FILE
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 
 class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):

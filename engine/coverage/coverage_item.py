@@ -7,16 +7,6 @@ from typing import Literal
 import msgspec
 
 ItemKind = Literal["node", "outcome", "transition", "condition", "timeout", "guard", "on_error", "status"]
-ITEM_KINDS: tuple[ItemKind, ...] = (
-    "node",
-    "outcome",
-    "transition",
-    "condition",
-    "timeout",
-    "guard",
-    "on_error",
-    "status",
-)
 Key = tuple[str, str, str]
 
 

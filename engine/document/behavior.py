@@ -15,7 +15,8 @@ from engine.document.nodes.node_spec import Key, NodeSpec
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.substitutes import Substitutes
 from engine.document.text.decoding import StrictModel
-from engine.document.text.yaml_source import DataPath, DocumentSource
+from engine.document.text.document_file import DocumentFile
+from engine.document.text.yaml_source import DataPath
 from engine.errors import Position
 
 
@@ -36,16 +37,13 @@ class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Behavior:
+class Behavior(DocumentFile[BehaviorDocument]):
     """A behavior document with its file, its positions and the behaviors it refers to."""
 
-    document: BehaviorDocument
-    file: Path
     meaning: str
     """Semantic hash (SHA-256) of the document and its references: without `view`, `notes`, comments, formatting."""
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
-    source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
     """The classes passed from Python, by their `module:Class`; empty for a behavior from a document."""
     substitutes: Substitutes | None = field(default=None, repr=False)

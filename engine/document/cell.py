@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -17,6 +17,7 @@ from msgspec import Meta
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 
@@ -168,12 +169,8 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cell:
+class Cell(DocumentFile[CellDocument]):
     """A cell document with its file."""
-
-    document: CellDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
 
     @property
     def name(self) -> str:

@@ -26,14 +26,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, cast
 
 from msgspec import Meta
 
 from engine.document.text.decoding import StrictModel, decode_document
-from engine.document.text.yaml_source import DocumentSource, load_source
+from engine.document.text.document_file import DocumentFile
+from engine.document.text.yaml_source import load_source
 from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError
 from engine.messages import Pose
@@ -92,12 +93,8 @@ class EntriesDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entries:
+class Entries(DocumentFile[EntriesDocument]):
     """An entries document with its file."""
-
-    document: EntriesDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
 
     def records(self) -> tuple[EntryRecord, ...]:
         """Return every entry as a store record; `revision` is 0 for entries not yet stored."""

@@ -11,7 +11,7 @@ document that matches a request is applied to it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -20,6 +20,7 @@ from msgspec import Meta
 from engine.document.duration import Duration, seconds
 from engine.document.path_pattern import PathPattern
 from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
@@ -139,12 +140,8 @@ class FaultsDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Faults:
+class Faults(DocumentFile[FaultsDocument]):
     """A fault document with its file."""
-
-    document: FaultsDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
 
     def position(self, index: int) -> Position:
         """Return the position of the fault with this index, from 0."""

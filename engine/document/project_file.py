@@ -10,14 +10,15 @@ imported. Nothing else causes an import: neither behaviors nor recordings nor jo
 from __future__ import annotations
 
 import stat
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
 from msgspec import Meta
 
 from engine.document.text.decoding import StrictModel, decode_document
-from engine.document.text.yaml_source import DocumentSource, load_source
+from engine.document.text.document_file import DocumentFile
+from engine.document.text.yaml_source import load_source
 from engine.errors import Position
 
 PROJECT_FILE = "flexcell.yaml"
@@ -40,12 +41,8 @@ class ProjectDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProjectFile:
+class ProjectFile(DocumentFile[ProjectDocument]):
     """A project document with its file."""
-
-    document: ProjectDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
 
     @property
     def folder(self) -> Path:

@@ -23,6 +23,7 @@ from engine.document.duration import Duration, seconds
 from engine.document.nodes.node_spec import Key
 from engine.document.path_pattern import PathPattern, matches
 from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
@@ -73,12 +74,9 @@ class SubstitutesDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Substitutes:
+class Substitutes(DocumentFile[SubstitutesDocument]):
     """A substitutes document with its file."""
 
-    document: SubstitutesDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
     """The state classes passed by a test, by their names; empty for a document."""
 

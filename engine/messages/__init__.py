@@ -5,7 +5,16 @@ Files of other subjects (shapes, sensing, demonstrations, primitives, pose algeb
 those who use them.
 """
 
-from engine.messages.geometry import FramePoses, FrameTransform, Message, PartPoses, Pose, Quaternion, Vector3, Wrench
+from engine.messages.geometry import (
+    FramePoses,
+    Message,
+    PartPoses,
+    Pose,
+    Quaternion,
+    Vector3,
+    Vector6,
+    Wrench,
+)
 from engine.messages.robot_states import (
     ExternalTorque,
     GripperState,
@@ -19,7 +28,6 @@ from engine.messages.scene import SceneDescription, VisualGeometry
 __all__ = [
     "ExternalTorque",
     "FramePoses",
-    "FrameTransform",
     "GripperState",
     "HandState",
     "JointState",
@@ -31,6 +39,7 @@ __all__ = [
     "RobotDescription",
     "SceneDescription",
     "Vector3",
+    "Vector6",
     "VisualGeometry",
     "Wrench",
 ]

@@ -10,6 +10,8 @@ import msgspec
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+Vector6 = tuple[float, float, float, float, float, float]
+"""Along x y z, then about x y z."""
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -30,15 +32,6 @@ class Wrench(Message, frozen=True, kw_only=True):
     force_n: Vector3
     torque_nm: Vector3
     frame: str
-
-
-class FrameTransform(Message, frozen=True, kw_only=True):
-    """The pose of `child` in `parent`."""
-
-    parent: str
-    child: str
-    xyz: Vector3
-    xyzw: Quaternion
 
 
 class FramePoses(Message, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.bus.action import GoalEnd, GoalHandle
+from engine.bus.action import GoalHandle
 from engine.bus.bus import SkillBus
 from engine.bus.json_bus import CLI_HOLDER, LocalJsonBus
 from engine.bus.lease import Lease
@@ -15,6 +15,7 @@ from engine.bus.topic import Topic
 from engine.document.parameter_spec import any_value
 from engine.errors import BusError, FlexcellError
 from engine.skill import Action
+from engine.skills.goal_end import GoalEnd
 
 Schema = dict[str, Any]
 

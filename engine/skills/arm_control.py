@@ -10,10 +10,9 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from engine.messages import Message, Quaternion, Vector3, Wrench
+from engine.messages import Message, Quaternion, Vector3, Vector6, Wrench
 from engine.skill import Service
 
-Six = tuple[float, float, float, float, float, float]
 ControllerName = Literal["joint_impedance", "cartesian_impedance"]
 ArmMode = Literal["disconnected", "fault", "reflex", "idle", "moving", "jogging", "guiding", "direct"]
 
@@ -26,27 +25,28 @@ JointRow = tuple[Annotated[float, msgspec.Meta(gt=0.0)], ...]
 
 
 class ControlSettings(Message, frozen=True, kw_only=True):
-    """Control settings, in force until they are changed.
+    """Control settings, in force until they are changed; they can change at any time without a jump of the arm.
 
     Stiffness is N m/rad for joints, N/m along and N m/rad about the axes of the arm's base for the tool.
     An empty `joint_stiffness_nm_rad` means the nominal stiffness; an empty `collision_torque_nm` and no
     `collision_force_n` disable the reflex. The tool centre point and the centre of mass of the load are
-    given in the model's tool link.
+    given in the model's tool link. `nullspace_stiffness_nm_rad` pulls a redundant arm towards the joints of its
+    set point without moving the tool. `speed_override` is the share of their own speed at which all motions run.
     """
 
-    controller: ControllerName
-    joint_stiffness_nm_rad: tuple[float, ...]
-    joint_damping_ratio: float
-    cartesian_stiffness: Six
-    cartesian_damping_ratio: float
-    nullspace_stiffness_nm_rad: float
-    tool_xyz_m: Vector3
-    tool_xyzw: Quaternion
-    load_kg: float
-    load_com_m: Vector3
-    collision_torque_nm: tuple[float, ...]
-    collision_force_n: float | None
-    speed_override: float
+    controller: ControllerName = "joint_impedance"
+    joint_stiffness_nm_rad: tuple[float, ...] = ()
+    joint_damping_ratio: float = 1.0
+    cartesian_stiffness: Vector6 = (3000.0, 3000.0, 3000.0, 200.0, 200.0, 200.0)
+    cartesian_damping_ratio: float = 1.0
+    nullspace_stiffness_nm_rad: float = 20.0
+    tool_xyz_m: Vector3 = (0.0, 0.0, 0.0)
+    tool_xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    load_kg: float = 0.0
+    load_com_m: Vector3 = (0.0, 0.0, 0.0)
+    collision_torque_nm: tuple[float, ...] = ()
+    collision_force_n: float | None = None
+    speed_override: float = 1.0
 
 
 class ArmStatus(Message, frozen=True, kw_only=True):
@@ -97,7 +97,7 @@ class SetJointImpedance(Service[ControlSettings], frozen=True, kw_only=True):
 class SetCartesianImpedance(Service[ControlSettings], frozen=True, kw_only=True):
     """Set the stiffness of the tool, N/m along and N m/rad about the axes of the arm's base, and the damping."""
 
-    stiffness: Six
+    stiffness: Vector6
     damping_ratio: Damping = 1.0
     nullspace_stiffness_nm_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 20.0
 

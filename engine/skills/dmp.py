@@ -10,14 +10,13 @@ from typing import Annotated
 
 import msgspec
 
-from engine.messages import Message, Pose, Wrench
+from engine.messages import Message, Pose, Vector6, Wrench
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service
 from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 
-Six = tuple[float, float, float, float, float, float]
 Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 selects it by the fit")]
 GainZ = Annotated[float, msgspec.Meta(gt=0, description="Gain of the transformation system")]
 GainX = Annotated[float, msgspec.Meta(gt=0, description="Gain of the phase")]
@@ -59,10 +58,10 @@ class Compliance(Message, frozen=True, kw_only=True):
     and `turn_rad_s`.
     """
 
-    active: Six = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    mass: Six = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
-    damping: Six = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
-    stiffness: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    active: Vector6 = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    mass: Vector6 = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
+    damping: Vector6 = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
+    stiffness: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     frame: Axes = "world"
     reach_m: Annotated[float, msgspec.Meta(gt=0.0)] = 0.05
     turn_rad: Annotated[float, msgspec.Meta(gt=0.0)] = 0.3
@@ -166,8 +165,8 @@ class LearnedCartDmp(Message, frozen=True, kw_only=True):
     fit: CartFit
 
 
-class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
-    """Learn a joint DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+class RecordedMotion(msgspec.Struct, frozen=True, kw_only=True):
+    """What a DMP is learned from: the entry of kind `trajectory`, or `trajectory` itself.
 
     `trim` removes the time at rest at both ends.
     """
@@ -184,20 +183,12 @@ class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
             raise ValueError("give either `entry` or `trajectory`")
 
 
-class LearnCartDmp(Service[LearnedCartDmp], frozen=True, kw_only=True):
-    """Learn a Cartesian DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+class LearnJointDmp(RecordedMotion, Service[LearnedJointDmp], frozen=True, kw_only=True):
+    """Learn a joint DMP from a recorded motion."""
 
-    The tool poses of a recording without them are computed by forward kinematics. `trim` removes the time
-    at rest at both ends.
+
+class LearnCartDmp(RecordedMotion, Service[LearnedCartDmp], frozen=True, kw_only=True):
+    """Learn a Cartesian DMP from a recorded motion.
+
+    The tool poses of a recording without them are computed by forward kinematics.
     """
-
-    entry: str = ""
-    trajectory: Trajectory | None = None
-    N: Kernels = 0
-    a_z: GainZ = 48.0
-    a_x: GainX = 2.0
-    trim: bool = True
-
-    def __post_init__(self) -> None:
-        if bool(self.entry) == (self.trajectory is not None):
-            raise ValueError("give either `entry` or `trajectory`")

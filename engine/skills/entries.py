@@ -56,24 +56,22 @@ class EntryChanged(Message, frozen=True, kw_only=True):
     changed_unix_ms: int = 0
 
 
-class DeleteEntry(Service[EntryChanged], frozen=True, kw_only=True):
+class EntryChangeRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """The entry to be changed; `expected_revision`, `by` and `reason` are as in `WriteEntry`."""
+
+    kind: str
+    name: str
+    expected_revision: int | None = None
+    by: str = ""
+    reason: str = ""
+
+
+class DeleteEntry(EntryChangeRequest, Service[EntryChanged], frozen=True, kw_only=True):
     """Delete an entry; its history is kept, and `undo_entry` restores it."""
 
-    kind: str
-    name: str
-    expected_revision: int | None = None
-    by: str = ""
-    reason: str = ""
 
-
-class UndoEntry(Service[EntryChanged], frozen=True, kw_only=True):
+class UndoEntry(EntryChangeRequest, Service[EntryChanged], frozen=True, kw_only=True):
     """Restore an entry as it was before its last change; each further undo goes one change back."""
-
-    kind: str
-    name: str
-    expected_revision: int | None = None
-    by: str = ""
-    reason: str = ""
 
 
 class EntryHistory(Message, frozen=True, kw_only=True):

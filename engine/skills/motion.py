@@ -102,16 +102,20 @@ class InverseKinematicsResult(Message, frozen=True, kw_only=True):
     remark: str = ""
 
 
-class InverseKinematics(Service[InverseKinematicsResult], frozen=True, kw_only=True):
-    """Return the configuration for a pose of the tool centre point that is reached fastest from `seed`.
-
-    An empty `seed` stands for the measured configuration. Fails, with the reason, when the arm cannot
-    reach the pose, or the part of it that `match` selects, within its joint limits.
-    """
+class ConfigurationQuery(msgspec.Struct, frozen=True, kw_only=True):
+    """A pose of the tool centre point; an empty `seed` stands for the measured configuration."""
 
     pose: Pose
     seed: tuple[float, ...] = ()
     match: PoseMatch = "pose"
+
+
+class InverseKinematics(ConfigurationQuery, Service[InverseKinematicsResult], frozen=True, kw_only=True):
+    """Return the configuration for a pose of the tool centre point that is reached fastest from `seed`.
+
+    Fails, with the reason, when the arm cannot reach the pose, or the part of it that `match` selects, within its
+    joint limits.
+    """
 
 
 class InverseKinematicsSolutions(Message, frozen=True, kw_only=True):
@@ -126,13 +130,8 @@ class InverseKinematicsSolutions(Message, frozen=True, kw_only=True):
     how: str
 
 
-class AllInverseKinematics(Service[InverseKinematicsSolutions], frozen=True, kw_only=True):
+class AllInverseKinematics(ConfigurationQuery, Service[InverseKinematicsSolutions], frozen=True, kw_only=True):
     """Return the configurations for a pose of the tool centre point, including all turns within the joint limits.
 
-    Sorted by the time to reach them from `seed`, the measured configuration when empty. Fails as
-    `InverseKinematics` does.
+    Sorted by the time to reach them from `seed`. Fails as `InverseKinematics` does.
     """
-
-    pose: Pose
-    seed: tuple[float, ...] = ()
-    match: PoseMatch = "pose"

@@ -9,6 +9,8 @@ import msgspec
 from engine.messages import Message, Vector3
 from engine.skill import Service
 
+LONGEST_PUSH_S = 60.0
+
 
 class ResetPartsResult(Message, frozen=True, kw_only=True):
     """The parts that were reset."""
@@ -38,5 +40,5 @@ class PushBody(Service[PushBodyResult], frozen=True, kw_only=True):
 
     body: str
     force_n: Vector3
-    duration_s: Annotated[float, msgspec.Meta(gt=0.0, le=60.0)]
+    duration_s: Annotated[float, msgspec.Meta(gt=0.0, le=LONGEST_PUSH_S)]
     at_m: Vector3 = (0.0, 0.0, 0.0)

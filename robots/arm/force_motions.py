@@ -8,13 +8,13 @@ import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
 from engine.messages.primitives import CartOffsets
-from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult, Compliance
+from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult
 from robots.arm.dmp_motions import frame_of
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, plan_cart_dmp, wrench_at
 from robots.motion.dmp.quaternions import of_matrix
-from robots.port import Admittance, Array, ForceRecord, ForceTask, Motion
+from robots.port import Array, ForceRecord, ForceTask, Motion
 from robots.port.wrench import to_wrench
 
 
@@ -58,7 +58,7 @@ class ForceMotions:
                 offset=np.clip(offsets_at(_given(goal), phase), -reach, reach),
                 wrench=wrench_at(goal.force, phase),
                 task_xyzw=(x, y, z, w),
-                admittance=_admittance(goal.compliance),
+                admittance=goal.compliance,
                 slow_per_n=goal.slow_per_n,
             )
 
@@ -121,16 +121,3 @@ def _given(goal: CartAdmitDMP) -> CartOffsets:
     if goal.offsets is not None:
         return goal.offsets
     return no_offsets(goal.N, a_x=goal.dmp.a_x) if goal.N else no_offsets(a_x=goal.dmp.a_x)
-
-
-def _admittance(compliance: Compliance) -> Admittance:
-    return Admittance(
-        active=compliance.active,
-        mass=compliance.mass,
-        damping=compliance.damping,
-        stiffness=compliance.stiffness,
-        reach_m=compliance.reach_m,
-        turn_rad=compliance.turn_rad,
-        speed_m_s=compliance.speed_m_s,
-        turn_rad_s=compliance.turn_rad_s,
-    )

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from msgspec.structs import replace
 
+from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
 from robots.control.collision_reflex import CollisionReflex
@@ -21,7 +22,7 @@ from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTr
 from robots.control.motion_executor import MotionExecutor
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
-from robots.port import ArmSettings, Array, ControllerName, MotionEnd, Tolerance
+from robots.port import Array, MotionEnd, MotionReport, Tolerance
 
 # External forces pass this low-pass filter, as in wrist sensors.
 _FELT_HZ = 60.0
@@ -54,7 +55,7 @@ class ArmControlLoop:
     ) -> None:
         model, limits = kinematics.model, kinematics.limits
         self.name = name
-        self.settings = ArmSettings()
+        self.settings = ControlSettings()
         self.tool_xyz_m: Array = np.array(self.settings.tool_xyz_m)
         """Tool centre point in the frame of the tool link, (3,), from the settings."""
         self.state = ArmState(kinematics)
@@ -79,7 +80,7 @@ class ArmControlLoop:
         for law in (*self._holding.values(), self._floating):
             law.initialize(settings=self.settings, inertia_kg_m2=inertia_kg_m2)
         soft = tuple((_REFLEX_STIFFNESS * nominal_stiffness_nm_rad(limits)).tolist())
-        self._yielding.initialize(settings=ArmSettings(joint_stiffness_nm_rad=soft), inertia_kg_m2=inertia_kg_m2)
+        self._yielding.initialize(settings=ControlSettings(joint_stiffness_nm_rad=soft), inertia_kg_m2=inertia_kg_m2)
 
     @property
     def reflex(self) -> bool:
@@ -102,7 +103,7 @@ class ArmControlLoop:
         self._law = self._selected_law()
         self._blend.forget()
 
-    def configure(self, settings: ArmSettings) -> None:
+    def configure(self, settings: ControlSettings) -> None:
         """Apply validated settings without a torque jump, also during a motion."""
         before, self.settings = self.settings, settings
         self.tool_xyz_m = np.array(settings.tool_xyz_m)
@@ -123,7 +124,8 @@ class ArmControlLoop:
         """Start a motion; it fails at once if the reflex has tripped meanwhile."""
         if self.reflex:
             reason = f"the arm has stopped by itself: {self._reflex.reason}"
-            self._untold.append(MotionFinished(motion=number, end=MotionEnd.FAILED.value, progress=0.0, reason=reason))
+            report = MotionReport(end=MotionEnd.FAILED, reason=reason)
+            self._untold.append(MotionFinished(motion=number, progress=0.0, report=report))
             return
         self.motion.start(number, generator, tolerance)
 
@@ -187,6 +189,6 @@ class ArmControlLoop:
         return self._yielding if self.reflex else self._holding[self.settings.controller]
 
 
-def _shape(settings: ArmSettings) -> ArmSettings:
+def _shape(settings: ControlSettings) -> ControlSettings:
     """Return `settings` reduced to what changes the torques of an arm at rest."""
     return replace(settings, collision_torque_nm=(), collision_force_n=None, speed_override=1.0)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, cross
-from robots.port import ArmSettings, Array
+from robots.port import Array
 
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
@@ -37,7 +38,7 @@ class CarriedLoad:
         """True without a load."""
         return self._mass_kg == 0.0
 
-    def take(self, settings: ArmSettings) -> None:
+    def take(self, settings: ControlSettings) -> None:
         """Apply the load of `settings`."""
         self._mass_kg = settings.load_kg
         self._at = self._kinematics.with_tool(RigidTransform.of(settings.load_com_m, _UPRIGHT))

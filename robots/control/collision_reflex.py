@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
-from robots.port import ArmSettings
 
 
 class CollisionReflex:
@@ -22,7 +22,7 @@ class CollisionReflex:
         self._watching = False
         self.reason = ""
 
-    def watch(self, settings: ArmSettings) -> None:
+    def watch(self, settings: ControlSettings) -> None:
         """Set the thresholds."""
         torque, force = settings.collision_torque_nm, settings.collision_force_n
         self._torque_nm = np.array(torque) if torque else np.full(len(self._joints), np.inf)

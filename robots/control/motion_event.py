@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
+from robots.port import MotionReport
+
 
 class MotionEvent(msgspec.Struct, frozen=True, kw_only=True):
     """An event of the motion with this number."""
@@ -12,17 +14,10 @@ class MotionEvent(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
-    """The motion ended (`end` is a `MotionEnd` value); `reason` if it failed, `at_rest` false if it could not stop.
+    """The motion ended; `progress` is its completed share."""
 
-    `progress` is its completed share; `contact` and `data` are as in `MotionReport`.
-    """
-
-    end: str
     progress: float
-    reason: str = ""
-    contact: bool = False
-    data: bytes = b""
-    at_rest: bool = True
+    report: MotionReport
 
 
 class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):

@@ -10,7 +10,7 @@ import numpy as np
 from robots.control.arm_state import ArmState
 from robots.control.generators.motion_generator import MotionGenerator, StreamGenerator
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
-from robots.port import Array, MotionEnd, Tolerance
+from robots.port import Array, MotionEnd, MotionReport, Tolerance
 
 _REST_RAD_S = 0.01
 _REST_S = 0.02
@@ -239,11 +239,9 @@ class MotionExecutor:
         return (
             MotionFinished(
                 motion=following.number,
-                end=end.value,
                 progress=generator.progress,
-                reason=reason,
-                contact=generator.contact,
-                data=generator.data(),
-                at_rest=at_rest,
+                report=MotionReport(
+                    end=end, reason=reason, contact=generator.contact, data=generator.data(), at_rest=at_rest
+                ),
             ),
         )

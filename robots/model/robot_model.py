@@ -67,7 +67,3 @@ class RobotModel:
         """The parallel gripper at the flange; None without a tool and for tools of another kind."""
         mechanism = self.tool.mechanism if self.tool is not None else None
         return mechanism if isinstance(mechanism, GripperModel) else None
-
-    def licence_text(self) -> str:
-        """Return the full licence text of the arm's description."""
-        return self.licence_file.read_text(encoding="utf-8")

@@ -116,11 +116,6 @@ class PathPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
         """The waypoints, shape (k, n)."""
         return np.array(self.waypoints_rad, dtype=np.float64)
 
-    @property
-    def length_rad(self) -> float:
-        """The length of the path in joint space."""
-        return float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
-
 
 class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
     """Why there is no plan; `pairs` are the names of the colliding objects, if that is the reason."""

@@ -8,24 +8,20 @@ loop thread; an implementation may run its control elsewhere but completes futur
 
 from robots.port.arm import ArmPort, ArmSample, StreamKind
 from robots.port.arrays import Array
-from robots.port.force_task import Admittance, ForceRecord, ForceTask
+from robots.port.force_task import ForceRecord, ForceTask
 from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.magnet import MagnetPort, MagnetSample
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import OutputPort
-from robots.port.settings import ArmSettings, ControllerName, Vector6
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
 __all__ = [
-    "Admittance",
     "ArmPort",
     "ArmSample",
-    "ArmSettings",
     "Array",
     "ContactCondition",
-    "ControllerName",
     "ForceRecord",
     "ForceTask",
     "GraspCommand",
@@ -43,5 +39,4 @@ __all__ = [
     "OutputPort",
     "StreamKind",
     "Tolerance",
-    "Vector6",
 ]

@@ -8,10 +8,10 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.port.arrays import Array
 from robots.port.force_task import ForceTask
 from robots.port.motion import Motion, MotionStream
-from robots.port.settings import ArmSettings
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
 StreamKind = Literal["joint_position", "joint_velocity", "tool_twist"]
@@ -50,7 +50,7 @@ class ArmPort(Protocol):
         ...
 
     @property
-    def settings(self) -> ArmSettings:
+    def settings(self) -> ControlSettings:
         """The active settings."""
         ...
 
@@ -89,7 +89,7 @@ class ArmPort(Protocol):
         """
         ...
 
-    def configure(self, settings: ArmSettings) -> None:
+    def configure(self, settings: ControlSettings) -> None:
         """Apply settings from the next control period on, without a jump.
 
         Raises:

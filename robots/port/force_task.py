@@ -8,27 +8,9 @@ import msgspec
 import numpy as np
 
 from engine.messages import Quaternion
+from engine.skills.dmp import Compliance
 from robots.port.arrays import Array
-from robots.port.settings import Vector6
 from robots.port.trajectory import JointTrajectory
-
-
-class Admittance(msgspec.Struct, frozen=True, kw_only=True):
-    """M ẍ + D ẋ + K x = F_measured − F_wanted for the offset x, per axis of the task frame (x y z, then rotations).
-
-    An axis with `active` 0 does not deviate. Masses are kg and kg m², damping N s/m and N m s/rad,
-    stiffness N/m and N m/rad (0: pure force control). Offsets never exceed `reach_m` and
-    `turn_rad`, nor change faster than `speed_m_s` and `turn_rad_s`.
-    """
-
-    active: Vector6 = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    mass: Vector6 = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
-    damping: Vector6 = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
-    stiffness: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    reach_m: float = 0.05
-    turn_rad: float = 0.3
-    speed_m_s: float = 0.1
-    turn_rad_s: float = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +22,7 @@ class ForceTask:
         offset: Feed-forward offset of the tool from the nominal path, (samples, 6), metres and rotation
             vector, in the task frame; learned in an earlier pass.
         wrench: Wanted force and torque of the environment on the tool, (samples, 6), in the task frame.
-        task_xyzw: Orientation of the task frame in the world.
+        task_xyzw: Orientation in the world of the task frame that the `frame` of the admittance names.
         admittance: Response of the path to measured forces.
         slow_per_n: Phase stopping: the pace slows to 1 / (1 + slow_per_n · |force error|); 0 for never.
         record_s: Period of the record.
@@ -50,7 +32,7 @@ class ForceTask:
     offset: Array
     wrench: Array
     task_xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    admittance: Admittance = field(default_factory=Admittance)
+    admittance: Compliance = field(default_factory=Compliance)
     slow_per_n: float = 0.0
     record_s: float = 0.01
 

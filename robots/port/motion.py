@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
+
+import msgspec
 
 
 class MotionEnd(Enum):
@@ -15,8 +16,7 @@ class MotionEnd(Enum):
     FAILED = "failed"
 
 
-@dataclass(frozen=True, kw_only=True)
-class MotionReport:
+class MotionReport(msgspec.Struct, frozen=True, kw_only=True):
     """The end of a motion; `reason` states why it failed (joint, amount, contact).
 
     `contact` is true when the expected contact ended the motion. `data` is the record of the kind of

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Collection
-from dataclasses import replace
 
 import msgspec
 
@@ -15,7 +14,7 @@ from engine.suggestions import did_you_mean
 from robots.model.mechanics.link_names import link_names
 from robots.model.transform import RigidTransform
 from robots.planning.scene.planning_scene import AttachedPart, NamePair, PlanningScene, SceneArm
-from robots.workspace.grasped_parts import GraspedPart, GraspedPartMemo, ReleasedPart, ReleasedPartMemo
+from robots.workspace.grasped_parts import GraspedPart, ReleasedPart
 from robots.workspace.measured_poses import MeasuredPoses, PoseSource
 from robots.workspace.obstacle_validation import find_obstacle_fault
 from robots.workspace.path_reservations import Row, with_reservations
@@ -34,8 +33,8 @@ class SceneMemo(msgspec.Struct, frozen=True, kw_only=True):
     put: tuple[Obstacle, ...] = ()
     removed: tuple[str, ...] = ()
     rules: tuple[tuple[str, str, bool], ...] = ()
-    held: tuple[GraspedPartMemo, ...] = ()
-    let_go: tuple[ReleasedPartMemo, ...] = ()
+    held: tuple[GraspedPart, ...] = ()
+    let_go: tuple[ReleasedPart, ...] = ()
 
 
 class LiveScene:
@@ -186,9 +185,9 @@ class LiveScene:
         attached = AttachedPart(name=part, arm=arm, solids=solids, pose=at.to_pose(frame), link=link)
         self._put.pop(part, None)
         self._let_go.pop(part, None)
-        self._held[part] = GraspedPart(part=attached, link=frame, taken=at, touches=frozenset())
+        self._held[part] = GraspedPart(part=attached, link=frame, taken=at.to_pose(frame), touches=frozenset())
         touches = names_near_held_part(self._measured(measured), part, within_m=TOUCHING_M)
-        self._held[part] = replace(self._held[part], touches=touches)
+        self._held[part] = msgspec.structs.replace(self._held[part], touches=touches)
         self.revision += 1
         _log.info("%s holds %s%s", arm, part, f", which touches {', '.join(sorted(touches))}" if touches else "")
 
@@ -216,11 +215,8 @@ class LiveScene:
             put=tuple(self._put.values()),
             removed=tuple(sorted(self._removed)),
             rules=tuple(self._rules.values()),
-            held=tuple(GraspedPartMemo.of(one) for one in self._held.values()),
-            let_go=tuple(
-                ReleasedPartMemo(part=name, arm=one.arm, links=tuple(sorted(one.links)))
-                for name, one in self._let_go.items()
-            ),
+            held=tuple(self._held.values()),
+            let_go=tuple(self._let_go.values()),
         )
 
     def remember(self, memo: SceneMemo) -> None:
@@ -228,8 +224,8 @@ class LiveScene:
         self._put = {one.name: one for one in memo.put}
         self._removed = set(memo.removed)
         self._rules = {frozenset(rule[:2]): rule for rule in memo.rules}
-        self._held = {one.part.name: one.held() for one in memo.held}
-        self._let_go = {one.part: ReleasedPart(arm=one.arm, links=frozenset(one.links)) for one in memo.let_go}
+        self._held = {one.part.name: one for one in memo.held}
+        self._let_go = {one.part: one for one in memo.let_go}
         self._reservations.clear()
         self.revision += 1
 
@@ -255,7 +251,7 @@ class LiveScene:
         self._tracked.take(measured)
         links = links_near_part(self._measured(measured), name, held.part.arm, within_m=SEPARATED_M)
         if links:
-            self._let_go[name] = ReleasedPart(arm=held.part.arm, links=links)
+            self._let_go[name] = ReleasedPart(part=name, arm=held.part.arm, links=links)
 
     def _revoke_contacts(self) -> None:
         """Revoke the allowed contacts of objects that have separated."""
@@ -263,11 +259,11 @@ class LiveScene:
         for name, held in tuple(self._held.items()):
             if held.touches:
                 nearby = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
-                self._held[name] = replace(held, touches=held.touches & nearby)
+                self._held[name] = msgspec.structs.replace(held, touches=held.touches & nearby)
         for name, released in tuple(self._let_go.items()):
             links = released.links & links_near_part(scene, name, released.arm, within_m=SEPARATED_M)
             if links:
-                self._let_go[name] = replace(released, links=links)
+                self._let_go[name] = msgspec.structs.replace(released, links=links)
             else:
                 del self._let_go[name]
 

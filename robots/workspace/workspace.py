@@ -214,7 +214,7 @@ class Workspace:
     def memo(self) -> bytes:
         """Return the state that a restore needs."""
         memo = self._live.memo() if self._live is not None else self._early_memo
-        return msgspec.msgpack.encode(memo) if memo != SceneMemo() else b""
+        return msgspec.msgpack.encode(memo, order="deterministic") if memo != SceneMemo() else b""
 
     def remember(self, memo: bytes) -> None:
         """Restore the state of `memo`; raises RobotError for invalid bytes."""

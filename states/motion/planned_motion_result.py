@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from engine.cause_chain import links_from_root
 from engine.event import Cause
+from engine.skills.goal_end import GoalEnd
 from engine.skills.planning import FreeMotionResult
-from engine.state import ActionEnd
 
 
 def inner_cause_text(cause: Cause) -> str:
@@ -14,6 +14,6 @@ def inner_cause_text(cause: Cause) -> str:
     return ", so ".join(inner) or cause.message
 
 
-def is_blocked_timeout(end: ActionEnd[FreeMotionResult]) -> bool:
+def is_blocked_timeout(end: GoalEnd[FreeMotionResult]) -> bool:
     """Tell whether a motion was aborted because its path stayed blocked until the timeout."""
     return end.status == "aborted" and end.result is not None and bool(end.result.blocked)

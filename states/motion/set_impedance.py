@@ -6,15 +6,9 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.messages import Vector6
 from engine.skill import Service
-from engine.skills.arm_control import (
-    ControlSettings,
-    Damping,
-    JointRow,
-    SetCartesianImpedance,
-    SetJointImpedance,
-    Six,
-)
+from engine.skills.arm_control import ControlSettings, Damping, JointRow, SetCartesianImpedance, SetJointImpedance
 from engine.state import Context, Outcome, State
 from states.call_or_fail import call_or_fail
 from states.motion.motion_target import RobotName
@@ -35,7 +29,7 @@ class SetImpedance(State, frozen=True, kw_only=True):
         JointRow | None, Meta(description="Stiffness in N m/rad, one per joint; `[]` for the nominal values")
     ] = None
     tool: Annotated[
-        Six | None, Meta(description="Stiffness in N/m along x, y, z of the base, then in N m/rad about them")
+        Vector6 | None, Meta(description="Stiffness in N/m along x, y, z of the base, then in N m/rad about them")
     ] = None
     damping_ratio: Damping = 1.0
 

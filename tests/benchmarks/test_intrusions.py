@@ -10,6 +10,7 @@ from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from benchmarks.intrusions import CELL
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
+from engine.skills.people import Reach
 from engine.skills.planning import MotionTarget
 from robots.scene.scene_builder import build_scene
 from robots.sim.commands.world_commands import MovePersonHand
@@ -61,7 +62,7 @@ def _touched(cell: CellModel, intrusion: Intrusion, way: UndisturbedMotion, *, u
     """Return whether the reach touches an arm that is carried along a way and left there."""
     simulation = Simulation(cell)
     positions, (arm,) = simulation._qpos, cell.arms  # pyright: ignore[reportPrivateUsage]
-    reach = MovePersonHand(person=intrusion.person, hand_m=intrusion.hand_m, speed_m_s=intrusion.speed_m_s)
+    reach = MovePersonHand(reach=Reach(person=intrusion.person, hand_m=intrusion.hand_m, speed_m_s=intrusion.speed_m_s))
     sent = round(intrusion.after_s / STEP_S)
     steps = round(STEP_S / simulation.step_s)
     last = min(until_row, len(way.joints) - 1)

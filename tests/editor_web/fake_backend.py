@@ -13,7 +13,6 @@ from msgspec.structs import replace
 
 from engine.archive import Archive
 from engine.bus import SkillBus
-from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
 from engine.bus.json_bus import JsonBus
 from engine.cell.cell_connection import CellConnection
@@ -45,6 +44,7 @@ from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.run_options import RunOptions
+from engine.skills.goal_end import GoalEnd
 from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER
 from tests.editor_web.fake_scene import frames_at, new_scene
 

@@ -19,6 +19,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, LayerGroup
+from editor_web.cell_view.rendering.viser_gateway import new_viser_server
 from engine.errors import FlexcellError
 from engine.messages import SceneDescription
 from tests.editor_web.conftest import Serve
@@ -132,12 +133,18 @@ def test_a_view_that_is_not_open_says_so() -> None:
 
 def test_no_public_tunnel_can_be_asked_for() -> None:
     """Whatever a connected page requests."""
+    server = new_viser_server("key")
+    try:
+        assert server.request_share_url() is None
+    finally:
+        server.stop()
+
+
+def test_a_closed_view_answers_no_request() -> None:
+    """Its port is free again."""
     view = CellView(FakeBackend(), shadows=False)
     view.open()
-    try:
-        assert view.request_tunnel() is None
-    finally:
-        view.close()
+    view.close()
     with pytest.raises((urllib.error.URLError, FlexcellError)):
         urllib.request.urlopen(f"http://127.0.0.1:{view.port}/", timeout=1)
 

@@ -6,22 +6,17 @@ defaults, is still a copy that somebody must keep up to date. Fields that are in
 
 from __future__ import annotations
 
-import importlib
-import inspect
-import pkgutil
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
-from functools import cache
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import msgspec
 from pydantic import BaseModel
 
 from editor_web.schema import TYPES
+from tests.house.class_fields import field_names, own_fields, public_classes
 
+ENGINE = ("engine",)
 LEAST_FIELDS = 3
 """Classes with fewer fields share names by chance."""
 MOST_SHARED = 0.75
@@ -54,10 +49,10 @@ _FIELD = re.compile(r"^  readonly (\w+)\??:", re.MULTILINE)
 
 def test_no_class_of_the_server_repeats_a_class_of_the_engine() -> None:
     """But those that are named above, all of which are needed."""
-    ours = _classes("editor_web")
+    ours = public_classes("editor_web")
     assert len(ours) > 50, "the classes of the server are not found any more"
-    theirs = {name: _field_names(each) for name, each in _classes("engine").items()}
-    found = _mirrors({name: _own_fields(each) for name, each in ours.items()}, theirs)
+    theirs = {name: field_names(each) for name, each in public_classes("engine").items()}
+    found = _mirrors({name: own_fields(each, packages=ENGINE) for name, each in ours.items()}, theirs)
     named = {name.rsplit(".", 1)[-1]: words for name, words in found.items()}
     assert named == {name: named.get(name, "no mirror: take its exception away") for name in NOT_MIRRORS}
 
@@ -103,8 +98,11 @@ def test_a_mirror_of_each_kind_is_recognised() -> None:
         line: int
         seen: bool
 
-    ours = {cls.__name__: _own_fields(cls, apart_from=(Fact,)) for cls in (FactBody, FactLike, SeenFact, Other)}
-    assert list(_mirrors(ours, {"Fact": _field_names(Fact)})) == ["FactBody", "FactLike"]
+    ours = {
+        cls.__name__: own_fields(cls, packages=ENGINE, apart_from=(Fact,))
+        for cls in (FactBody, FactLike, SeenFact, Other)
+    }
+    assert list(_mirrors(ours, {"Fact": field_names(Fact)})) == ["FactBody", "FactLike"]
 
 
 def _mirrors(ours: Mapping[str, frozenset[str]], theirs: Mapping[str, frozenset[str]]) -> dict[str, str]:
@@ -117,50 +115,6 @@ def _mirrors(ours: Mapping[str, frozenset[str]], theirs: Mapping[str, frozenset[
         if share >= MOST_SHARED:
             found[name] = f"{share:.0%} of its {len(names)} fields are those of {nearest}"
     return found
-
-
-def _own_fields(cls: type[Any], *, apart_from: tuple[type[Any], ...] = ()) -> frozenset[str]:
-    """Return the fields of a class that it does not inherit from the engine, or from one of these classes."""
-    inherited = [
-        _field_names(base) for base in cls.__mro__[1:] if base in apart_from or base.__module__.startswith("engine.")
-    ]
-    return _field_names(cls).difference(*inherited)
-
-
-def _field_names(cls: type[Any]) -> frozenset[str]:
-    """Return the names of the fields of a struct, dataclass, body or protocol, with those of its bases."""
-    if issubclass(cls, msgspec.Struct):
-        return frozenset(cls.__struct_fields__)
-    if is_dataclass(cls):
-        return frozenset(each.name for each in fields(cls))
-    if issubclass(cls, BaseModel):
-        return frozenset(cls.model_fields)
-    if getattr(cls, "_is_protocol", False):
-        return frozenset(_protocol_fields(cls))
-    return frozenset()
-
-
-def _protocol_fields(cls: type[Any]) -> Iterator[str]:
-    for base in cls.__mro__:
-        if getattr(base, "_is_protocol", False):
-            yield from (each for each in inspect.get_annotations(base) if not each.startswith("_"))
-            yield from (name for name, each in vars(base).items() if isinstance(each, property))
-
-
-@cache
-def _classes(package: str) -> dict[str, type[Any]]:
-    """Return the public classes with fields that a package defines, by their full names."""
-    return {
-        f"{cls.__module__}.{cls.__qualname__}": cls
-        for module in _modules(importlib.import_module(package))
-        for _, cls in inspect.getmembers(module, inspect.isclass)
-        if cls.__module__ == module.__name__ and not cls.__name__.startswith("_") and _field_names(cls)
-    }
-
-
-def _modules(package: ModuleType) -> Iterator[ModuleType]:
-    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-        yield importlib.import_module(found.name)
 
 
 def _interfaces(file: Path) -> Iterator[tuple[str, frozenset[str]]]:

@@ -9,9 +9,9 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.errors import RobotError
+from engine.skills.arm_control import ControlSettings
 from robots.port import (
     ArmSample,
-    ArmSettings,
     Array,
     ContactCondition,
     ForceRecord,
@@ -158,7 +158,7 @@ class FakeArmPort:
         self._stretch = 1.0
         self._reflex = ""
         self._reflex_listeners: list[Callable[[str], None]] = []
-        self.settings = ArmSettings()
+        self.settings = ControlSettings()
         self.motion: FakeMotion | None = None
         self.followed: list[JointTrajectory] = []
         self.contacts: list[ContactCondition | None] = []
@@ -233,7 +233,7 @@ class FakeArmPort:
         """Put the arm there."""
         self._position, self._trajectory = np.array(joints), None
 
-    def configure(self, settings: ArmSettings) -> None:
+    def configure(self, settings: ControlSettings) -> None:
         """Take the settings; raises RobotError for wrong numbers of joints, a senseless tool, or no speed override."""
         if not (np.isfinite(settings.tool_xyz_m).all() and abs(math.hypot(*settings.tool_xyzw) - 1.0) < 1e-3):
             raise RobotError(f"the tool cannot be at {settings.tool_xyz_m}, {settings.tool_xyzw}", where="fake arm")

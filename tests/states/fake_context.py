@@ -11,23 +11,23 @@ from engine.clock import LoopClock
 from engine.errors import NoSuchSkill
 from engine.event import Cause
 from engine.skill import Action, Service
-from engine.state import ActionEnd
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")
 S = TypeVar("S", bound=msgspec.Struct)
 
 
-def broken_off(status: str, cause: Cause | None) -> ActionEnd[object]:
+def broken_off(status: GoalStatus, cause: Cause | None) -> GoalEnd[object]:
     """Make the end of a goal that gave no result."""
-    return ActionEnd(status, None, cause)
+    return GoalEnd(status, None, cause)
 
 
 class FakeContext:
     """Answers by bus address.
 
     Args:
-        answers: Address → the answer of a service (an exception is raised) or the `ActionEnd` of a goal; of a
+        answers: Address → the answer of a service (an exception is raised) or the `GoalEnd` of a goal; of a
             list, the first one left.
         topics: Topic → its latest message.
     """
@@ -46,7 +46,7 @@ class FakeContext:
         """Give the scripted answer."""
         return self._answer(request, to)
 
-    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+    async def perform(self, goal: Action[R, F], *, to: str) -> GoalEnd[R]:
         """Give the scripted end."""
         return self._answer(goal, to)
 

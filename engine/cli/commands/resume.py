@@ -13,8 +13,8 @@ import typer
 from engine.authoring.python_file import load_python_behavior
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_plan, reload_plan
-from engine.cli.output.output_file import prepare, write
-from engine.cli.output.run_report import print_json, print_result
+from engine.cli.output.output_file import prepare
+from engine.cli.output.run_report import report_run
 from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.document.cell import Cell, load_cell
@@ -22,7 +22,6 @@ from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import ControlError
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.journal import encode_event_log
 from engine.project.cell_runner import CellRunner, CellSetup
 from engine.project.resume_plan import ResumePlan, plan_resume
 from engine.project.run_request import require_simulation
@@ -129,13 +128,7 @@ def resume(
     )
 
     def report(ended: ExecutionResult) -> None:
-        encoded = encode_event_log(ended.log)
-        if json:
-            print_json(ended.result, encoded, len(ended.log))
-        else:
-            print_result(ended.result)
-        if events is not None:
-            write(events, encoded)
+        report_run(ended.result, ended.log, as_json=json, events=events)
 
     raise typer.Exit(execute_run(setup, report=report))
 

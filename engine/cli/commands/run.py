@@ -14,9 +14,9 @@ from engine.cell.open_cell import OpenCell
 from engine.check import Finding, check_given, check_stored
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, reload_plan
-from engine.cli.output.output_file import prepare, write
+from engine.cli.output.output_file import prepare
 from engine.cli.output.run_junit import write_run_junit
-from engine.cli.output.run_report import print_json, print_result
+from engine.cli.output.run_report import report_run
 from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.coverage import CoverageCollector
@@ -26,7 +26,6 @@ from engine.document.faults import load_faults
 from engine.document.substitutes import load_substitutes
 from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.journal import encode_event_log
 from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun
 from engine.project.run_request import RunRequest, RunStart, require_simulation, start_at
 from engine.recording import DEFAULT_RATE_HZ, RecordingOptions, collect_documents
@@ -188,13 +187,7 @@ def run(
     )
 
     def report(ended: ExecutionResult) -> None:
-        encoded = encode_event_log(ended.log)
-        if json:
-            print_json(ended.result, encoded, len(ended.log))
-        else:
-            print_result(ended.result)
-        if events is not None:
-            write(events, encoded)
+        report_run(ended.result, ended.log, as_json=json, events=events)
         if covered is not None and coverage is not None:
             covered.accumulate(coverage)
         if junit is not None:

@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from hashlib import sha256
+from pathlib import Path
 
 import msgspec
 from rich.console import Console
 
 from engine.cause_chain import link_text, links_from_root
-from engine.event import Cause
+from engine.cli.output.output_file import write
+from engine.event import Cause, Event
+from engine.journal import encode_event_log
 from engine.runtime.run import RunResult
 
 
-def print_json(result: RunResult, encoded: bytes, count: int) -> None:
+def report_run(result: RunResult, log: Sequence[Event], *, as_json: bool, events: Path | None) -> None:
+    """Print the result of a run, as one JSON object or for people, and write its event log to `events`, if given."""
+    encoded = encode_event_log(log)
+    if as_json:
+        _print_json(result, encoded, len(log))
+    else:
+        print_result(result)
+    if events is not None:
+        write(events, encoded)
+
+
+def _print_json(result: RunResult, encoded: bytes, count: int) -> None:
     """Print the result as one JSON object; `encoded` is its event log."""
     document = {
         "run": result.run,

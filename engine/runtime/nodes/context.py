@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from engine.bus import GoalEnd, GoalStatus, Holder
+from engine.bus import Holder
 from engine.cause_chain import cause_of
 from engine.clock import Clock, OneTurn
 from engine.errors import FlexcellError
@@ -27,7 +27,7 @@ from engine.runtime.record.nonfinite import encode_nonfinite
 from engine.runtime.record.recorder import Recorder
 from engine.runtime.record.skill_port import Goal
 from engine.skill import Action, Service
-from engine.state import ActionEnd
+from engine.skills.goal_end import GoalEnd, GoalStatus
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -121,7 +121,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         self._count_progress()
         return answer
 
-    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+    async def perform(self, goal: Action[R, F], *, to: str) -> GoalEnd[R]:
         """Send a goal and wait for its end; on preemption, cancel it and wait until the device is at rest."""
         execution = self._execution
         self._count_progress()
@@ -148,7 +148,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         finally:
             await execution.branch_holds.detach(held)
         self._record_finished(end, goal_id)
-        return ActionEnd(end.status.value, end.result, end.cause)
+        return end
 
     async def latest(self, topic: str, kind: type[S]) -> S:
         """Return the newest message of a topic, waiting for the first one."""

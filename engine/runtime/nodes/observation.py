@@ -22,7 +22,8 @@ from engine.runtime.record.node_exit import NodeExit, guard_closed_cause
 from engine.runtime.scheduling.observed_answers import ObservedAnswer
 from engine.runtime.userdata.userdata import Scope
 from engine.skill import Action, Service
-from engine.state import ActionEnd, Outcome
+from engine.skills.goal_end import GoalEnd
+from engine.state import Outcome
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -110,7 +111,7 @@ class ObservingContext:
         self.answers.append(ObservedAnswer(request, to, answer))
         return answer
 
-    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+    async def perform(self, goal: Action[R, F], *, to: str) -> GoalEnd[R]:
         """Refuse: an observation sends no goals."""
         raise asyncio.CancelledError
 

@@ -62,8 +62,6 @@ class TreeRunner:
         history: Sequence[TreeEvent] = (),
         branches: BranchValues | None = None,
     ) -> None:
-        self.ticks = 0
-        """Number of ticks."""
         self._path = path
         self._execution = execution
         self._news = asyncio.Event()
@@ -162,7 +160,6 @@ class TreeRunner:
         return clock.now_s() if clock.virtual else self._execution.waits.last(self._path)
 
     async def _tick(self, root: Behaviour) -> None:
-        self.ticks += 1
         seen = self._leaves.unread
         self._raise_error(seen)
         self._count_polling()

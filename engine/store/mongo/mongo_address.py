@@ -53,12 +53,6 @@ def public_address(uri: str, database: str = "") -> str:
     return f"{scheme}://{host}" + (f"/{database}" if database else "")
 
 
-def has_literal_password(uri: str) -> bool:
-    """Return whether an address has a literal password instead of an environment variable."""
-    found = _USERINFO.search(uri)
-    return found is not None and bool(found["password"]) and _VARIABLE.fullmatch(found["password"]) is None
-
-
 def user_of(uri: str) -> str:
     """Return the user that an address names, empty for none."""
     found = _USERINFO.search(uri)

@@ -25,12 +25,13 @@ from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
 from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, MotionReport, MotionStream, Tolerance
-from robots.port.settings import NO_FRAME
 from robots.supervise_goal import supervise_goal
 
 T = TypeVar("T")
 M = TypeVar("M", bound=Motion)
 
+NO_FRAME: tuple[Vector3, Quaternion] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+"""A tool centre point at the tool link."""
 _REST_RAD_S = 0.02
 # Longest time a moving arm may take to come to rest, and the polling period.
 _BRAKING_S, _POLL_S = 2.0, 0.01

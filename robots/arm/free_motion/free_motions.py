@@ -25,7 +25,7 @@ from engine.skills.planning import (
     PlannedMotion,
     PlanOptions,
 )
-from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.motion_runner import NO_FRAME, MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.validate_numbers import are_numbers
 from robots.arm.free_motion.adaptive_motion import AdaptiveMotion
@@ -41,7 +41,6 @@ from robots.arm.scene_queries.path_planner import (
 )
 from robots.planning.request import JointGoal, PathGoal, PlanRefusal, PoseGoal
 from robots.port import Array
-from robots.port.settings import NO_FRAME
 from robots.supervise_goal import FEEDBACK_S
 from robots.workspace.workspace import Workspace
 

@@ -22,7 +22,7 @@ from engine.skills.arm_control import (
     SpeedOverride,
 )
 from robots.arm.execution.motion_runner import MotionRunner
-from robots.arm.services.arm_status import ArmStatusPublisher, to_control_settings
+from robots.arm.services.arm_status import ArmStatusPublisher
 
 # Longest time a device may take to recover from its reflex, and the polling period.
 _RECOVERY_S, _POLL_S = 1.0, 0.01
@@ -122,7 +122,7 @@ class ArmControlServices:
         except RobotError as error:
             raise SkillFailed(error.message, where=runner.name, hint=error.hint) from error
         runner.changed()
-        return to_control_settings(runner.port.settings)
+        return runner.port.settings
 
     def _publish_speed(self) -> None:
         if self._bus is not None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 
 from engine.bus import SkillBus, Topic
-from engine.skills.arm_control import ArmStatus, ControlSettings, ReadArm
+from engine.skills.arm_control import ArmStatus, ReadArm
 from robots.arm.execution.motion_runner import MotionRunner
-from robots.port import ArmSettings
 from robots.port.wrench import to_wrench
 
 
@@ -38,7 +36,7 @@ class ArmStatusPublisher:
             mode=runner.mode,
             activity=runner.activity,
             error=self._error(),
-            settings=to_control_settings(runner.port.settings),
+            settings=runner.port.settings,
             external_nm=tuple(sample.external_nm.tolist()) if sample is not None else (),
             wrench=to_wrench(sample.wrench if sample is not None else np.zeros(6)),
         )
@@ -61,8 +59,3 @@ class ArmStatusPublisher:
 
     async def _read(self, request: ReadArm) -> ArmStatus:
         return self.now()
-
-
-def to_control_settings(settings: ArmSettings) -> ControlSettings:
-    """Convert the settings of a port to the published message."""
-    return ControlSettings(**msgspec.structs.asdict(settings))

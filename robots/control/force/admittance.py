@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robots.port import Admittance, Array
+from engine.skills.dmp import Compliance
+from robots.port import Array
 
 # While the loop only yields, forces up to this much above the wanted ones are tolerated.
 _BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
@@ -18,7 +19,7 @@ class AdmittanceLoop:
     parameters. Clipped offset is discarded, so there is no windup.
     """
 
-    def __init__(self, admittance: Admittance) -> None:
+    def __init__(self, admittance: Compliance) -> None:
         self._law = admittance
         self._axes = tuple(axis for axis in range(_AXES) if admittance.active[axis] > 0.0)
         self._reach = (admittance.reach_m,) * 3 + (admittance.turn_rad,) * 3

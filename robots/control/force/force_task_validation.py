@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from engine.errors import RobotError
+from engine.skills.dmp import Compliance
 from robots.control.generators.trajectory_playback import validate_trajectory
-from robots.port import Admittance, Array, ForceTask
+from robots.port import Array, ForceTask
 
 
 def validate_force_task(task: ForceTask, *, start_rad: Array, joints: tuple[str, ...]) -> ForceTask:
@@ -46,16 +47,13 @@ def _check_reach(task: ForceTask) -> None:
             )
 
 
-def _check_law(law: Admittance) -> None:
+def _check_law(law: Compliance) -> None:
     for axis in range(6):
-        active, mass = law.active[axis], law.mass[axis]
-        damping, stiffness = law.damping[axis], law.stiffness[axis]
-        if not (0.0 <= active <= 1.0):
-            raise RobotError(f"active must be from 0 to 1 on axis {axis}, not {active}")
-        if active > 0.0 and not (0.0 <= mass < math.inf and 0.0 < damping < math.inf and 0.0 <= stiffness < math.inf):
+        mass, damping, stiffness = law.mass[axis], law.damping[axis], law.stiffness[axis]
+        if law.active[axis] > 0.0 and not all(map(math.isfinite, (mass, damping, stiffness))):
             raise RobotError(
-                f"mass {mass}, damping {damping}, stiffness {stiffness} are not a valid admittance on axis {axis}",
-                hint="damping must be positive, mass and stiffness not negative",
+                f"mass {mass}, damping {damping}, stiffness {stiffness} are not finite on axis {axis}",
+                hint="give finite numbers",
             )
     if not all(value > 0.0 for value in (law.reach_m, law.turn_rad, law.speed_m_s, law.turn_rad_s)):
         raise RobotError("reach_m, turn_rad, speed_m_s and turn_rad_s must be positive")

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.laws.controller import SetPoint
 from robots.model.robot_model import JointLimits
-from robots.port import ArmSettings, Array
+from robots.port import Array
 
 # The inertia of a tool direction is limited to this multiple of the mean: near a singularity it stays
 # bounded, and the null space takes the direction over.
@@ -49,7 +50,7 @@ class CartesianImpedance:
         self._damping_root = np.zeros(6)
         self._joint_stiffness = self._joint_damping_root = 0.0
 
-    def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
+    def initialize(self, *, settings: ControlSettings, inertia_kg_m2: Array) -> None:
         """Take stiffness and damping ratio; every step recomputes the inertia."""
         ratio = settings.cartesian_damping_ratio
         self._stiffness = np.array(settings.cartesian_stiffness)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
-from robots.port import ArmSettings, Array
+from robots.port import Array
 
 
 class SetPoint(Protocol):
@@ -30,7 +31,7 @@ class SetPoint(Protocol):
 class Controller(Protocol):
     """One control law: `initialize` once, `step` at every control period, `terminate` at the end."""
 
-    def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
+    def initialize(self, *, settings: ControlSettings, inertia_kg_m2: Array) -> None:
         """Take stiffness and damping from `settings`; also called again when these change.
 
         `inertia_kg_m2` is the diagonal of the arm's mass matrix now, (n,).

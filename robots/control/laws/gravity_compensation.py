@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.laws.controller import SetPoint
 from robots.control.laws.joint_impedance import nominal_stiffness_nm_rad
 from robots.model.robot_model import JointLimits
-from robots.port import ArmSettings, Array
+from robots.port import Array
 
 # Beyond this share of its speed limit a joint is fully damped, so that it can always stop in time.
 _FREE_SPEED_SHARE = 0.5
@@ -29,7 +30,7 @@ class GravityCompensation:
         self._damping = np.zeros_like(self._stiffness)
         self.damping_share = 0.0
 
-    def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
+    def initialize(self, *, settings: ControlSettings, inertia_kg_m2: Array) -> None:
         """Take the critical damping of the nominal stiffness for this inertia, (n,)."""
         self._damping = 2.0 * np.sqrt(self._stiffness * inertia_kg_m2)
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.laws.controller import SetPoint
 from robots.model.robot_model import JointLimits
-from robots.port import ArmSettings, Array
+from robots.port import Array
 
 # A joint applies its full torque at this error; 87 N m give 1450 N m/rad.
 _FULL_TORQUE_ERROR_RAD = 0.06
@@ -34,7 +35,7 @@ class JointImpedance:
         self._torque = np.zeros_like(self._nominal)
         self._work = np.zeros_like(self._nominal)
 
-    def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
+    def initialize(self, *, settings: ControlSettings, inertia_kg_m2: Array) -> None:
         """Take stiffness and damping ratio; the damping is for the joints' own inertia, (n,)."""
         given = settings.joint_stiffness_nm_rad
         self._stiffness = np.array(given) if given else self._nominal

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from engine.errors import RobotError
+from engine.skills.arm_control import ControlSettings
 from robots.control.laws.joint_impedance import nominal_stiffness_nm_rad
 from robots.model.robot_model import JointLimits
-from robots.port import ArmSettings
 
 LEAST_SPEED_OVERRIDE = 0.001
 """At a smaller share of its speed a motion would look stalled."""
@@ -23,7 +23,9 @@ _GRAVITY_M_S2 = 9.81
 _FARTHEST_TOOL_M, _FARTHEST_LOAD_M = 2.0, 1.0
 
 
-def validate_settings(settings: ArmSettings, *, arm: str, joints: tuple[str, ...], limits: JointLimits) -> ArmSettings:
+def validate_settings(
+    settings: ControlSettings, *, arm: str, joints: tuple[str, ...], limits: JointLimits
+) -> ControlSettings:
     """Return `settings` if an arm with these joints can work with them.
 
     Raises:
@@ -39,7 +41,7 @@ def validate_settings(settings: ArmSettings, *, arm: str, joints: tuple[str, ...
     return settings
 
 
-def _check_controller(settings: ArmSettings, joints: tuple[str, ...], limits: JointLimits) -> None:
+def _check_controller(settings: ControlSettings, joints: tuple[str, ...], limits: JointLimits) -> None:
     nominal = nominal_stiffness_nm_rad(limits).tolist()
     if settings.joint_stiffness_nm_rad:
         _count("joint_stiffness_nm_rad", settings.joint_stiffness_nm_rad, joints)
@@ -59,7 +61,7 @@ def _check_controller(settings: ArmSettings, joints: tuple[str, ...], limits: Jo
     _within("nullspace_stiffness_nm_rad", settings.nullspace_stiffness_nm_rad, least=0.0, most=most)
 
 
-def _check_tool_and_load(settings: ArmSettings, limits: JointLimits) -> None:
+def _check_tool_and_load(settings: ControlSettings, limits: JointLimits) -> None:
     for value in settings.tool_xyz_m:
         _within("tool_xyz_m", value, least=-_FARTHEST_TOOL_M, most=_FARTHEST_TOOL_M)
     if not abs(math.hypot(*settings.tool_xyzw) - 1.0) < 1e-3:
@@ -69,7 +71,7 @@ def _check_tool_and_load(settings: ArmSettings, limits: JointLimits) -> None:
         _within("load_com_m", value, least=-_FARTHEST_LOAD_M, most=_FARTHEST_LOAD_M)
 
 
-def _check_thresholds(settings: ArmSettings, joints: tuple[str, ...]) -> None:
+def _check_thresholds(settings: ControlSettings, joints: tuple[str, ...]) -> None:
     if settings.collision_torque_nm:
         _count("collision_torque_nm", settings.collision_torque_nm, joints)
         for joint, value in zip(joints, settings.collision_torque_nm, strict=True):

@@ -94,11 +94,6 @@ class FingerServo:
         """Number of the active motion, 0 for none."""
         return self._task.number
 
-    @property
-    def commanded_force_n(self) -> float:
-        """Force limit of the present command."""
-        return self._limit_n
-
     def progress(self, width_m: float) -> float:
         """Completed share of the path to the commanded opening; 1 without a motion."""
         if not self._task.number or self._start_m == self._target_m:

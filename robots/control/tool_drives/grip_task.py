@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
-from robots.port import MotionEnd
+from robots.port import MotionEnd, MotionReport
 
 REST_S = 0.06
 """Time for which a drive must stand still to be at rest."""
@@ -137,4 +137,5 @@ class GripTask:
     ) -> tuple[AnyMotionEvent, ...]:
         share = progress()
         self._task = None
-        return (MotionFinished(motion=task.number, end=end.value, progress=share, reason=reason, at_rest=at_rest),)
+        report = MotionReport(end=end, reason=reason, at_rest=at_rest)
+        return (MotionFinished(motion=task.number, progress=share, report=report),)

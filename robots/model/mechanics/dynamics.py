@@ -66,10 +66,6 @@ class ArmDynamics:
         """Return g(q), in N m."""
         return pin.computeGeneralizedGravity(self._solver, self._data, joints).copy()
 
-    def coriolis(self, joints: Array, velocity: Array) -> Array:
-        """Return c(q, q̇), the Coriolis and centrifugal torque, in N m."""
-        return pin.computeCoriolisMatrix(self._solver, self._data, joints, velocity) @ velocity
-
     def torque(self, joints: Array, velocity: Array, acceleration: Array) -> Array:
         """Return the torques for this acceleration, in N m."""
         return pin.rnea(self._solver, self._data, joints, velocity, acceleration).copy()

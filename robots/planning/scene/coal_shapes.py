@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from engine.errors import CellError
-from engine.messages import Pose
 from engine.messages.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
 from robots.model.transform import RigidTransform
 from robots.port import Array
@@ -81,11 +80,6 @@ def placement(pose: RigidTransform) -> Any:
 def rigid_of(transform: Any) -> RigidTransform:
     """Return a Pinocchio transform as a rigid transform."""
     return RigidTransform.of(np.array(transform.translation), np.array(pin.Quaternion(transform.rotation).coeffs()))
-
-
-def pose_of(transform: Any) -> Pose:
-    """Return a Pinocchio transform as a pose message in the world."""
-    return rigid_of(transform).to_pose("world")
 
 
 def _hull(points: Array, name: str) -> Any:

@@ -81,13 +81,6 @@ class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
         new = {obstacle.name: obstacle for obstacle in (*self.obstacles, *obstacles)}
         return msgspec.structs.replace(self, obstacles=tuple(new.values()))
 
-    def without_obstacle(self, name: str) -> PlanningScene:
-        """Return the scene without an obstacle; raises CellError for an unknown name."""
-        kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != name)
-        if len(kept) == len(self.obstacles):
-            raise _unknown("obstacle", name, [obstacle.name for obstacle in self.obstacles])
-        return msgspec.structs.replace(self, obstacles=kept)
-
     def with_joints(
         self, arm: str, joints_rad: Sequence[float], *, tool_joints: dict[str, float] | None = None
     ) -> PlanningScene:
@@ -113,23 +106,11 @@ class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
         kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != part.name)
         return msgspec.structs.replace(self, obstacles=kept, attached=(*self.attached, part))
 
-    def without_attached(self, name: str) -> PlanningScene:
-        """Return the scene without an attached part; raises CellError if it is not attached."""
-        kept = tuple(part for part in self.attached if part.name != name)
-        if len(kept) == len(self.attached):
-            raise _unknown("attached part", name, [part.name for part in self.attached])
-        return msgspec.structs.replace(self, attached=kept)
-
     def with_allowed(self, first: str, second: str) -> PlanningScene:
         """Return the scene in which two objects, by name, may touch."""
         if _same(first, second) in {_same(*pair) for pair in self.allowed}:
             return self
         return msgspec.structs.replace(self, allowed=(*self.allowed, (first, second)))
-
-    def without_allowed(self, first: str, second: str) -> PlanningScene:
-        """Return the scene in which two objects, by name, must not touch."""
-        kept = tuple(pair for pair in self.allowed if _same(*pair) != _same(first, second))
-        return msgspec.structs.replace(self, allowed=kept)
 
     def may_touch(self, first: str, second: str) -> bool:
         """Return whether a pair of names may touch; an arm's name stands for all its links."""

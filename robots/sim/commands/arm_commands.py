@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
-from robots.port import ArmSettings, ContactCondition, ForceTask, JointTrajectory, StreamKind, Tolerance
+from engine.skills.arm_control import ControlSettings
+from robots.port import ContactCondition, ForceTask, JointTrajectory, StreamKind, Tolerance
 
 
 class SimCommand(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
@@ -66,7 +67,7 @@ class FinishStream(CommandToArm, frozen=True, kw_only=True, tag="finish"):
 class ConfigureArm(CommandToArm, frozen=True, kw_only=True, tag="configure"):
     """Apply validated settings."""
 
-    settings: ArmSettings
+    settings: ControlSettings
 
 
 class RecoverArm(CommandToArm, frozen=True, kw_only=True, tag="recover"):

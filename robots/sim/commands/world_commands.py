@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.messages import Vector3
+from engine.skills.people import Reach
+from engine.skills.simulated_world import PushBody
 from robots.port import Array
 from robots.sim.commands.arm_commands import ArmCommand, SimCommand
 
@@ -66,21 +67,15 @@ class ResetFreeParts(SimCommand, frozen=True, kw_only=True, tag="reset_parts"):
 
 
 class PushSimBody(SimCommand, frozen=True, kw_only=True, tag="push"):
-    """Push a body with a force (world) at a point of its frame for a while, as a hand does."""
+    """Push a body."""
 
-    body: str
-    force_n: Vector3
-    duration_s: float
-    at_m: Vector3 = (0.0, 0.0, 0.0)
+    push: PushBody
 
 
 class MovePersonHand(SimCommand, frozen=True, kw_only=True, tag="move_hand"):
-    """Move the hand of a person to a point (world); it returns after `stay_s`, or stays."""
+    """Move the hand of a person."""
 
-    person: str
-    hand_m: Vector3
-    speed_m_s: float
-    stay_s: float | None = None
+    reach: Reach
 
 
 class RestoreWorld(SimCommand, frozen=True, kw_only=True, tag="restore"):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.skills.simulated_world import PushBody
 from robots.port import Array
-from robots.sim.commands.world_commands import PushSimBody
 from robots.sim.physics.physics import Physics
 
 
@@ -27,11 +27,11 @@ class ExternalPushes:
         self._physics = physics
         self._hands: dict[int, _Push] = {}
 
-    def push(self, command: PushSimBody) -> None:
+    def push(self, request: PushBody) -> None:
         """Push from the next step on; replaces an earlier push on the same body."""
-        body = self._physics.body_number(command.body)
-        force, at = np.array(command.force_n), np.array(command.at_m)
-        self._hands[body] = _Push(force=force, at=at, left_s=command.duration_s)
+        body = self._physics.body_number(request.body)
+        force, at = np.array(request.force_n), np.array(request.at_m)
+        self._hands[body] = _Push(force=force, at=at, left_s=request.duration_s)
 
     def let_go(self) -> None:
         """End all pushes."""

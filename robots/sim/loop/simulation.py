@@ -54,7 +54,7 @@ class Simulation:
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
-        self._ctrl, self._bias = physics.motors, physics.bias
+        self._ctrl = physics.motors
         self._wanted_acceleration = np.zeros(physics.dof_count)
         self._inertia_torque = np.zeros(physics.dof_count)
         self._start_poses = self._qpos[cell.part_qpos].copy()
@@ -126,9 +126,9 @@ class Simulation:
                 for device in self._devices():
                     device.cancel(command.motion)
             case PushSimBody():
-                self._hands.push(command)
+                self._hands.push(command.push)
             case MovePersonHand():
-                self._people.send(command)
+                self._people.send(command.reach)
             case ResetFreeParts():
                 self._qpos[self._cell.part_qpos] = self._start_poses
                 self._qvel[self._cell.part_dof] = 0.0

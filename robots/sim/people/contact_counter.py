@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.skills.people import ContactCount
 from robots.port import Array
 from robots.sim.physics.person_spec import PersonIndices
 from robots.sim.physics.physics import Physics
@@ -15,32 +14,19 @@ _CONTACTS, _TOUCHING_S, _GREATEST_N, _PAIRS = 0, 1, 2, 3
 _BEFORE, _NOW = 1.0, 2.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContactStatistics:
-    """Contacts of a person: their number, their total time, the maximum force, and the touching pairs.
-
-    `pairs` are body numbers, the person's own first, numbered as in `BODIES`.
-    """
-
-    contacts: int
-    touching_s: float
-    greatest_force_n: float
-    pairs: tuple[tuple[int, int], ...]
-
-
 def count_size(body_count: int, own: int) -> int:
     """Return the length of the statistics of a person with `own` bodies in a world of `body_count`."""
     return _PAIRS + own * body_count
 
 
-def read_contact_statistics(numbers: Array, body_count: int) -> ContactStatistics:
-    """Decode the numbers of a count."""
-    own, others = np.nonzero(numbers[_PAIRS:].reshape(-1, body_count))
-    return ContactStatistics(
+def read_contact_count(numbers: Array, *, own: tuple[str, ...], bodies: tuple[str, ...]) -> ContactCount:
+    """Decode the numbers of a count; `own` are the names of the person's bodies, `bodies` those of the world."""
+    rows, columns = np.nonzero(numbers[_PAIRS:].reshape(-1, len(bodies)))
+    return ContactCount(
         contacts=int(numbers[_CONTACTS]),
         touching_s=float(numbers[_TOUCHING_S]),
         greatest_force_n=float(numbers[_GREATEST_N]),
-        pairs=tuple(zip(own.tolist(), others.tolist(), strict=True)),
+        pairs=tuple((own[row], bodies[column]) for row, column in zip(rows.tolist(), columns.tolist(), strict=True)),
     )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.skills.people import Reach
 from robots.port import Array
-from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.people.contact_counter import ContactCounter
 from robots.sim.people.person_motion import MOTION_FIELDS, PersonMotion
 from robots.sim.people.person_report import report_size
@@ -32,9 +32,9 @@ class PeopleLoop:
         count_size = self._counter.numbers.size if self._counter is not None else 0
         self.image_size = MOTION_FIELDS * len(cell.people) + count_size
 
-    def send(self, command: MovePersonHand) -> None:
+    def send(self, request: Reach) -> None:
         """Send a hand to a point."""
-        self._people[self._by_name[command.person]].send(command)
+        self._people[self._by_name[request.person]].send(request)
 
     def place(self) -> None:
         """Set poses and velocities of the bodies for the next step."""

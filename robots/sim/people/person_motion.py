@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.skills.people import Reach
 from robots.port import Array
 from robots.scene.sim_scene import PersonBody
-from robots.sim.commands.world_commands import MovePersonHand
 from robots.sim.people.hand_trajectory import HandMotion, HandTrajectory, plan_hand_trajectory
 from robots.sim.physics.limb import Limb, LimbPose
 
@@ -41,10 +41,10 @@ class PersonMotion:
         """Remaining motion time of the hand, 0 at its goal."""
         return max(0.0, self._way.duration_s - self._steps * self._step_s)
 
-    def send(self, command: MovePersonHand) -> None:
+    def send(self, request: Reach) -> None:
         """Send the hand to a point; replaces its present motion."""
-        self._go(np.array(command.hand_m), speed_m_s=command.speed_m_s)
-        self._stay_s = _FOR_EVER if command.stay_s is None else command.stay_s
+        self._go(np.array(request.hand_m), speed_m_s=request.speed_m_s)
+        self._stay_s = _FOR_EVER if request.stay_s is None else request.stay_s
 
     def step(self) -> bool:
         """Simulate one step; returns False if nothing moved."""

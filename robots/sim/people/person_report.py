@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from engine.skills.people import ContactCount
 from robots.port import Array
-from robots.sim.people.contact_counter import count_size, read_contact_statistics
+from robots.sim.people.contact_counter import count_size, read_contact_count
 from robots.sim.people.hand_trajectory import HandMotion
 from robots.sim.physics.limb import BODIES
 
@@ -31,14 +31,9 @@ def report_size(people: int, *, body_count: int) -> int:
 def person_sample(values: Array, people: tuple[str, ...], person: str, *, bodies: tuple[str, ...]) -> PersonSample:
     """Return the sample of one person from the report on `people`; `bodies` are all names of the world."""
     row = values.reshape(len(people), -1)[people.index(person)]
-    count = read_contact_statistics(row[_HAND_FIELDS:], len(bodies))
+    own = tuple(f"{person}/{body}" for body in BODIES)
     return PersonSample(
         hand=HandMotion(xyz=row[0:3].copy(), velocity=row[3:6].copy()),
         arrives_in_s=float(row[6]),
-        count=ContactCount(
-            contacts=count.contacts,
-            touching_s=count.touching_s,
-            greatest_force_n=count.greatest_force_n,
-            pairs=tuple((f"{person}/{BODIES[own]}", bodies[other]) for own, other in count.pairs),
-        ),
+        count=read_contact_count(row[_HAND_FIELDS:], own=own, bodies=bodies),
     )

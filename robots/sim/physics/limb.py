@@ -50,11 +50,6 @@ class Limb:
         """Return the distance of a hand position (3,) from the shoulder."""
         return math.dist(hand.tolist(), self._shoulder.tolist())
 
-    def within_reach(self, hand: Array) -> Array:
-        """Return the reachable hand position, (3,), nearest to `hand` in its direction."""
-        axis, length = self._axis(hand)
-        return hand if length == self.away_m(hand) else self._shoulder + axis * length
-
     def hanging(self, hand: Array) -> Array:
         """Return the side, (3,), on which the elbow hangs."""
         axis, _ = self._axis(hand)

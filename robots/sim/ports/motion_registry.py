@@ -79,12 +79,7 @@ class SimMotion:
                 pass
             case MotionFinished():
                 self._last_progress = event.progress
-                end = MotionEnd(event.end)
-                self.end_with(
-                    MotionReport(
-                        end=end, reason=event.reason, contact=event.contact, data=event.data, at_rest=event.at_rest
-                    )
-                )
+                self.end_with(event.report)
 
     def end_with(self, report: MotionReport) -> None:
         """End the motion; a second end is ignored."""

@@ -8,20 +8,12 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.errors import RobotError
+from engine.skills.arm_control import ControlSettings
 from robots.control.force.force_task_validation import validate_force_task
 from robots.control.generators.trajectory_playback import validate_trajectory
 from robots.control.laws.settings_validation import validate_settings
 from robots.model.robot_model import JointLimits
-from robots.port import (
-    ArmSample,
-    ArmSettings,
-    Array,
-    ContactCondition,
-    ForceTask,
-    JointTrajectory,
-    StreamKind,
-    Tolerance,
-)
+from robots.port import ArmSample, Array, ContactCondition, ForceTask, JointTrajectory, StreamKind, Tolerance
 from robots.sim.commands.arm_commands import (
     ConfigureArm,
     FollowTrajectory,
@@ -52,7 +44,7 @@ class SimArmPort:
         self._board = board
         self._arm = arm
         self._limits = limits
-        self._settings = ArmSettings()
+        self._settings = ControlSettings()
         self._one = ExclusiveMotion(arm.name, board)
 
     @property
@@ -61,7 +53,7 @@ class SimArmPort:
         return self._arm.joints
 
     @property
-    def settings(self) -> ArmSettings:
+    def settings(self) -> ControlSettings:
         """The active settings."""
         return self._settings
 
@@ -135,7 +127,7 @@ class SimArmPort:
             raise RobotError(f"damping cannot be {damping}", where=self._arm.name, hint="give a share from 0 to 1")
         return self._start_stream(StartGuiding(arm=self._arm.name, motion=number, damping=damping), width=0)
 
-    def configure(self, settings: ArmSettings) -> None:
+    def configure(self, settings: ControlSettings) -> None:
         """Apply settings from the next control period on.
 
         Raises:
@@ -153,7 +145,7 @@ class SimArmPort:
 
     def begin(self) -> None:
         """Reset to the initial settings, for a new world."""
-        self._settings = ArmSettings()
+        self._settings = ControlSettings()
 
     def _next_number(self) -> int:
         number = self._one.number()

@@ -38,23 +38,22 @@ class PersonServices:
         """Send a hand to a point; raises SkillFailed if it is unreachable, RobotError when the world is lost."""
         person = self._person(request.person)
         arrives_in_s = self._look(person, request.hand_m, request.speed_m_s, and_back=request.stay_s is not None)
-        return self._send(person, request.hand_m, request.speed_m_s, request.stay_s, arrives_in_s)
+        return self._send(request, arrives_in_s)
 
     async def withdraw(self, request: Withdraw) -> ReachResult:
         """Send a hand back to rest; raises as `reach` does."""
         person = self._person(request.person)
         arrives_in_s = self._look(person, person.hand_rests, request.speed_m_s, and_back=False)
-        return self._send(person, person.hand_rests, request.speed_m_s, None, arrives_in_s)
+        back = Reach(person=person.name, hand_m=person.hand_rests, speed_m_s=request.speed_m_s)
+        return self._send(back, arrives_in_s)
 
     async def count_contacts(self, request: CountContacts) -> ContactCount:
         """Return the contact count of the physics."""
         return self._sample(self._person(request.person)).count
 
-    def _send(
-        self, person: PersonBody, goal: Vector3, speed_m_s: float, stay_s: float | None, arrives_in_s: float
-    ) -> ReachResult:
-        self._host.send(MovePersonHand(person=person.name, hand_m=goal, speed_m_s=speed_m_s, stay_s=stay_s))
-        return ReachResult(person=person.name, hand_m=goal, arrives_in_s=arrives_in_s)
+    def _send(self, reach: Reach, arrives_in_s: float) -> ReachResult:
+        self._host.send(MovePersonHand(reach=reach))
+        return ReachResult(person=reach.person, hand_m=reach.hand_m, arrives_in_s=arrives_in_s)
 
     def _look(self, person: PersonBody, goal: Vector3, speed_m_s: float, *, and_back: bool) -> float:
         """Return the duration of the motion; raises SkillFailed if it is impossible."""

@@ -15,7 +15,7 @@ from engine.clock import VirtualLoop
 from engine.errors import RobotError, SkillFailed
 from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
-from engine.skills.simulated_world import PushBody, PushBodyResult, ResetParts, ResetPartsResult
+from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResult, ResetParts, ResetPartsResult
 from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
 from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.commands.world_commands import PushSimBody, StopAll
@@ -244,13 +244,17 @@ class SimWorld:
         `body` is one of `host.summary.bodies`: `left/panda_hand`, the name of a part.
 
         Raises:
-            RobotError: there is no such body, a value is not finite, or the world is lost.
+            RobotError: there is no such body, a value is not finite, the push is too long, or the world is lost.
         """
         if body not in self._host.summary.bodies:
             raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
         if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
             raise RobotError("a push has values that are not finite", where=self.name)
-        self._host.send(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+        if not 0.0 < duration_s <= LONGEST_PUSH_S:
+            raise RobotError(
+                f"a push of {duration_s:g} s", where=self.name, hint=f"push for up to {LONGEST_PUSH_S:g} s"
+            )
+        self._host.send(PushSimBody(push=PushBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m)))
 
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""

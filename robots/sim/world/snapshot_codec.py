@@ -9,7 +9,8 @@ import msgspec
 import numpy as np
 
 from engine.errors import RobotError
-from robots.port import ArmSettings, Array, GraspCommand
+from engine.skills.arm_control import ControlSettings
+from robots.port import Array, GraspCommand
 from robots.sim.physics.physics import mujoco
 
 FORMAT = 2
@@ -30,7 +31,7 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
 
     numbers: bytes
     grips: dict[str, GraspCommand]
-    settings: dict[str, ArmSettings]
+    settings: dict[str, ControlSettings]
     reflexes: dict[str, str]
     outputs: dict[str, tuple[bool, ...]]
     memos: dict[str, bytes] = {}
@@ -40,7 +41,7 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
         cls,
         numbers: Array,
         grips: dict[str, GraspCommand],
-        settings: dict[str, ArmSettings],
+        settings: dict[str, ControlSettings],
         reflexes: dict[str, str],
         outputs: dict[str, tuple[bool, ...]],
         memos: dict[str, bytes] | None = None,

@@ -8,13 +8,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.document import DepthCamera
+from engine.document import DepthCamera, ObjectDetector
 from engine.errors import CellError
 from engine.messages import Pose, Vector3
 from engine.messages.sensing import CameraIntrinsics, DepthImage
 from robots.model.transform import RigidTransform
 from robots.port import Array
-from robots.vision.cameras.detector_spec import DetectorSpec, detector_of
 
 Image = NDArray[np.float32]
 
@@ -34,7 +33,7 @@ class CameraSpec(msgspec.Struct, frozen=True, kw_only=True):
     rate_hz: float
     range_m: tuple[float, float]
     noise_m: float
-    detector: DetectorSpec | None = None
+    detector: ObjectDetector | None = None
 
 
 def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
@@ -57,7 +56,7 @@ def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
         rate_hz=camera.rate_hz,
         range_m=camera.range_m,
         noise_m=camera.noise_m,
-        detector=detector_of(camera.detect) if camera.detect is not None else None,
+        detector=camera.detect,
     )
 
 
@@ -137,14 +136,6 @@ def depths(image: DepthImage) -> Image:
             hint="send four bytes per pixel",
         )
     return np.frombuffer(image.depth_m, dtype=np.float32).reshape(shape)
-
-
-def points_seen(image: DepthImage) -> Array:
-    """Return the measured points of an image in the world, (k, 3)."""
-    depth = depths(image).astype(np.float64).ravel()
-    measured = np.isfinite(depth) & (depth > 0.0)
-    pose = RigidTransform.from_pose(image.pose)
-    return (directions(image.intrinsics)[measured] * depth[measured, None]) @ pose.rotation.T + pose.xyz
 
 
 def _quaternion(rotation: Array) -> Array:

@@ -7,11 +7,10 @@ import asyncio
 import msgspec
 
 from engine.bus import SkillBus, Topic
-from engine.document import DetectionRate
+from engine.document import DetectionRate, ObjectDetector
 from engine.errors import SkillFailed
 from engine.skills.vision import Detections, DetectObjects
 from robots.vision.cameras.camera import CameraSpec
-from robots.vision.cameras.detector_spec import DetectorSpec
 
 _FRESH_IMAGES = 3
 _LEAST_FRESH_S = 1.0
@@ -54,7 +53,7 @@ class DetectionService:
 
 
 class _CameraDetections:
-    def __init__(self, camera: CameraSpec, detector: DetectorSpec) -> None:
+    def __init__(self, camera: CameraSpec, detector: ObjectDetector) -> None:
         self.name = camera.name
         self._camera_hz = camera.rate_hz
         self._rate_hz = detector.rate_hz

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.document import ObjectDetector
 from engine.messages import Pose
 from engine.messages.sensing import CameraIntrinsics
 from engine.skills.vision import Detection, Detections, Rectangle
@@ -23,7 +24,6 @@ from robots.scene.sim_scene import PartBody
 from robots.vision.cameras.camera import CameraSpec, pixels
 from robots.vision.cameras.depth_image import frame_number
 from robots.vision.cameras.depth_rays import first_hits
-from robots.vision.cameras.detector_spec import DetectorSpec
 from robots.vision.cameras.physics_copy import PhysicsCopy
 from robots.vision.detection.visibility import bounding_edges_m, intersects_shape
 
@@ -46,7 +46,7 @@ class PartDetector:
         self._seed = seed
         self._geoms = {part.name: int(cell.model.geom(part.name).id) for part in parts}
 
-    def detections(self, camera: CameraSpec, detector: DetectorSpec, *, time_s: float) -> Detections:
+    def detections(self, camera: CameraSpec, detector: ObjectDetector, *, time_s: float) -> Detections:
         """Return the present detections of a camera's detector, most visible first."""
         poses = self._cell.moment(time_s).parts
         found: list[Detection] = []
@@ -67,7 +67,7 @@ class PartDetector:
         return Detections(
             camera=camera.name,
             frame=detector.frame,
-            frame_pose=detector.frame_pose,
+            frame_pose=detector.frame_at.pose(),
             time_s=time_s,
             detections=tuple(sorted(found, key=lambda each: (-each.score, each.label))),
             image_px=(lens.width_px, lens.height_px),
@@ -104,7 +104,7 @@ class PartDetector:
         hit, distance = first_hits(self._cell, start.copy(), units, reach_m=far * float(lengths.max()))
         return np.where(hit == geom, distance / lengths, np.inf)
 
-    def _measured(self, camera: CameraSpec, detector: DetectorSpec, part: str, pose: Pose, time_s: float) -> Pose:
+    def _measured(self, camera: CameraSpec, detector: ObjectDetector, part: str, pose: Pose, time_s: float) -> Pose:
         """Return the pose of a part in the detector's frame, with noise."""
         true = RigidTransform.from_pose(pose)
         if detector.noise_m > 0.0 or detector.noise_rad > 0.0:
@@ -115,7 +115,7 @@ class PartDetector:
                 xyz=true.xyz + off * detector.noise_m,
                 xyzw=product(true.xyzw, quaternion_of(turn * detector.noise_rad)),
             )
-        return RigidTransform.from_pose(detector.frame_pose).inverse().then(true).to_pose(detector.frame)
+        return RigidTransform.from_pose(detector.frame_at.pose()).inverse().then(true).to_pose(detector.frame)
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ import pytest
 
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.teaching_messages import StartJog
-from engine.bus.action import GoalEnd
 from engine.errors import BusError
+from engine.skills.goal_end import GoalEnd
 from tests.editor_web.fake_backend import TopicBus
 
 JOG = StartJog(arm="left", space="joints")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from engine.coverage import CoverageCollector
-from engine.coverage.coverage_item import ITEM_KINDS
+from engine.coverage.coverage_item import ItemKind
 from engine.errors import FlexcellError
 from engine.event import BranchesPreempted, NodeDiverted, NodeEntered, NodeExited, TransitionTaken
 from engine.runtime.plan import new_plan
@@ -275,7 +276,7 @@ def test_nothing_that_happens_is_missed(case: Case, stop_at_s: float) -> None:
     events = events_of(case.behavior, catalogue=ACTS, stop_at_s=stop_at_s)
     coverage = CoverageCollector(case.behavior, ACTS)
     coverage.add(events)
-    kinds = {kind: sum(item.count for item in coverage.items if item.kind == kind) for kind in ITEM_KINDS}
+    kinds = {kind: sum(item.count for item in coverage.items if item.kind == kind) for kind in get_args(ItemKind)}
     work = {path: node.work.kind for path, node in new_plan(case.behavior, ACTS).nodes.items()}
     taken = [e for e in events if isinstance(e, TransitionTaken) and e.outcome and work[e.path] != "foreach"]
     decided = [e for e in events if isinstance(e, NodeExited) and e.outcome and not e.preempted]

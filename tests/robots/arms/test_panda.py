@@ -49,7 +49,7 @@ def test_its_home_is_within_its_limits() -> None:
 
 def test_its_licence_comes_with_it() -> None:
     assert PANDA.licence == "Apache-2.0"
-    assert "Apache License" in PANDA.licence_text()
+    assert "Apache License" in PANDA.licence_file.read_text(encoding="utf-8")
 
 
 def test_an_unknown_model_is_refused_with_the_near_name() -> None:

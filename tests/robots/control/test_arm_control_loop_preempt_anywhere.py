@@ -11,10 +11,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from engine.skills.arm_control import ControlSettings
+from engine.skills.dmp import Compliance
+from engine.skills.simulated_world import PushBody
 from robots.control.arm_control_loop import ArmControlLoop
 from robots.control.motion_event import MotionFinished, MotionHeld
 from robots.motion import plan_joints
-from robots.port import Admittance, ArmSettings, Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
+from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, MotionEnd, Tolerance
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import (
     ConfigureArm,
@@ -119,7 +122,9 @@ def guarded(arm: WatchedArm, random_: random.Random) -> None:
         )
     )
     if random_.random() < 0.5:
-        arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=(0.0, 8.0, 0.0), duration_s=0.05))
+        arm.simulation.apply(
+            PushSimBody(push=PushBody(body="left/panda_hand", force_n=(0.0, 8.0, 0.0), duration_s=0.05))
+        )
 
 
 def track_force(arm: WatchedArm, random_: random.Random) -> None:
@@ -127,11 +132,11 @@ def track_force(arm: WatchedArm, random_: random.Random) -> None:
     trajectory = random_trajectory(arm, random_, speed=0.2)
     samples = len(trajectory.position_rad)
     task = ForceTask(
-        trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)), admittance=Admittance()
+        trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)), admittance=Compliance()
     )
     arm.simulation.apply(TrackForce(arm="left", motion=arm.next_number(), task=task, tolerance=Tolerance()))
     arm.simulation.apply(
-        PushSimBody(body="left/panda_hand", force_n=(0.0, 0.0, random_.uniform(-10, 10)), duration_s=0.2)
+        PushSimBody(push=PushBody(body="left/panda_hand", force_n=(0.0, 0.0, random_.uniform(-10, 10)), duration_s=0.2))
     )
 
 
@@ -163,7 +168,7 @@ def guide(arm: WatchedArm, random_: random.Random) -> None:
     """Pushed by a hand."""
     force = (random_.uniform(-8, 8), random_.uniform(-8, 8), random_.uniform(-4, 4))
     arm.simulation.apply(StartGuiding(arm="left", motion=arm.next_number(), damping=0.1))
-    arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=force, duration_s=0.15))
+    arm.simulation.apply(PushSimBody(push=PushBody(body="left/panda_hand", force_n=force, duration_s=0.15)))
 
 
 Start = Callable[[WatchedArm, random.Random], None]
@@ -210,7 +215,7 @@ def test_a_stop_at_any_instant_keeps_the_limits_and_ends_at_rest(cell: CellModel
                 break
             arm.step()
         end = arm.ends[-1]
-        assert (end.motion, end.reason) == (arm.number, "")
+        assert (end.motion, end.report.reason) == (arm.number, "")
         assert np.abs(arm.control.state.velocity).max() < REST_RAD_S
         assert np.abs(arm.control.motion.velocity).max() == 0.0
 
@@ -219,18 +224,20 @@ def test_a_reflex_at_any_instant_keeps_the_limits_and_ends_at_rest(cell: CellMod
     """A knock on the way stops the arm; once it has recovered, the next motion trips again."""
     random_ = random.Random(5)
     arm = WatchedArm(cell, jerk=False)
-    arm.simulation.apply(ConfigureArm(arm="left", settings=ArmSettings(collision_force_n=20.0)))
+    arm.simulation.apply(ConfigureArm(arm="left", settings=ControlSettings(collision_force_n=20.0)))
     for _ in range(10):
         follow(arm, random_)
         for _ in range(random_.randrange(20, 250)):
             arm.step()
-        arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=(0.0, 60.0, 0.0), duration_s=0.02))
+        arm.simulation.apply(
+            PushSimBody(push=PushBody(body="left/panda_hand", force_n=(0.0, 60.0, 0.0), duration_s=0.02))
+        )
         for _ in range(3000):
             if arm.ends and arm.ends[-1].motion == arm.number:
                 break
             arm.step()
-        assert (arm.ends[-1].end, arm.control.reflex) == ("failed", True)
-        assert arm.ends[-1].reason.startswith("external force limit exceeded")
+        assert (arm.ends[-1].report.end, arm.control.reflex) == (MotionEnd.FAILED, True)
+        assert arm.ends[-1].report.reason.startswith("external force limit exceeded")
         assert np.abs(arm.control.state.velocity).max() < REST_RAD_S
         arm.simulation.apply(RecoverArm(arm="left"))
         arm.step()

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from engine.messages import Vector3
-from robots.port import ArmSettings, ControllerName, MotionEnd, Tolerance
+from engine.skills.arm_control import ControllerName, ControlSettings
+from robots.port import MotionEnd, Tolerance
 from robots.scene.sim_scene import SimScene
 from robots.sim.physics.cell_model import CellModel, build_cell
 from robots.sim.world.sim_world import SimWorld
@@ -24,7 +25,7 @@ def _cell() -> CellModel:
     return build_cell(one_arm())
 
 
-def sag_m(cell: CellModel, settings: ArmSettings, at_m: Vector3) -> float:
+def sag_m(cell: CellModel, settings: ControlSettings, at_m: Vector3) -> float:
     """Return how far the tool is below its set point with 2 kg at a point of the tool link."""
     arm = SteppedArm(cell, settings)
     before = arm.tool_xyz
@@ -38,19 +39,19 @@ def sag_m(cell: CellModel, settings: ArmSettings, at_m: Vector3) -> float:
 def test_two_kilograms_sag_by_millimetres_unless_the_arm_knows_of_them(
     cell: CellModel, controller: ControllerName, at_m: Vector3
 ) -> None:
-    assert sag_m(cell, ArmSettings(controller=controller), at_m) > 0.004
-    assert abs(sag_m(cell, ArmSettings(controller=controller, load_kg=2.0, load_com_m=at_m), at_m)) < 1e-5
+    assert sag_m(cell, ControlSettings(controller=controller), at_m) > 0.004
+    assert abs(sag_m(cell, ControlSettings(controller=controller, load_kg=2.0, load_com_m=at_m), at_m)) < 1e-5
 
 
 def test_a_known_load_is_not_felt(cell: CellModel) -> None:
-    arm = SteppedArm(cell, ArmSettings(load_kg=2.0, load_com_m=(0.0, 0.0, 0.03)))
+    arm = SteppedArm(cell, ControlSettings(load_kg=2.0, load_com_m=(0.0, 0.0, 0.03)))
     arm.push(WEIGHT_N, 3.0, at_m=(0.0, 0.0, 0.03))
     arm.run(2.5)
     assert np.abs(arm.sample.wrench).max() < 1e-3
     assert np.abs(arm.sample.external_nm).max() < 1e-3
 
 
-async def carry(world: SimWorld, settings: ArmSettings) -> tuple[float, float]:
+async def carry(world: SimWorld, settings: ControlSettings) -> tuple[float, float]:
     """Lift the heavy part; return how far the joints are off at rest, and the greatest force felt on a way."""
     arm = world.arm("left")
     await grasp(world, force_n=100.0)
@@ -70,8 +71,8 @@ async def carry(world: SimWorld, settings: ArmSettings) -> tuple[float, float]:
 @pytest.mark.virtual
 async def test_a_gripped_part_is_carried_as_if_it_weighed_nothing_once_its_mass_is_set() -> None:
     async with opened(HEAVY) as world:
-        off, felt = await carry(world, ArmSettings())
+        off, felt = await carry(world, ControlSettings())
     async with opened(HEAVY) as world:
-        known_off, known_felt = await carry(world, ArmSettings(load_kg=2.0))
+        known_off, known_felt = await carry(world, ControlSettings(load_kg=2.0))
     assert (off > 0.005, felt > 18.0) == (True, True)
     assert (known_off < 0.001, known_felt < 3.0) == (True, True)

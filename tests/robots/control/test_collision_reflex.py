@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from engine.errors import RobotError
-from robots.port import ArmPort, ArmSettings, MotionEnd, Tolerance
+from engine.skills.arm_control import ControlSettings
+from robots.port import ArmPort, MotionEnd, Tolerance
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import (
     ABOVE_PART,
@@ -24,8 +25,8 @@ from tests.robots.sim.sim_cell import (
     until,
 )
 
-TORQUE = ArmSettings(collision_torque_nm=(15.0,) * 7)
-FORCE = ArmSettings(collision_force_n=20.0)
+TORQUE = ControlSettings(collision_torque_nm=(15.0,) * 7)
+FORCE = ControlSettings(collision_force_n=20.0)
 TOOL = "left/panda_hand_tcp"
 INTO_THE_TABLE = ABOVE_PART + np.array([0.0, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0])
 
@@ -60,7 +61,7 @@ async def test_running_into_the_table_fails_with_joint_amount_threshold_and_cont
 async def test_it_presses_less_and_shorter_than_without_a_reflex() -> None:
     """At 0.3 s after the contact the force is a fraction."""
 
-    async def pressed(settings: ArmSettings) -> float:
+    async def pressed(settings: ControlSettings) -> float:
         async with opened(one_arm()) as world:
             arm = world.arm("left")
             await move(arm, ABOVE_PART, 1.2)
@@ -72,18 +73,18 @@ async def test_it_presses_less_and_shorter_than_without_a_reflex() -> None:
             await motion.report()
             return felt
 
-    assert await pressed(FORCE) < 0.35 * await pressed(ArmSettings())
+    assert await pressed(FORCE) < 0.35 * await pressed(ControlSettings())
 
 
 @both_hosts_nightly
 async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str) -> None:
     async with opened(one_arm()) as world:
-        arm = await tripped(world, push_s=100.0)
+        arm = await tripped(world, push_s=60.0)
         at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 0.4)
         # Five times as soft as before: 40 N are 50 mm instead of 10.
         assert np.abs(arm.sample().position_rad - HOME).max() > 0.03
-        world.push(TOOL, force_n=(0.0, 0.0, 0.0), duration_s=0.0)
+        world.push(TOOL, force_n=(0.0, 0.0, 0.0), duration_s=0.01)
         at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 2.0)
         assert np.abs(arm.sample().position_rad - HOME).max() < 0.01
@@ -116,7 +117,7 @@ async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_re
         arm.recover()
         await until(lambda: not arm.sample().reflex)
         arm.configure(TORQUE)
-        world.push(TOOL, force_n=(0.0, 60.0, 0.0), duration_s=100.0)
+        world.push(TOOL, force_n=(0.0, 60.0, 0.0), duration_s=60.0)
         while not arm.sample().reflex:
             os.sched_yield()
         said = arm.reflex_reason
@@ -132,7 +133,7 @@ async def test_recovering_holds_the_arm_where_it_stands_without_a_jump() -> None
     async with opened(one_arm()) as world:
         arm = await tripped(world)
         await asyncio.sleep(0.2)
-        arm.configure(ArmSettings())
+        arm.configure(ControlSettings())
         before = arm.sample().position_rad.copy()
         arm.recover()
         await asyncio.sleep(0.01)
@@ -167,7 +168,7 @@ async def test_without_thresholds_an_arm_never_stops_by_itself() -> None:
 async def test_its_own_fast_motion_trips_nothing() -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        arm.configure(ArmSettings(collision_torque_nm=(1.0,) * 7, collision_force_n=1.0))
+        arm.configure(ControlSettings(collision_torque_nm=(1.0,) * 7, collision_force_n=1.0))
         assert (await move(arm, ABOVE_PART, 0.8)).end is MotionEnd.REACHED
 
 

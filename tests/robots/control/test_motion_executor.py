@@ -9,7 +9,7 @@ import numpy as np
 from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.control.motion_executor import MotionExecutor
-from robots.port import Array, JointTrajectory, Tolerance
+from robots.port import Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from tests.robots.control.plane_arm import plane_state
 
 START = np.zeros(2)
@@ -50,7 +50,7 @@ def new_motion(goal: Array, tolerance: Tolerance, *, contact: str = "") -> Motio
 
 def test_an_arm_that_follows_reaches_its_goal() -> None:
     events, steps = run(new_motion(np.array([0.2, 0.1]), Tolerance()), lambda desired: desired.copy())
-    assert events == [MotionFinished(motion=7, end="reached", progress=1.0)]
+    assert events == [MotionFinished(motion=7, progress=1.0, report=MotionReport(end=MotionEnd.REACHED))]
     assert 490 <= steps < 560
 
 
@@ -59,9 +59,9 @@ def test_a_stuck_arm_fails_naming_the_worst_joint_and_the_contact() -> None:
     events, _ = run(motion, lambda _: START)
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert end.end == "failed"
-    assert end.reason.startswith("elbow is 0.10")
-    assert end.reason.endswith("rad behind its set point; left hand touches part box")
+    assert end.report.end == MotionEnd.FAILED
+    assert end.report.reason.startswith("elbow is 0.10")
+    assert end.report.reason.endswith("rad behind its set point; left hand touches part box")
     assert motion.position.tolist() == START.tolist()
     assert motion.number == 0
 
@@ -71,7 +71,7 @@ def test_an_arm_that_stays_off_its_goal_fails_after_the_settling_time() -> None:
     events, steps = run(motion, lambda desired: desired * 0.9)
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert end.reason == "shoulder is 0.020 rad away from the goal after 0.5 s"
+    assert end.report.reason == "shoulder is 0.020 rad away from the goal after 0.5 s"
     assert 1000 <= steps < 1200
 
 
@@ -81,7 +81,7 @@ def test_an_arm_that_never_rests_is_not_called_cancelled() -> None:
     events, steps = run(motion, lambda desired: desired.copy(), moving=True)
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert (end.end, end.reason) == ("failed", "the arm does not come to rest")
+    assert (end.report.end, end.report.reason) == (MotionEnd.FAILED, "the arm does not come to rest")
     assert steps >= 3000
 
 
@@ -94,7 +94,11 @@ def test_what_is_stopped_for_a_cause_brakes_on_its_path_and_fails_with_that_caus
     events, _ = run(motion, lambda desired: desired.copy())
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert (end.end, end.reason, 0.0 < end.progress < 1.0) == ("failed", "the engine was silent", True)
+    assert (end.report.end, end.report.reason, 0.0 < end.progress < 1.0) == (
+        MotionEnd.FAILED,
+        "the engine was silent",
+        True,
+    )
     assert motion.position[0] == 2.0 * motion.position[1]
 
 
@@ -103,7 +107,7 @@ def test_what_is_being_cancelled_already_stays_so() -> None:
     motion.cancel(7)
     motion.stop("the engine was silent")
     events, _ = run(motion, lambda desired: desired.copy())
-    assert events == [MotionFinished(motion=7, end="canceled", progress=0.0)]
+    assert events == [MotionFinished(motion=7, progress=0.0, report=MotionReport(end=MotionEnd.CANCELED))]
 
 
 def test_commands_for_another_motion_are_ignored() -> None:
@@ -111,7 +115,7 @@ def test_commands_for_another_motion_are_ignored() -> None:
     motion.cancel(6)
     motion.hold(8)
     events, _ = run(motion, lambda desired: desired.copy())
-    assert events == [MotionFinished(motion=7, end="reached", progress=1.0)]
+    assert events == [MotionFinished(motion=7, progress=1.0, report=MotionReport(end=MotionEnd.REACHED))]
 
 
 def test_a_hold_is_not_confirmed_while_the_arm_still_moves() -> None:

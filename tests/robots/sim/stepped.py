@@ -7,8 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.messages import Vector3
+from engine.skills.arm_control import ControlSettings
+from engine.skills.simulated_world import PushBody
 from robots.control.motion_event import AnyMotionEvent, MotionFinished
-from robots.port import ArmSample, ArmSettings, Array, Tolerance
+from robots.port import ArmSample, Array, MotionReport, Tolerance
 from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory
 from robots.sim.commands.world_commands import AnyCommand, PushSimBody
 from robots.sim.loop.simulation import Simulation
@@ -22,14 +24,14 @@ TOOL = "left/panda_hand_tcp"
 class SteppedArm:
     """The left arm of a world of its own; a built cell may be shared, it is only read."""
 
-    def __init__(self, cell: CellModel, settings: ArmSettings | None = None) -> None:
+    def __init__(self, cell: CellModel, settings: ControlSettings | None = None) -> None:
         self.simulation = Simulation(cell)
         self.control = self.simulation.control("left")
         self.events: list[AnyMotionEvent] = []
         if settings is not None:
             self.configure(settings)
 
-    def configure(self, settings: ArmSettings) -> None:
+    def configure(self, settings: ControlSettings) -> None:
         """Put these settings into force."""
         self.apply(ConfigureArm(arm="left", settings=settings))
 
@@ -39,7 +41,7 @@ class SteppedArm:
 
     def push(self, force_n: Vector3, duration_s: float, *, body: str = TOOL, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Push at a body."""
-        self.apply(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+        self.apply(PushSimBody(push=PushBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m)))
 
     def follow(self, goal: Array, duration_s: float, *, motion: int = 1) -> None:
         """Start a minimum-jerk motion from the set point."""
@@ -69,12 +71,12 @@ class SteppedArm:
             if look is not None:
                 look()
 
-    def until_finished(self, motion: int = 1, *, within_s: float = 10.0) -> MotionFinished:
+    def until_finished(self, motion: int = 1, *, within_s: float = 10.0) -> MotionReport:
         """Let time pass until a motion has ended, and return its end."""
         for _ in range(round(within_s / self.simulation.step_s)):
             for event in self.events:
                 if isinstance(event, MotionFinished) and event.motion == motion:
-                    return event
+                    return event.report
             self.step()
         raise AssertionError(f"motion {motion} did not end within {within_s} s")
 

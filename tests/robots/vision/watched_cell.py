@@ -7,12 +7,13 @@ import numpy as np
 
 from engine.document.cell_perception import DepthCamera, OccupancyMap
 from engine.messages import Pose, Vector3
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import DepthImage, OccupancyGrid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
-from robots.vision.cameras.camera import CameraSpec, camera_of
+from robots.vision.cameras.camera import CameraSpec, camera_of, depths, directions
 from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, occupied_centres, voxel_box
 
@@ -63,3 +64,11 @@ def voxels(grid: OccupancyGrid | None) -> Array:
 def renamed(what: SimScene, **changes: object) -> SimScene:
     """Return a scene with some fields changed."""
     return msgspec.structs.replace(what, **changes)
+
+
+def points_seen(image: DepthImage) -> Array:
+    """Return the measured points of an image in the world, (k, 3)."""
+    depth = depths(image).astype(np.float64).ravel()
+    measured = np.isfinite(depth) & (depth > 0.0)
+    pose = RigidTransform.from_pose(image.pose)
+    return (directions(image.intrinsics)[measured] * depth[measured, None]) @ pose.rotation.T + pose.xyz

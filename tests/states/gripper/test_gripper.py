@@ -6,15 +6,16 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import GripperState
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove, GripperOpen
-from engine.state import ActionEnd, Outcome, State
+from engine.state import Outcome, State
 from states.gripper.check_held import CheckHeld
 from states.gripper.grasp import Grasp
 from states.gripper.move import Move
 from states.gripper.open import Open
 from tests.states.fake_context import FakeContext, broken_off
 
-AJAR = ActionEnd("succeeded", GraspResult(held=False, width_m=0.08, force_n=0.0), None)
+AJAR = GoalEnd(GoalStatus.SUCCEEDED, GraspResult(held=False, width_m=0.08, force_n=0.0), None)
 JAM = Cause(message="the fingers jammed", where="left/gripper")
 
 
@@ -55,14 +56,14 @@ async def test_opening_and_moving_send_their_goal(state: State, goal: GripperOpe
 )
 async def test_a_goal_that_breaks_off_fails_with_the_devices_reason(state: State, skill: str, message: str) -> None:
     """The chain names arm, part and skill above the device's own words."""
-    outcome = await state.run(FakeContext({f"left/gripper/{skill}": broken_off("aborted", JAM)}))
+    outcome = await state.run(FakeContext({f"left/gripper/{skill}": broken_off(GoalStatus.ABORTED, JAM)}))
     assert outcome.name == "failed"
     assert outcome.cause == Cause(message=message, where="root/step", kind=state.state_name, because=JAM)
 
 
 async def test_a_grasp_that_holds_tells_the_opening() -> None:
     """Held, with the measured width, and the goal as the parameters say."""
-    end = ActionEnd("succeeded", GraspResult(held=True, width_m=0.0301, force_n=19.5), None)
+    end = GoalEnd(GoalStatus.SUCCEEDED, GraspResult(held=True, width_m=0.0301, force_n=19.5), None)
     ctx = FakeContext({"left/gripper/gripper_grasp": end})
     state = Grasp(gripper="left", width_m=0.03, force_n=25.0, speed_m_s=0.04, tolerance_outer_m=0.02)
     assert await state.run(ctx) == Outcome("held", {"held": True, "width_m": 0.0301})
@@ -73,7 +74,7 @@ async def test_a_grasp_that_holds_tells_the_opening() -> None:
 async def test_a_missed_part_is_named_with_what_the_fingers_measured() -> None:
     """Nothing between the fingers is an outcome with a chain of reasons."""
     result = GraspResult(held=False, width_m=0.0012, force_n=20.0, reason="the pads touch one another")
-    ctx = FakeContext({"left/gripper/gripper_grasp": ActionEnd("succeeded", result, None)})
+    ctx = FakeContext({"left/gripper/gripper_grasp": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     outcome = await Grasp(gripper="left", width_m=0.03, part="hca_north").run(ctx)
     assert (outcome.name, outcome.outputs) == ("missed", {"held": False, "width_m": 0.0012})
     assert outcome.cause is not None

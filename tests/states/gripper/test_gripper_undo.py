@@ -9,8 +9,9 @@ import pytest
 
 from engine.errors import StateError
 from engine.skill import Action
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove, GripperOpen, GripperSetting
-from engine.state import ActionEnd, ActivationRecord, RequestRecord, State
+from engine.state import ActivationRecord, RequestRecord, State
 from states.gripper.grasp import Grasp
 from states.gripper.move import Move
 from states.gripper.open import Open
@@ -18,8 +19,8 @@ from tests.states.fake_context import FakeContext
 
 WIDE = GripperSetting(width_m=0.08, held=False)
 HOLDING = GripperSetting(width_m=0.03, held=True, force_n=25.0)
-MOVED = ActionEnd("succeeded", GraspResult(held=False, width_m=0.08, force_n=0.0), None)
-HELD = ActionEnd("succeeded", GraspResult(held=True, width_m=0.03, force_n=25.0), None)
+MOVED = GoalEnd(GoalStatus.SUCCEEDED, GraspResult(held=False, width_m=0.08, force_n=0.0), None)
+HELD = GoalEnd(GoalStatus.SUCCEEDED, GraspResult(held=True, width_m=0.03, force_n=25.0), None)
 GRASP = Grasp(gripper="left", width_m=0.03, speed_m_s=0.02)
 
 
@@ -52,7 +53,9 @@ async def test_the_fingers_go_back_to_how_they_were(state: State, goal: type[Act
 
 
 async def test_what_cannot_be_grasped_again_is_an_error() -> None:
-    missed = ActionEnd("succeeded", GraspResult(held=False, width_m=0.0, force_n=0.0, reason="nothing there"), None)
+    missed = GoalEnd(
+        GoalStatus.SUCCEEDED, GraspResult(held=False, width_m=0.0, force_n=0.0, reason="nothing there"), None
+    )
     ctx = FakeContext({"left/gripper/gripper_grasp": missed})
     with pytest.raises(StateError, match="did not grasp again the part that it held: nothing there"):
         await Open(gripper="left").undo(ctx, done(GripperOpen, HOLDING))

@@ -6,8 +6,9 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import HandState
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.hand import HandClose, HandOpen, HandResult
-from engine.state import ActionEnd, Outcome, State
+from engine.state import Outcome, State
 from states.hand.check_held import CheckHeld
 from states.hand.close import Close
 from states.hand.open import Open
@@ -18,7 +19,7 @@ JAM = Cause(message="the motor stalled", where="left/hand")
 
 async def test_closing_asks_for_percent_and_time_and_tells_how_far_it_came() -> None:
     result = HandResult(held=True, closed_percent=70.0, force_n=50.0, part="hca_north")
-    ctx = FakeContext({"left/hand/hand_close": ActionEnd("succeeded", result, None)})
+    ctx = FakeContext({"left/hand/hand_close": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     outcome = await Close(hand="left", percent=70.0, time_s=1.5).run(ctx)
     assert outcome == Outcome("held", {"held": True, "closed_percent": 70.0})
     assert ctx.sent == [("left/hand/hand_close", HandClose(percent=70.0, time_s=1.5))]
@@ -26,7 +27,7 @@ async def test_closing_asks_for_percent_and_time_and_tells_how_far_it_came() -> 
 
 async def test_a_missed_part_is_named_with_the_reason_of_the_hand() -> None:
     result = HandResult(held=False, closed_percent=70.0, force_n=0.1, reason="the hand touches nothing")
-    ctx = FakeContext({"left/hand/hand_close": ActionEnd("succeeded", result, None)})
+    ctx = FakeContext({"left/hand/hand_close": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     outcome = await Close(hand="left", percent=70.0, part="hca_north").run(ctx)
     assert (outcome.name, outcome.outputs) == ("missed", {"held": False, "closed_percent": 70.0})
     assert outcome.cause is not None
@@ -38,7 +39,7 @@ async def test_a_missed_part_is_named_with_the_reason_of_the_hand() -> None:
 
 async def test_opening_sends_its_goal() -> None:
     result = HandResult(held=False, closed_percent=0.0, force_n=0.0, reason="the hand is open")
-    ctx = FakeContext({"left/hand/hand_open": ActionEnd("succeeded", result, None)})
+    ctx = FakeContext({"left/hand/hand_open": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     assert await Open(hand="left", time_s=0.5).run(ctx) == Outcome("opened")
     assert ctx.sent == [("left/hand/hand_open", HandOpen(time_s=0.5))]
 
@@ -59,7 +60,7 @@ async def test_opening_sends_its_goal() -> None:
     ],
 )
 async def test_a_goal_that_breaks_off_fails_with_the_devices_reason(state: State, skill: str, message: str) -> None:
-    outcome = await state.run(FakeContext({f"left/hand/{skill}": broken_off("aborted", JAM)}))
+    outcome = await state.run(FakeContext({f"left/hand/{skill}": broken_off(GoalStatus.ABORTED, JAM)}))
     assert outcome.name == "failed"
     assert outcome.cause == Cause(message=message, where="root/step", kind=state.state_name, because=JAM)
 

@@ -6,8 +6,9 @@ import pytest
 
 from engine.event import Cause
 from engine.messages import MagnetState
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.magnet import MagnetResult, MagnetSwitch
-from engine.state import ActionEnd, Outcome, State
+from engine.state import Outcome, State
 from states.magnet.check_held import CheckHeld
 from states.magnet.off import Off
 from states.magnet.on import On
@@ -19,7 +20,7 @@ FAULT = Cause(message="no answer from the output", where="arm/magnet")
 
 def ended(result: MagnetResult) -> FakeContext:
     """A magnet that ends so."""
-    return FakeContext({SWITCH: ActionEnd("succeeded", result, None)})
+    return FakeContext({SWITCH: GoalEnd(GoalStatus.SUCCEEDED, result, None)})
 
 
 async def test_switching_on_confirms_the_plate() -> None:
@@ -63,7 +64,7 @@ async def test_a_magnet_that_holds_on_though_switched_off_has_not_released() -> 
     ],
 )
 async def test_a_goal_that_breaks_off_fails_with_the_devices_reason(state: State, message: str) -> None:
-    outcome = await state.run(FakeContext({SWITCH: broken_off("aborted", FAULT)}))
+    outcome = await state.run(FakeContext({SWITCH: broken_off(GoalStatus.ABORTED, FAULT)}))
     assert outcome.name == "failed"
     assert outcome.cause == Cause(message=message, where="root/step", kind=state.state_name, because=FAULT)
 

@@ -8,6 +8,7 @@ import msgspec
 
 from engine.event import Cause
 from engine.messages import GripperState, HandState, MagnetState, PartPoses, Pose
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult
 from engine.skills.hand import HandResult
 from engine.skills.magnet import MagnetResult
@@ -20,7 +21,6 @@ from engine.skills.motion import (
 )
 from engine.skills.planning import FreeMotionResult
 from engine.skills.planning_scene import CollisionReport, PlanningSceneState, TouchingPair
-from engine.state import ActionEnd
 from tests.states.fake_context import FakeContext
 
 DOWN = (1.0, 0.0, 0.0, 0.0)
@@ -52,11 +52,11 @@ def touching(first: str, second: str, depth_m: float) -> CollisionReport:
     )
 
 
-def done(result: object) -> ActionEnd[object]:
-    return ActionEnd("succeeded", result, None)
+def done(result: object) -> GoalEnd[object]:
+    return GoalEnd(GoalStatus.SUCCEEDED, result, None)
 
 
-def held(found: bool, reason: str = "") -> ActionEnd[object]:
+def held(found: bool, reason: str = "") -> GoalEnd[object]:
     return done(GraspResult(held=found, width_m=0.05, force_n=20.0, reason=reason))
 
 

@@ -10,12 +10,13 @@ import pytest
 from engine.errors import SkillFailed
 from engine.messages import GripperState, PartPoses, Pose
 from engine.skills.arm_control import SetLoad
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GripperGrasp
 from engine.skills.magnet import MagnetResult
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, InverseKinematicsSolutions
 from engine.skills.planning import MotionTarget, MoveFree
 from engine.skills.planning_scene import AttachPart
-from engine.state import ActionEnd, Outcome
+from engine.state import Outcome
 from states.manipulation.pick_part import GraspTarget, PickPart
 from tests.states.fake_context import FakeContext, broken_off
 from tests.states.manipulation.picking_cell import (
@@ -89,7 +90,7 @@ async def test_a_grasp_given_in_the_world_asks_for_no_part() -> None:
 async def test_the_nearest_of_equally_good_turns_is_tried_first_and_another_where_there_is_no_way() -> None:
     """The tool stands as the part does, turned by a half: of four turns that one is the nearest."""
     half = (0.0, 1.0, 0.0, 0.0)
-    ends = [broken_off("rejected", LIMIT), done(WENT)]
+    ends = [broken_off(GoalStatus.REJECTED, LIMIT), done(WENT)]
     ctx = cell(move_free=ends, forward_kinematics=Pose(xyz=HERE.xyz, xyzw=half))
     state = PickPart(robot="arm", part="block", width_m=0.05, turns=4)
     assert (await state.run(ctx)).name == "picked"
@@ -111,7 +112,7 @@ async def test_of_several_configurations_one_is_taken_in_which_the_straight_ways
 
 async def test_a_configuration_from_which_the_line_is_refused_is_followed_by_the_next_one() -> None:
     two = InverseKinematicsSolutions(solutions=((0.1,), (0.3,)), complete=True, how="by hand")
-    ends = [broken_off("rejected", LIMIT), done(WENT), done(WENT)]
+    ends = [broken_off(GoalStatus.REJECTED, LIMIT), done(WENT), done(WENT)]
     assert await PICK.run(cell(all_inverse_kinematics=two, cart_lin_task=ends)) == Outcome("picked")
 
 
@@ -137,15 +138,19 @@ async def test_the_arm_gets_its_load_where_the_behavior_knows_it() -> None:
 @pytest.mark.parametrize(
     ("changed", "outcome", "reason"),
     [
-        ({"move_free": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
+        ({"move_free": broken_off(GoalStatus.REJECTED, LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"all_inverse_kinematics": SkillFailed("it is 0.3 m too far")}, "unreachable", "it is 0.3 m too far"),
         ({"inverse_kinematics": SkillFailed("over it it is too far")}, "unreachable", "over it it is too far"),
         ({"inverse_kinematics": near(2.9)}, "unreachable", "the straight line would turn a joint by 2.60 rad"),
-        ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
-        ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
+        ({"cart_lin_task": broken_off(GoalStatus.REJECTED, LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
+        ({"move_free": GoalEnd(GoalStatus.ABORTED, STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
         ({"check_collision": AT_CRATE}, "blocked", "at the target, arm/finger with crate would touch"),
-        ({"gripper_open": broken_off("aborted", LIMIT)}, "failed", "the gripper of arm did not open"),
-        ({"cart_lin_task": broken_off("aborted", LIMIT)}, "failed", "arm did not move on a straight line to pose"),
+        ({"gripper_open": broken_off(GoalStatus.ABORTED, LIMIT)}, "failed", "the gripper of arm did not open"),
+        (
+            {"cart_lin_task": broken_off(GoalStatus.ABORTED, LIMIT)},
+            "failed",
+            "arm did not move on a straight line to pose",
+        ),
         ({"attach_part": SkillFailed("no such part")}, "failed", "part block was not attached to arm"),
     ],
     ids=str,
@@ -171,7 +176,7 @@ async def test_a_missed_part_leaves_the_tool_open_and_the_arm_in_front() -> None
 
 
 async def test_a_part_that_cannot_be_lifted_is_let_go_of_where_it_stands() -> None:
-    ctx = cell(cart_lin_task=[done(WENT), broken_off("rejected", IN_THE_WAY), done(WENT)])
+    ctx = cell(cart_lin_task=[done(WENT), broken_off(GoalStatus.REJECTED, IN_THE_WAY), done(WENT)])
     result = await PICK.run(ctx)
     assert (result.name, "block would touch crate" in str(result.outputs["reason"])) == ("blocked", True)
     assert asked(ctx)[-3:] == ["arm/gripper/gripper_open", "cell/detach_part", "arm/cart_lin_task"]

@@ -8,7 +8,8 @@ import pytest
 from engine.errors import SkillFailed
 from engine.messages import GripperState, Pose
 from engine.skills.arm_control import SetLoad
-from engine.state import ActionEnd, Outcome
+from engine.skills.goal_end import GoalEnd, GoalStatus
+from engine.state import Outcome
 from states.manipulation.place_part import PlacePart
 from states.motion.motion_target import ShownPoseTarget
 from tests.states.fake_context import broken_off
@@ -63,9 +64,9 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
             "missed",
             "arm lost part block",
         ),
-        ({"move_free": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
-        ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
-        ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
+        ({"move_free": broken_off(GoalStatus.REJECTED, LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
+        ({"cart_lin_task": broken_off(GoalStatus.REJECTED, LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
+        ({"move_free": GoalEnd(GoalStatus.ABORTED, STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
         ({"check_collision": AT_CRATE}, "blocked", "at the target, arm/finger with crate would touch"),
         (
             {"check_collision": touching("crate", "block", 0.015)},
@@ -73,8 +74,8 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
             "crate with block (15 mm deep) would touch",
         ),
         ({"check_collision": touching("arm/elbow", "block", 0.001)}, "blocked", "arm/elbow with block (1 mm deep)"),
-        ({"cart_lin_task": broken_off("rejected", IN_THE_WAY)}, "blocked", "block would touch crate"),
-        ({"gripper_open": broken_off("aborted", LIMIT)}, "failed", "did not open to release part block"),
+        ({"cart_lin_task": broken_off(GoalStatus.REJECTED, IN_THE_WAY)}, "blocked", "block would touch crate"),
+        ({"gripper_open": broken_off(GoalStatus.ABORTED, LIMIT)}, "failed", "did not open to release part block"),
         ({"detach_part": SkillFailed("the cell is closed")}, "failed", "part block was not detached"),
     ],
     ids=str,

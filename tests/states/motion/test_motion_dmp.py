@@ -23,8 +23,9 @@ from engine.skills.dmp import (
     TrimInterval,
 )
 from engine.skills.entries import EntryRecord, ReadEntry, WriteEntry
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import CartMotionResult, CartTrapVel, JointMotionResult, JointTrapVel
-from engine.state import ActionEnd, Outcome
+from engine.state import Outcome
 from states.motion.follow_cart_dmp import FollowCartDmp
 from states.motion.follow_joint_dmp import FollowJointDmp
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
@@ -34,8 +35,8 @@ from states.motion.primitive import CartDmpEntry, JointDmpEntry
 from tests.states.fake_context import FakeContext, broken_off
 
 HERE = Pose(xyz=(0.1, 0.2, 0.3))
-DONE_JOINTS = ActionEnd("succeeded", JointMotionResult(joints=(0.0,), duration_s=1.0), None)
-DONE_CART = ActionEnd("succeeded", CartMotionResult(pose=HERE, duration_s=1.0), None)
+DONE_JOINTS = GoalEnd(GoalStatus.SUCCEEDED, JointMotionResult(joints=(0.0,), duration_s=1.0), None)
+DONE_CART = GoalEnd(GoalStatus.SUCCEEDED, CartMotionResult(pose=HERE, duration_s=1.0), None)
 JOINT = JointDmp(
     N=1, a_z=48.0, a_x=2.0, tau=2.0, goal=(1.0, 0.0), y0=(0.25, 0.5), dy0=(0.0, 0.0),
     c=(0.5,), sigma=(1.0,), w=((0.0,), (0.0,)), tasktrans=(-1.0, 0.0, 0.0, 1.0),
@@ -89,7 +90,7 @@ async def test_the_arm_first_goes_to_the_start_when_it_is_asked_to() -> None:
 async def test_a_start_that_is_not_reached_fails_with_that_reason() -> None:
     """The primitive is not begun."""
     ctx = FakeContext(
-        {"store/read_entry": entry("dmp", "pour", JOINT), "left/joint_trap_vel": broken_off("aborted", BELOW)}
+        {"store/read_entry": entry("dmp", "pour", JOINT), "left/joint_trap_vel": broken_off(GoalStatus.ABORTED, BELOW)}
     )
     outcome = await FollowJointDmp(robot="left", dmp=JointDmpEntry(entry="pour"), approach_speed=0.2).run(ctx)
     message = "left did not reach the start of dmp entry pour: joint_trap_vel was aborted"
@@ -100,7 +101,7 @@ async def test_a_start_that_is_not_reached_fails_with_that_reason() -> None:
 async def test_a_refused_primitive_carries_the_planners_reason() -> None:
     """As every motion does."""
     ctx = FakeContext(
-        {"store/read_entry": entry("dmp", "pour", JOINT), "left/joint_dmp": broken_off("rejected", BELOW)}
+        {"store/read_entry": entry("dmp", "pour", JOINT), "left/joint_dmp": broken_off(GoalStatus.REJECTED, BELOW)}
     )
     outcome = await FollowJointDmp(robot="left", dmp=JointDmpEntry(entry="pour")).run(ctx)
     message = "left did not follow dmp entry pour to its end: joint_dmp was rejected"
@@ -140,7 +141,7 @@ async def test_a_cartesian_primitive_is_followed_to_another_goal_from_its_start(
 async def test_a_cartesian_primitive_that_fails_says_where(refused: str) -> None:
     """On the way to its start, or on its own way."""
     answers: dict[str, object] = {"left/cart_trap_vel": DONE_CART, "left/cart_dmp": DONE_CART}
-    answers[f"left/{refused}"] = broken_off("aborted", BELOW)
+    answers[f"left/{refused}"] = broken_off(GoalStatus.ABORTED, BELOW)
     ctx = FakeContext({"store/read_entry": entry("cart_dmp", "wipe", CART), **answers})
     outcome = await FollowCartDmp(robot="left", dmp=CartDmpEntry(entry="wipe"), approach_speed=0.3).run(ctx)
     words = {"cart_trap_vel": "did not reach the start of", "cart_dmp": "did not follow"}[refused]
@@ -174,7 +175,7 @@ async def test_pressing_uses_what_was_learned_before_and_keeps_what_it_learns(be
     now = msgspec.structs.replace(OFFSETS, w3o=(-0.003,))
     result = CartAdmitResult(offsets=now, pose=HERE, force_error_rms_n=0.5, force_error_max_n=2.0, duration_s=3.0)
     answers: dict[str, object] = {
-        "left/cart_admit_dmp": ActionEnd("succeeded", result, None),
+        "left/cart_admit_dmp": GoalEnd(GoalStatus.SUCCEEDED, result, None),
         "store/write_entry": entry("cart_offsets", "table", now),
     }
     ctx = Store(answers, learned=before)
@@ -189,7 +190,7 @@ async def test_pressing_uses_what_was_learned_before_and_keeps_what_it_learns(be
 
 async def test_pressing_that_fails_learns_nothing() -> None:
     """And says why."""
-    ctx = Store({"left/cart_admit_dmp": broken_off("aborted", BELOW)}, learned=None)
+    ctx = Store({"left/cart_admit_dmp": broken_off(GoalStatus.ABORTED, BELOW)}, learned=None)
     state = PressAlongDmp(robot="left", dmp=CartDmpEntry(entry="wipe"), force_n=(0.0, 0.0, 10.0), learned="table")
     outcome = await state.run(ctx)
     message = "left did not press along cart_dmp entry wipe to its end: cart_admit_dmp was aborted"

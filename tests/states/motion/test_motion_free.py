@@ -9,6 +9,7 @@ from engine.event import Cause
 from engine.messages import Pose
 from engine.skills import planning
 from engine.skills.entries import EntryRecord
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.planning import (
     Adaptation,
     FreeMotionResult,
@@ -17,7 +18,7 @@ from engine.skills.planning import (
     PlannedMotion,
     PlanOptions,
 )
-from engine.state import ActionEnd, Outcome, State
+from engine.state import Outcome, State
 from states.motion.execute_plan import ExecutePlan
 from states.motion.motion_target import EntryTarget, PoseTarget
 from states.motion.move_free import MoveFree
@@ -41,7 +42,7 @@ DEAD = Cause(message="the planner has died", where="arm", kind="RobotError")
 
 
 async def test_moving_free_asks_for_what_the_behavior_says() -> None:
-    ctx = FakeContext({"arm/move_free": ActionEnd("succeeded", WENT, None)})
+    ctx = FakeContext({"arm/move_free": GoalEnd(GoalStatus.SUCCEEDED, WENT, None)})
     upright = KeepOrientation(tolerance_rad=0.2)
     state = MoveFree(
         robot="arm",
@@ -70,7 +71,7 @@ async def test_entries_are_read_when_the_state_runs(state: type[MoveFree | PlanM
         EntryRecord(kind="joints", name="home", value={"joints": [0.0, 1.0], "names": []}, revision=1),
     ]
     address = "arm/move_free" if state is MoveFree else "arm/plan_motion"
-    ctx = FakeContext({"store/read_entry": records, address: broken_off("canceled", None)})
+    ctx = FakeContext({"store/read_entry": records, address: broken_off(GoalStatus.CANCELED, None)})
     over = state(robot="arm", pose=PoseTarget(entry="pick"), offset_m=(0.0, 0.0, 0.5), match="axis")
     await over.run(ctx)
     await state(robot="arm", joints=EntryTarget(entry="home")).run(ctx)
@@ -84,15 +85,15 @@ async def test_entries_are_read_when_the_state_runs(state: type[MoveFree | PlanM
 @pytest.mark.parametrize(
     ("end", "outcome", "reason"),
     [
-        (broken_off("rejected", TOUCHES), "no_way", "at the goal arm/tool touches crate"),
-        (ActionEnd("aborted", STOOD, IN_THE_WAY), "blocked", "the way stayed blocked for 30.0 s"),
-        (ActionEnd("aborted", WENT, DEAD), "failed", "the planner has died"),
-        (broken_off("aborted", DEAD), "failed", "the planner has died"),
-        (broken_off("canceled", None), "failed", "the goal was cancelled by somebody other than this state"),
+        (broken_off(GoalStatus.REJECTED, TOUCHES), "no_way", "at the goal arm/tool touches crate"),
+        (GoalEnd(GoalStatus.ABORTED, STOOD, IN_THE_WAY), "blocked", "the way stayed blocked for 30.0 s"),
+        (GoalEnd(GoalStatus.ABORTED, WENT, DEAD), "failed", "the planner has died"),
+        (broken_off(GoalStatus.ABORTED, DEAD), "failed", "the planner has died"),
+        (broken_off(GoalStatus.CANCELED, None), "failed", "the goal was cancelled by somebody other than this state"),
     ],
 )
 async def test_each_end_of_a_free_motion_is_an_outcome_with_its_reason(
-    end: ActionEnd[object], outcome: str, reason: str
+    end: GoalEnd[object], outcome: str, reason: str
 ) -> None:
     result = await MoveFree(robot="arm", joints=(0.5, 1.0)).run(FakeContext({"arm/move_free": end}))
     assert (result.name, result.outputs) == (outcome, {"reason": reason})
@@ -102,7 +103,7 @@ async def test_each_end_of_a_free_motion_is_an_outcome_with_its_reason(
 
 
 async def test_a_planned_way_is_what_comes_out() -> None:
-    ctx = FakeContext({"arm/plan_motion": ActionEnd("succeeded", WAY, None)})
+    ctx = FakeContext({"arm/plan_motion": GoalEnd(GoalStatus.SUCCEEDED, WAY, None)})
     assert await PlanMotion(robot="arm", joints=(0.5, 1.0), speed=0.4).run(ctx) == Outcome("planned", {"plan": WAY})
     goal = planning.PlanMotion(target=MotionTarget(joints=(0.5, 1.0)), options=PlanOptions(speed=0.4))
     assert ctx.sent == [("arm/plan_motion", goal)]
@@ -111,13 +112,13 @@ async def test_a_planned_way_is_what_comes_out() -> None:
 @pytest.mark.parametrize(
     ("end", "outcome"),
     [
-        (broken_off("rejected", TOUCHES), "no_way"),
-        (broken_off("aborted", IN_THE_WAY), "no_way"),
-        (broken_off("aborted", DEAD), "failed"),
-        (broken_off("canceled", None), "failed"),
+        (broken_off(GoalStatus.REJECTED, TOUCHES), "no_way"),
+        (broken_off(GoalStatus.ABORTED, IN_THE_WAY), "no_way"),
+        (broken_off(GoalStatus.ABORTED, DEAD), "failed"),
+        (broken_off(GoalStatus.CANCELED, None), "failed"),
     ],
 )
-async def test_a_planner_that_finds_nothing_is_no_planner_that_is_gone(end: ActionEnd[object], outcome: str) -> None:
+async def test_a_planner_that_finds_nothing_is_no_planner_that_is_gone(end: GoalEnd[object], outcome: str) -> None:
     result = await PlanMotion(robot="arm", pose=PoseTarget(entry="", xyz=(1, 0, 0))).run(
         FakeContext({"arm/plan_motion": end})
     )
@@ -130,7 +131,7 @@ async def test_a_planner_that_finds_nothing_is_no_planner_that_is_gone(end: Acti
 
 
 async def test_a_plan_is_executed_as_it_is_and_with_its_speed() -> None:
-    ctx = FakeContext({"arm/execute_plan": ActionEnd("succeeded", WENT, None)})
+    ctx = FakeContext({"arm/execute_plan": GoalEnd(GoalStatus.SUCCEEDED, WENT, None)})
     state = ExecutePlan(robot="arm", patience_s=5.0, watch=False, margin_m=0.02)
     assert await state.run(ctx, plan=WAY) == Outcome("reached")
     goal = planning.ExecutePlan(
@@ -144,12 +145,12 @@ async def test_a_plan_is_executed_as_it_is_and_with_its_speed() -> None:
 @pytest.mark.parametrize(
     ("end", "outcome"),
     [
-        (ActionEnd("aborted", STOOD, IN_THE_WAY), "blocked"),
-        (broken_off("rejected", TOUCHES), "failed"),
-        (broken_off("aborted", DEAD), "failed"),
+        (GoalEnd(GoalStatus.ABORTED, STOOD, IN_THE_WAY), "blocked"),
+        (broken_off(GoalStatus.REJECTED, TOUCHES), "failed"),
+        (broken_off(GoalStatus.ABORTED, DEAD), "failed"),
     ],
 )
-async def test_a_plan_that_is_not_gone_to_its_end_says_why(end: ActionEnd[object], outcome: str) -> None:
+async def test_a_plan_that_is_not_gone_to_its_end_says_why(end: GoalEnd[object], outcome: str) -> None:
     result = await ExecutePlan(robot="arm").run(FakeContext({"arm/execute_plan": end}), plan=WAY)
     assert (result.name, list(result.outputs)) == (outcome, ["reason"])
 

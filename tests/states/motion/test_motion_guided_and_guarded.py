@@ -8,8 +8,9 @@ from engine.event import Cause
 from engine.messages import Pose, Wrench
 from engine.skills import contact
 from engine.skills.contact import ContactResult
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.guiding import GuideArm, GuideResult
-from engine.state import ActionEnd, Outcome
+from engine.state import Outcome
 from states.motion.guide import Guide
 from states.motion.move_until_contact import MoveUntilContact
 from tests.states.fake_context import FakeContext, broken_off
@@ -19,11 +20,11 @@ LOST = Cause(message="the world is gone", where="left", kind="RobotError")
 SEARCH = MoveUntilContact(robot="left", direction=(0.0, 0.0, -1.0), distance_m=0.05, force_n=8.0)
 
 
-def ended(*, met: bool, force_n: float) -> ActionEnd[ContactResult]:
+def ended(*, met: bool, force_n: float) -> GoalEnd[ContactResult]:
     """The end of a guarded move after 3 cm."""
     wrench = Wrench(force_n=(0.0, 0.0, force_n), torque_nm=(0.0, 0.0, 0.0), frame="world")
     result = ContactResult(contact=met, pose=HERE, travelled_m=0.03, force_n=force_n, wrench=wrench, duration_s=1.0)
-    return ActionEnd("succeeded", result, None)
+    return GoalEnd(GoalStatus.SUCCEEDED, result, None)
 
 
 async def test_a_contact_is_an_outcome_with_the_way_and_the_force() -> None:
@@ -45,7 +46,7 @@ async def test_no_contact_is_another_and_says_how_little_was_felt() -> None:
 
 async def test_a_guarded_move_that_fails_gives_the_reason_and_no_outputs() -> None:
     """Nothing was measured."""
-    outcome = await SEARCH.run(FakeContext({"left/move_until_contact": broken_off("aborted", LOST)}))
+    outcome = await SEARCH.run(FakeContext({"left/move_until_contact": broken_off(GoalStatus.ABORTED, LOST)}))
     assert (outcome.name, outcome.outputs) == ("failed", {})
     assert outcome.cause is not None
     assert outcome.cause.chain()[-1] == LOST
@@ -54,7 +55,7 @@ async def test_a_guarded_move_that_fails_gives_the_reason_and_no_outputs() -> No
 async def test_guiding_asks_for_a_record_and_says_how_long_it_became() -> None:
     """In samples."""
     result = GuideResult(joints=(0.0,), pose=HERE, samples=120, duration_s=1.2, entry="demo")
-    ctx = FakeContext({"left/guide_arm": ActionEnd("succeeded", result, None)})
+    ctx = FakeContext({"left/guide_arm": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     state = Guide(robot="left", record="demo", duration_s=5.0, damping=0.3)
     assert await state.run(ctx) == Outcome("finished", {"samples": 120})
     assert ctx.sent == [("left/guide_arm", GuideArm(record="demo", duration_s=5.0, damping=0.3))]
@@ -63,7 +64,7 @@ async def test_guiding_asks_for_a_record_and_says_how_long_it_became() -> None:
 async def test_guiding_that_is_rejected_gives_the_reason() -> None:
     """Such as direct control that is on."""
     why = Cause(message="the arm is in direct joint control", where="left/guide_arm", kind="GoalRejected")
-    outcome = await Guide(robot="left").run(FakeContext({"left/guide_arm": broken_off("rejected", why)}))
+    outcome = await Guide(robot="left").run(FakeContext({"left/guide_arm": broken_off(GoalStatus.REJECTED, why)}))
     assert (outcome.name, outcome.outputs) == ("failed", {})
     assert outcome.cause is not None
     assert [link.message for link in outcome.cause.chain()] == [

@@ -11,6 +11,7 @@ from engine.errors import EntryNotFound, StateError
 from engine.event import Cause
 from engine.messages import Pose
 from engine.skills.entries import EntryRecord, ReadEntry
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,
@@ -19,7 +20,7 @@ from engine.skills.motion import (
     JointMotionResult,
     JointTrapVel,
 )
-from engine.state import ActionEnd, Outcome
+from engine.state import Outcome
 from states.motion.line_duration import SHORTEST_S, line_duration_s
 from states.motion.motion_target import EntryTarget, PoseTarget
 from states.motion.move_joints import MoveJoints
@@ -28,8 +29,8 @@ from states.motion.move_pose import MovePose
 from tests.states.fake_context import FakeContext, broken_off
 
 HERE = Pose(xyz=(0.1, 0.2, 0.3))
-DONE_JOINTS = ActionEnd("succeeded", JointMotionResult(joints=(0.0,), duration_s=1.0), None)
-DONE_CART = ActionEnd("succeeded", CartMotionResult(pose=HERE, duration_s=1.0), None)
+DONE_JOINTS = GoalEnd(GoalStatus.SUCCEEDED, JointMotionResult(joints=(0.0,), duration_s=1.0), None)
+DONE_CART = GoalEnd(GoalStatus.SUCCEEDED, CartMotionResult(pose=HERE, duration_s=1.0), None)
 POSE_ENTRY = EntryRecord(kind="pose", name="pick", value={"xyz": [0.1, 0.2, 0.3]}, revision=1)
 LIMIT = Cause(message="joint 4 would exceed its limit", where="left/cart_lin_task", kind="GoalRejected")
 
@@ -66,7 +67,7 @@ async def test_a_failed_joint_motion_names_robot_target_skill_and_reason() -> No
     """The chain goes from the behavior down to the device."""
     below = Cause(message="joint 2 was held back by hca_north", where="left")
     entry = EntryRecord(kind="joints", name="home", value={"joints": [0.0]}, revision=1)
-    ctx = FakeContext({"store/read_entry": entry, "left/joint_trap_vel": broken_off("aborted", below)})
+    ctx = FakeContext({"store/read_entry": entry, "left/joint_trap_vel": broken_off(GoalStatus.ABORTED, below)})
     assert await MoveJoints(robot="left", target=EntryTarget(entry="home")).run(ctx) == Outcome(
         "failed",
         cause=Cause(
@@ -80,7 +81,7 @@ async def test_a_failed_joint_motion_names_robot_target_skill_and_reason() -> No
 
 async def test_a_goal_cancelled_from_outside_fails_with_that_reason() -> None:
     """Even without a cause from the device the chain says why."""
-    ctx = FakeContext({"left/joint_trap_vel": broken_off("canceled", None)})
+    ctx = FakeContext({"left/joint_trap_vel": broken_off(GoalStatus.CANCELED, None)})
     outcome = await MoveJoints(robot="left", target=(0.0,)).run(ctx)
     assert outcome.cause is not None
     assert [link.message for link in outcome.cause.chain()] == [
@@ -117,7 +118,10 @@ async def test_what_of_the_pose_counts_is_sent_to_the_arm() -> None:
 async def test_a_failed_pose_motion_names_the_entry_and_its_offset() -> None:
     """The message tells which of several motions to one entry it was."""
     ctx = FakeContext(
-        {"store/read_entry": POSE_ENTRY, "left/cart_trap_vel": broken_off("rejected", Cause(message="too far"))}
+        {
+            "store/read_entry": POSE_ENTRY,
+            "left/cart_trap_vel": broken_off(GoalStatus.REJECTED, Cause(message="too far")),
+        }
     )
     outcome = await MovePose(robot="left", target=PoseTarget(entry="pick"), offset_m=(0, 0, 0.1)).run(ctx)
     assert outcome.name == "failed"
@@ -164,7 +168,7 @@ async def test_a_line_without_target_goes_from_where_the_tool_is() -> None:
 
 async def test_a_refused_line_carries_the_planners_reason() -> None:
     """The reason for refusing beforehand reaches the behavior."""
-    ctx = FakeContext({"left/cart_lin_task": broken_off("rejected", LIMIT)})
+    ctx = FakeContext({"left/cart_lin_task": broken_off(GoalStatus.REJECTED, LIMIT)})
     outcome = await MoveLinear(robot="left", target=PoseTarget(xyz=(9, 0, 0)), duration_s=1.0).run(ctx)
     message = "left did not reach pose (9.000, 0.000, 0.000) m on a straight line: cart_lin_task was rejected"
     cause = Cause(message=message, where="root/step", kind="motion.MoveLinear", because=LIMIT)

@@ -15,6 +15,7 @@ from engine.messages.primitives import JointDmp
 from engine.skills import planning
 from engine.skills.dmp import JointDMP, JointFit, LearnedJointDmp, LearnJointDmp, TrimInterval
 from engine.skills.entries import EntryRecord
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,
@@ -25,7 +26,7 @@ from engine.skills.motion import (
     JointTrapVel,
 )
 from engine.skills.planning import FreeMotionResult, MotionTarget
-from engine.state import ActionEnd, Outcome
+from engine.state import Outcome
 from states.motion.follow_recording import FollowRecording
 from states.motion.motion_target import PoseTarget
 from states.motion.move_free import MoveFree
@@ -36,11 +37,11 @@ from tests.states.fake_context import FakeContext, broken_off
 HALF = math.sqrt(0.5)
 SIDEWAYS = Pose(xyz=(0.4, 0.0, 0.3), xyzw=(0.0, HALF, 0.0, HALF))
 """The z axis of the tool is the x axis of the world."""
-WENT = ActionEnd(
-    "succeeded", FreeMotionResult(joints=(0.0,), duration_s=1, stops=0, replans=0, reused=0, waited_s=0), None
+WENT = GoalEnd(
+    GoalStatus.SUCCEEDED, FreeMotionResult(joints=(0.0,), duration_s=1, stops=0, replans=0, reused=0, waited_s=0), None
 )
-THERE = ActionEnd("succeeded", CartMotionResult(pose=SIDEWAYS, duration_s=1.0), None)
-MOVED = ActionEnd("succeeded", JointMotionResult(joints=(0.0,), duration_s=1.0), None)
+THERE = GoalEnd(GoalStatus.SUCCEEDED, CartMotionResult(pose=SIDEWAYS, duration_s=1.0), None)
+MOVED = GoalEnd(GoalStatus.SUCCEEDED, JointMotionResult(joints=(0.0,), duration_s=1.0), None)
 BELOW = Cause(message="it is too far", where="left")
 DMP = JointDmp(
     N=2, y0=(0.0, 0.5), dy0=(0.0, 0.0), goal=(1.0, 0.0), tau=2.0, a_z=48.0, a_x=2.0,
@@ -114,7 +115,7 @@ async def test_a_way_leads_to_where_a_taught_motion_begins(
 
 
 async def test_a_start_that_is_not_reached_is_named() -> None:
-    ctx = FakeContext({"store/read_entry": entry("dmp", DMP), "left/move_free": broken_off("rejected", BELOW)})
+    ctx = FakeContext({"store/read_entry": entry("dmp", DMP), "left/move_free": broken_off(GoalStatus.REJECTED, BELOW)})
     outcome = await MoveFree(robot="left", start_of=MotionStart(dmp="x")).run(ctx)
     assert outcome.cause is not None
     assert outcome.cause.message.startswith("left did not reach the start of dmp entry x")
@@ -130,7 +131,9 @@ async def test_a_straight_line_leads_to_where_the_tool_is_with_joints_and_in_fro
 
 
 async def test_a_straight_line_leads_back_along_the_tool_from_where_it_is() -> None:
-    ctx = FakeContext({"left/forward_kinematics": SIDEWAYS, "left/cart_lin_task": broken_off("aborted", BELOW)})
+    ctx = FakeContext(
+        {"left/forward_kinematics": SIDEWAYS, "left/cart_lin_task": broken_off(GoalStatus.ABORTED, BELOW)}
+    )
     outcome = await MoveLinear(robot="left", back_m=0.2, duration_s=2.0).run(ctx)
     goal = ctx.sent[-1][1]
     assert isinstance(goal, CartLinTask)
@@ -158,7 +161,10 @@ async def test_a_recording_is_learned_and_followed_when_the_state_runs() -> None
     [
         ({"left/learn_joint_dmp": SkillFailed("nothing moves in it")}, "no movement primitive was learned"),
         (
-            {"left/learn_joint_dmp": LearnedJointDmp(dmp=DMP, fit=FIT), "left/joint_dmp": broken_off("aborted", BELOW)},
+            {
+                "left/learn_joint_dmp": LearnedJointDmp(dmp=DMP, fit=FIT),
+                "left/joint_dmp": broken_off(GoalStatus.ABORTED, BELOW),
+            },
             "left did not follow trajectory entry x to its end",
         ),
     ],

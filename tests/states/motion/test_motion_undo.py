@@ -11,6 +11,7 @@ from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import Pose
 from engine.skill import Action
+from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,
@@ -19,7 +20,7 @@ from engine.skills.motion import (
     JointMotionResult,
     JointTrapVel,
 )
-from engine.state import ActionEnd, ActivationRecord, RequestRecord, State
+from engine.state import ActivationRecord, RequestRecord, State
 from states.motion.line_duration import line_duration_s
 from states.motion.motion_target import PoseTarget
 from states.motion.move_joints import MoveJoints
@@ -34,8 +35,8 @@ JOINTS = MoveJoints(robot="left", target=(0.5, 0.5), speed=0.3)
 POSE = MovePose(robot="left", target=PoseTarget(xyz=(0.0, 0.0, 0.3)), speed=0.2)
 LINE = MoveLinear(robot="left", target=PoseTarget(xyz=(0.0, 0.0, 0.3)), duration_s=2.0)
 BY_SPEED = MoveLinear(robot="left", target=PoseTarget(xyz=(0.0, 0.0, 0.3)), speed_m_s=0.1)
-DONE_JOINTS = ActionEnd("succeeded", JointMotionResult(joints=START, duration_s=1.0), None)
-DONE_LINE = ActionEnd("succeeded", CartMotionResult(pose=HERE, duration_s=1.0), None)
+DONE_JOINTS = GoalEnd(GoalStatus.SUCCEEDED, JointMotionResult(joints=START, duration_s=1.0), None)
+DONE_LINE = GoalEnd(GoalStatus.SUCCEEDED, CartMotionResult(pose=HERE, duration_s=1.0), None)
 
 
 def done(goal: type[Action[Any, Any]], result: msgspec.Struct | None, *, status: str = "succeeded") -> ActivationRecord:
@@ -100,7 +101,7 @@ def test_without_the_configuration_at_its_beginning_there_is_no_way_back(status:
 
 async def test_a_way_back_that_fails_says_why() -> None:
     ctx = FakeContext(
-        {"left/joint_trap_vel": broken_off("aborted", Cause(message="it touched the tray", where="left"))}
+        {"left/joint_trap_vel": broken_off(GoalStatus.ABORTED, Cause(message="it touched the tray", where="left"))}
     )
     with pytest.raises(StateError, match=r"left did not return to the start of its motion.*it touched the tray"):
         await JOINTS.undo(ctx, JOINTS_DONE)

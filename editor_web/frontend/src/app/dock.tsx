@@ -21,7 +21,7 @@ interface DockTab {
 }
 
 /** A tab of a module that is loaded when it is first opened. */
-export function later(name: string, load: () => Promise<ComponentType<DockProps>>): DockTab {
+function later(name: string, load: () => Promise<ComponentType<DockProps>>): DockTab {
   return { name, Body: lazyView(load) }
 }
 

@@ -95,7 +95,7 @@ const LOSSES: Record<string, string> = {
 }
 
 /** What becomes of a run whose operator is lost. */
-export function lossWords({ loss_policy: policy, loss_timeout_s: after }: ControlView): string {
+function lossWords({ loss_policy: policy, loss_timeout_s: after }: ControlView): string {
   return `${after > 0 ? `${after} s later ` : ''}${LOSSES[policy] ?? policy}`
 }
 

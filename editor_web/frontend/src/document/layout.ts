@@ -57,8 +57,8 @@ export interface Layout {
   readonly courses: readonly Course[]
 }
 
-export const LEAF_HEIGHT = 74
-export const EXIT_LINE = 22
+const LEAF_HEIGHT = 74
+const EXIT_LINE = 22
 const LEAF_MIN = 156
 const LEAF_MAX = 280
 const HEADER = 38

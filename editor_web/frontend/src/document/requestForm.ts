@@ -41,7 +41,7 @@ function followed(schema: Schema, definitions: Schema): Schema {
 }
 
 /** The simplest value of a shape, to be filled in: zeros, empty texts, first choices. */
-export function example(schema: Schema, definitions: Schema, depth = 0): unknown {
+function example(schema: Schema, definitions: Schema, depth = 0): unknown {
   const flat = followed(schema, definitions)
   if (flat['default'] !== undefined) return flat['default']
   const choices = flat['enum']

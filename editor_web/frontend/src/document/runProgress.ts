@@ -5,7 +5,7 @@ import type { GraphNode, NodeLive } from '../api/types'
 type Nodes = Dict<NodeLive>
 
 /** More cells than this cannot be told apart. */
-export const MAX_STRIP_CELLS = 80
+const MAX_STRIP_CELLS = 80
 
 /** What the strip of a behavior is made of: its states in the order of the document; only the outer ones where there are too many. */
 export function stripCells(root: GraphNode, limit = MAX_STRIP_CELLS): readonly GraphNode[] {

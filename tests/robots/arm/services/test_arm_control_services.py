@@ -27,26 +27,25 @@ from engine.skills.arm_control import (
     SpeedOverride,
 )
 from engine.skills.motion import CartTrapVel, ForwardKinematics
-from robots.port import ArmSettings
 from tests.robots.arm.served import HOME, MOVE, served
 
-SETTINGS: list[tuple[Service[ControlSettings], ArmSettings]] = [
-    (SetController(controller="cartesian_impedance"), ArmSettings(controller="cartesian_impedance")),
+SETTINGS: list[tuple[Service[ControlSettings], ControlSettings]] = [
+    (SetController(controller="cartesian_impedance"), ControlSettings(controller="cartesian_impedance")),
     (
         SetJointImpedance(stiffness_nm_rad=(400.0,) * 7, damping_ratio=0.7),
-        ArmSettings(joint_stiffness_nm_rad=(400.0,) * 7, joint_damping_ratio=0.7),
+        ControlSettings(joint_stiffness_nm_rad=(400.0,) * 7, joint_damping_ratio=0.7),
     ),
     (
         SetCartesianImpedance(stiffness=(800.0, 800.0, 300.0, 40.0, 40.0, 40.0), nullspace_stiffness_nm_rad=5.0),
-        ArmSettings(cartesian_stiffness=(800.0, 800.0, 300.0, 40.0, 40.0, 40.0), nullspace_stiffness_nm_rad=5.0),
+        ControlSettings(cartesian_stiffness=(800.0, 800.0, 300.0, 40.0, 40.0, 40.0), nullspace_stiffness_nm_rad=5.0),
     ),
-    (SetEndEffectorFrame(xyz_m=(0.0, 0.0, 0.1)), ArmSettings(tool_xyz_m=(0.0, 0.0, 0.1))),
-    (SetLoad(mass_kg=1.2, com_m=(0.0, 0.0, 0.03)), ArmSettings(load_kg=1.2, load_com_m=(0.0, 0.0, 0.03))),
+    (SetEndEffectorFrame(xyz_m=(0.0, 0.0, 0.1)), ControlSettings(tool_xyz_m=(0.0, 0.0, 0.1))),
+    (SetLoad(mass_kg=1.2, com_m=(0.0, 0.0, 0.03)), ControlSettings(load_kg=1.2, load_com_m=(0.0, 0.0, 0.03))),
     (
         SetCollisionBehavior(torque_nm=(20.0,) * 7, force_n=30.0),
-        ArmSettings(collision_torque_nm=(20.0,) * 7, collision_force_n=30.0),
+        ControlSettings(collision_torque_nm=(20.0,) * 7, collision_force_n=30.0),
     ),
-    (SetSpeedOverride(share=0.3), ArmSettings(speed_override=0.3)),
+    (SetSpeedOverride(share=0.3), ControlSettings(speed_override=0.3)),
 ]
 
 FOR_ALL: tuple[Service[Any], ...] = (ReadArm(), SetSpeedOverride(share=0.5), RecoverFromError())
@@ -55,7 +54,7 @@ FOR_ALL: tuple[Service[Any], ...] = (ReadArm(), SetSpeedOverride(share=0.5), Rec
 @pytest.mark.virtual
 @pytest.mark.parametrize(("request_", "due"), SETTINGS, ids=lambda value: type(value).__name__)
 async def test_a_service_changes_its_own_settings_and_answers_with_what_is_in_force(
-    request_: Service[ControlSettings], due: ArmSettings
+    request_: Service[ControlSettings], due: ControlSettings
 ) -> None:
     """And with nothing else."""
     async with served() as cell:
@@ -70,7 +69,7 @@ async def test_what_the_arm_cannot_have_is_refused_with_the_reason_and_changes_n
     async with served() as cell:
         with pytest.raises(SkillFailed, match="there is not one value a joint"):
             await cell.bus.call(SetJointImpedance(stiffness_nm_rad=(400.0, 400.0)), to="left")
-        assert cell.port.settings == ArmSettings()
+        assert cell.port.settings == ControlSettings()
 
 
 @pytest.mark.virtual

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine.messages import Vector6
+from engine.skills.dmp import Compliance
 from robots.control.force.admittance import AdmittanceLoop
-from robots.port import Admittance, Array
-from robots.port.settings import Vector6
+from robots.port import Array
 
 STEP_S = 0.001
 NONE = np.zeros(6)
@@ -19,7 +20,7 @@ def along_y(value: float) -> Array:
 
 
 def test_a_constant_push_ends_at_the_damper_velocity_after_the_time_of_the_mass() -> None:
-    loop = AdmittanceLoop(Admittance(active=ONLY_Y))
+    loop = AdmittanceLoop(Compliance(active=ONLY_Y))
     offsets: list[float] = []
     for _ in range(200):
         loop.press(STEP_S, measured=along_y(3.0), wanted=NONE, feed_forward=NONE)
@@ -30,14 +31,14 @@ def test_a_constant_push_ends_at_the_damper_velocity_after_the_time_of_the_mass(
 
 
 def test_with_a_spring_a_constant_push_ends_at_its_elongation() -> None:
-    loop = AdmittanceLoop(Admittance(active=ONLY_Y, stiffness=(0.0, 1000.0, 0.0, 0.0, 0.0, 0.0)))
+    loop = AdmittanceLoop(Compliance(active=ONLY_Y, stiffness=(0.0, 1000.0, 0.0, 0.0, 0.0, 0.0)))
     for _ in range(4000):
         loop.press(STEP_S, measured=along_y(5.0), wanted=NONE, feed_forward=NONE)
     assert loop.total[1] == pytest.approx(0.005, rel=1e-3)
 
 
 def test_axes_that_are_not_active_follow_the_feed_forward_only() -> None:
-    loop = AdmittanceLoop(Admittance(active=ONLY_Y))
+    loop = AdmittanceLoop(Compliance(active=ONLY_Y))
     learned = np.array([0.001, 0.0, -0.002, 0.0, 0.0, 0.1])
     for _ in range(100):
         loop.press(STEP_S, measured=np.full(6, 20.0), wanted=NONE, feed_forward=learned)
@@ -45,7 +46,7 @@ def test_axes_that_are_not_active_follow_the_feed_forward_only() -> None:
 
 
 def test_the_whole_offset_keeps_its_reach_and_speed_and_comes_back_without_winding_up() -> None:
-    loop = AdmittanceLoop(Admittance(active=ONLY_Y, reach_m=0.02, speed_m_s=0.05))
+    loop = AdmittanceLoop(Compliance(active=ONLY_Y, reach_m=0.02, speed_m_s=0.05))
     for step in range(3000):
         before = float(loop.total[1])
         loop.press(STEP_S, measured=along_y(500.0), wanted=NONE, feed_forward=along_y(0.01 * min(1.0, step / 1000)))
@@ -58,7 +59,7 @@ def test_the_whole_offset_keeps_its_reach_and_speed_and_comes_back_without_windi
 
 
 def test_giving_way_does_not_press_on_but_yields_to_more_than_is_wanted() -> None:
-    loop = AdmittanceLoop(Admittance(active=ONLY_Y))
+    loop = AdmittanceLoop(Compliance(active=ONLY_Y))
     for _ in range(300):
         loop.relieve(STEP_S, measured=NONE, wanted=along_y(-10.0), feed_forward=NONE)
     assert loop.total[1] == 0.0

@@ -7,11 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from engine.skills.dmp import Compliance
 from robots.control.arm_state import ArmState
 from robots.control.force.force_tracking import ForceTracking
 from robots.control.motion_event import AnyMotionEvent, MotionFinished
 from robots.control.motion_executor import MotionExecutor
-from robots.port import Admittance, Array, ForceRecord, ForceTask, JointTrajectory, Tolerance
+from robots.port import Array, ForceRecord, ForceTask, JointTrajectory, MotionEnd, Tolerance
 from tests.robots.control.limit_watch import STEP_S, LimitWatch, limits
 from tests.robots.control.plane_arm import plane_state
 from tests.robots.control.spring_wall import Wall, WallRig
@@ -20,7 +21,7 @@ from tests.tiers import nightly
 
 FORCE_N = 10.0
 LEFT_M, RIGHT_M, WALL_M = 0.3, 0.6, 0.5
-PRESS_Y = Admittance(active=(0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
+PRESS_Y = Compliance(active=(0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
 
 
 def joints_at(x_m: float, y_m: float) -> Array:
@@ -43,7 +44,7 @@ def wipe(duration_s: float, *, y_m: float = WALL_M) -> JointTrajectory:
 def task(
     duration_s: float = 4.0,
     *,
-    admittance: Admittance = PRESS_Y,
+    admittance: Compliance = PRESS_Y,
     slow_per_n: float = 0.0,
     offset: Array | None = None,
     y_m: float = WALL_M,
@@ -138,7 +139,7 @@ def test_the_record_tells_share_offset_and_wrench_in_the_task_frame() -> None:
 
 def test_a_turned_task_frame_presses_along_its_own_axis() -> None:
     # The task's z axis is the world's -y: the wall pushes along +z of the task.
-    turned = task(admittance=Admittance())
+    turned = task(admittance=Compliance())
     wrench = np.zeros_like(turned.wrench)
     wrench[:, 2] = FORCE_N
     half = math.sqrt(0.5)
@@ -226,7 +227,7 @@ def test_at_the_end_it_stands_on_the_offset_path_and_still_presses() -> None:
 
 def test_without_a_wall_the_offset_ends_at_its_reach() -> None:
     bench = WallRig(
-        tracking(task(admittance=Admittance(active=PRESS_Y.active, reach_m=0.02))), Wall(5000.0, lambda x: 9.0)
+        tracking(task(admittance=Compliance(active=PRESS_Y.active, reach_m=0.02))), Wall(5000.0, lambda x: 9.0)
     )
     bench.run()
     assert bench.tips[-1][1] == pytest.approx(WALL_M + 0.02, abs=1e-4)
@@ -250,7 +251,7 @@ def test_a_speed_override_slows_the_path_and_not_the_force() -> None:
 
 def pulled() -> ForceTracking:
     """Return a task that nothing pushes back at along x: the offset pulls the tool to the shoulder's limit."""
-    away = Admittance(active=(1.0, 1.0, 0.0, 0.0, 0.0, 0.0), reach_m=0.3)
+    away = Compliance(active=(1.0, 1.0, 0.0, 0.0, 0.0, 0.0), reach_m=0.3)
     plain = task(admittance=away)
     wrench = np.zeros_like(plain.wrench)
     wrench[:, 0] = 30.0
@@ -281,8 +282,8 @@ def test_the_motion_then_ends_as_failed_with_these_words() -> None:
         events = motion.step(STEP_S, plane_state(motion.position, motion.velocity))
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert (end.end, end.reason) == ("failed", generator.failure)
-    assert len(ForceRecord.from_bytes(end.data).shares()) > 10
+    assert (end.report.end, end.report.reason) == (MotionEnd.FAILED, generator.failure)
+    assert len(ForceRecord.from_bytes(end.report.data).shares()) > 10
 
 
 def test_a_panda_presses_down_on_a_table_and_keeps_its_orientation() -> None:
@@ -326,7 +327,7 @@ def _share_at(passed: float) -> float:
 @pytest.mark.parametrize("after", ["cancelled", "at its end"])
 def test_a_tool_that_is_pushed_on_and_on_comes_to_rest_within_two_seconds(after: str) -> None:
     """Nothing holds the force up, so giving way would never end by itself."""
-    generator = tracking(task(0.5, admittance=Admittance(active=PRESS_Y.active, reach_m=1.0)))
+    generator = tracking(task(0.5, admittance=Compliance(active=PRESS_Y.active, reach_m=1.0)))
     state, motion = plane_state(), MotionExecutor(joints=("shoulder", "elbow"), touching=lambda: "")
     motion.initialize(generator.position)
     motion.start(1, generator, Tolerance())
@@ -342,4 +343,4 @@ def test_a_tool_that_is_pushed_on_and_on_comes_to_rest_within_two_seconds(after:
             break
     (end,) = events
     assert isinstance(end, MotionFinished)
-    assert end.end == ("canceled" if after == "cancelled" else "reached")
+    assert end.report.end == (MotionEnd.CANCELED if after == "cancelled" else MotionEnd.REACHED)

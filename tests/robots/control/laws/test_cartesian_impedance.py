@@ -8,18 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.laws.cartesian_impedance import CartesianImpedance
-from robots.port import ArmSettings, Array
+from robots.port import Array
 from tests.robots.control.limit_watch import limits
 from tests.robots.control.plane_arm import PlaneKinematics, plane_state
 from tests.robots.control.set_point import StillPoint
 
 BENT = np.array([0.3, 1.2])
 MASS = np.array([[1.2, 0.3], [0.3, 0.4]])
-STIFF = ArmSettings(cartesian_stiffness=(1000.0, 500.0, 300.0, 20.0, 20.0, 20.0), nullspace_stiffness_nm_rad=0.0)
+STIFF = ControlSettings(cartesian_stiffness=(1000.0, 500.0, 300.0, 20.0, 20.0, 20.0), nullspace_stiffness_nm_rad=0.0)
 
 
-def new_law(arm: ArmSettings = STIFF, *, base_rotation: Array | None = None) -> CartesianImpedance:
+def new_law(arm: ControlSettings = STIFF, *, base_rotation: Array | None = None) -> CartesianImpedance:
     """A law for the plane arm."""
     rotation = np.eye(3) if base_rotation is None else base_rotation
     law = CartesianImpedance(limits(), mass_matrix=lambda _: MASS, base_rotation=rotation)

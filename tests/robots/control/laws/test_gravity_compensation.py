@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine.skills.arm_control import ControlSettings
 from robots.control.laws.gravity_compensation import GravityCompensation
 from robots.control.laws.joint_impedance import nominal_stiffness_nm_rad
-from robots.port import ArmSettings, Array
+from robots.port import Array
 from tests.robots.control.limit_watch import limits
 from tests.robots.control.plane_arm import plane_state
 from tests.robots.control.set_point import StillPoint
@@ -21,7 +22,7 @@ WEIGHT = np.array([10.0, -3.0])
 def torque(*, position: Array, set_point: Array, velocity: Array, share: float = 0.0) -> list[float]:
     """Return the torque with this share of damping."""
     law = GravityCompensation(limits())
-    law.initialize(settings=ArmSettings(), inertia_kg_m2=INERTIA)
+    law.initialize(settings=ControlSettings(), inertia_kg_m2=INERTIA)
     law.damping_share = share
     return law.step(plane_state(position, velocity), StillPoint(set_point), feedforward_nm=WEIGHT).tolist()
 

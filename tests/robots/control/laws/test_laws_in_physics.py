@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from engine.skills.arm_control import ControlSettings
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion import plan_line
-from robots.port import ArmSettings, Tolerance
+from robots.port import MotionEnd, Tolerance
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import FinishStream, FollowTrajectory, StartGuiding
 from robots.sim.physics.cell_model import CellModel, build_cell
@@ -17,8 +18,8 @@ from tests.robots.sim.sim_cell import ABOVE_PART, HOME, LEFT, LIFTED, PANDA, one
 from tests.robots.sim.stepped import BumpWatch, SteppedArm
 from tests.tiers import nightly
 
-CARTESIAN = ArmSettings(controller="cartesian_impedance")
-BOTH = pytest.mark.parametrize("settings", [ArmSettings(), CARTESIAN], ids=["joint", "cartesian"])
+CARTESIAN = ControlSettings(controller="cartesian_impedance")
+BOTH = pytest.mark.parametrize("settings", [ControlSettings(), CARTESIAN], ids=["joint", "cartesian"])
 
 
 @pytest.fixture(scope="module", name="cell")
@@ -27,7 +28,7 @@ def _cell() -> CellModel:
 
 
 @BOTH
-def test_an_arm_without_commands_does_not_move(cell: CellModel, settings: ArmSettings) -> None:
+def test_an_arm_without_commands_does_not_move(cell: CellModel, settings: ControlSettings) -> None:
     arm = SteppedArm(cell, settings)
     arm.run(1.0)
     assert np.abs(arm.sample.position_rad - HOME).max() < 1e-9
@@ -38,7 +39,7 @@ def test_the_tool_gives_way_as_its_stiffness_says(cell: CellModel, axis: int) ->
     """30 N against 600 N/m along one axis are 50 mm, which the stiff axes hardly see."""
     stiffness = [3000.0, 3000.0, 3000.0, 200.0, 200.0, 200.0]
     stiffness[axis] = 600.0
-    settings = ArmSettings(
+    settings = ControlSettings(
         controller="cartesian_impedance",
         cartesian_stiffness=tuple(stiffness),  # type: ignore[arg-type]
         nullspace_stiffness_nm_rad=0.0,
@@ -57,7 +58,7 @@ def test_the_tool_gives_way_as_its_stiffness_says(cell: CellModel, axis: int) ->
 @pytest.mark.parametrize("stiffness", [nightly(200.0), 3000.0])
 def test_what_is_let_go_comes_back_without_swinging(cell: CellModel, ratio: float, stiffness: float) -> None:
     """From 10 mm off, along each axis, it overshoots by 5 % at a ratio of 0.7 and by less at 1."""
-    settings = ArmSettings(
+    settings = ControlSettings(
         controller="cartesian_impedance",
         cartesian_stiffness=(stiffness, stiffness, stiffness, 100.0, 100.0, 100.0),
         cartesian_damping_ratio=ratio,
@@ -94,7 +95,7 @@ def test_a_nudged_elbow_comes_back_and_the_tool_stays(cell: CellModel) -> None:
 
 
 @BOTH
-def test_a_line_is_followed_within_half_a_millimetre(cell: CellModel, settings: ArmSettings) -> None:
+def test_a_line_is_followed_within_half_a_millimetre(cell: CellModel, settings: ControlSettings) -> None:
     """With nominal gains, 0.3 m in 1.5 s: what is measured lies on the line."""
     kinematics = ArmKinematics(PANDA, base=RigidTransform.from_pose(LEFT.base))
     start = kinematics.tool_pose(HOME)
@@ -112,7 +113,7 @@ def test_a_line_is_followed_within_half_a_millimetre(cell: CellModel, settings: 
 
     arm.run(1.6, look=look)
     assert worst < 0.0005
-    assert arm.until_finished().end == "reached"
+    assert arm.until_finished().end == MotionEnd.REACHED
 
 
 def test_a_stretched_arm_stays_calm_and_comes_back(cell: CellModel) -> None:
@@ -120,7 +121,7 @@ def test_a_stretched_arm_stays_calm_and_comes_back(cell: CellModel) -> None:
     arm = SteppedArm(cell)
     stretched = np.array([0.0, 0.2, 0.0, -0.075, 0.0, 1.5, 0.7])
     arm.follow(stretched, 2.0)
-    assert arm.until_finished().end == "reached"
+    assert arm.until_finished().end == MotionEnd.REACHED
     arm.configure(CARTESIAN)
     watch = BumpWatch(arm, 1.0)
     assert (watch.moved_m < 0.002, watch.torque_step_nm < 0.5) == (True, True)
@@ -128,19 +129,19 @@ def test_a_stretched_arm_stays_calm_and_comes_back(cell: CellModel) -> None:
     arm.run(2.0)
     assert np.abs(arm.sample.velocity_rad_s).max() < 0.01
     arm.follow(HOME, 2.0, motion=2)
-    assert arm.until_finished(2).end == "reached"
+    assert arm.until_finished(2).end == MotionEnd.REACHED
 
 
 SWITCHES = [
-    ArmSettings(controller="cartesian_impedance"),
-    ArmSettings(joint_stiffness_nm_rad=(600.0, 600.0, 600.0, 600.0, 100.0, 100.0, 100.0)),
-    ArmSettings(load_kg=2.0),
-    ArmSettings(controller="cartesian_impedance", load_kg=2.0, tool_xyz_m=(0.0, 0.0, 0.1)),
+    ControlSettings(controller="cartesian_impedance"),
+    ControlSettings(joint_stiffness_nm_rad=(600.0, 600.0, 600.0, 600.0, 100.0, 100.0, 100.0)),
+    ControlSettings(load_kg=2.0),
+    ControlSettings(controller="cartesian_impedance", load_kg=2.0, tool_xyz_m=(0.0, 0.0, 0.1)),
 ]
 
 
 @pytest.mark.parametrize("settings", SWITCHES, ids=["cartesian", "soft", "load", "all"])
-def test_a_switch_at_rest_under_load_makes_no_bump(cell: CellModel, settings: ArmSettings) -> None:
+def test_a_switch_at_rest_under_load_makes_no_bump(cell: CellModel, settings: ControlSettings) -> None:
     """Torques change by less than 0.2 N m a step, and the tool glides to where the new law holds it."""
     arm = SteppedArm(cell)
     arm.push((0.0, 0.0, -19.62), 10.0)
@@ -154,7 +155,7 @@ def test_a_switch_at_rest_under_load_makes_no_bump(cell: CellModel, settings: Ar
 def test_switching_to_and_fro_leaves_the_arm_where_it_was(cell: CellModel) -> None:
     arm = SteppedArm(cell)
     arm.step()
-    for settings in (CARTESIAN, ArmSettings(), CARTESIAN):
+    for settings in (CARTESIAN, ControlSettings(), CARTESIAN):
         arm.configure(settings)
         watch = BumpWatch(arm, 0.25)
         assert watch.moved_m < 1e-6
@@ -162,14 +163,14 @@ def test_switching_to_and_fro_leaves_the_arm_where_it_was(cell: CellModel) -> No
 
 
 @pytest.mark.parametrize("settings", SWITCHES[:3], ids=["cartesian", "soft", "load"])
-def test_a_switch_in_motion_is_no_bump_and_the_goal_is_reached(cell: CellModel, settings: ArmSettings) -> None:
+def test_a_switch_in_motion_is_no_bump_and_the_goal_is_reached(cell: CellModel, settings: ControlSettings) -> None:
     """The torques of an undisturbed motion change by as much."""
     arm = SteppedArm(cell)
     arm.follow(LIFTED, 1.2)
     arm.run(0.5)
     arm.configure(settings)
     assert BumpWatch(arm, 0.4).torque_step_nm < 0.25
-    assert arm.until_finished().end == "reached"
+    assert arm.until_finished().end == MotionEnd.REACHED
     if settings.load_kg == 0.0:
         assert np.abs(arm.sample.position_rad - LIFTED).max() < 0.002
 
@@ -184,15 +185,19 @@ def test_a_guided_arm_holds_where_it_is_left_without_a_bump(cell: CellModel) -> 
     led = arm.tool_xyz
     arm.apply(FinishStream(arm="left", motion=1))
     watch = BumpWatch(arm, 0.5)
-    assert (arm.until_finished().end, watch.torque_step_nm < 1.0, watch.moved_m < 0.003) == ("reached", True, True)
+    assert (arm.until_finished().end, watch.torque_step_nm < 1.0, watch.moved_m < 0.003) == (
+        MotionEnd.REACHED,
+        True,
+        True,
+    )
     assert np.linalg.norm(led - arm.control.state.kinematics.tool_pose(HOME).xyz) > 0.05
     arm.follow(ABOVE_PART, 1.5, motion=2)
-    assert arm.until_finished(2).end == "reached"
+    assert arm.until_finished(2).end == MotionEnd.REACHED
 
 
 @pytest.mark.parametrize("model", ["panda", "ur10", "irb4600"])
 @BOTH
-def test_every_arm_holds_still_and_comes_back_from_a_push(model: str, settings: ArmSettings) -> None:
+def test_every_arm_holds_still_and_comes_back_from_a_push(model: str, settings: ControlSettings) -> None:
     """At a step of 2 ms as well."""
     cell = build_cell(SimScene(arms=(replace(LEFT, model=model),), step_s=0.002))
     arm = SteppedArm(cell, settings)

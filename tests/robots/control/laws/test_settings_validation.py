@@ -9,11 +9,11 @@ import pytest
 from msgspec.structs import replace
 
 from engine.errors import RobotError
+from engine.skills.arm_control import ControlSettings
 from robots.control.laws.settings_validation import validate_settings
-from robots.port import ArmSettings
 from tests.robots.panda_arm import panda_model
 
-WORKING = ArmSettings(
+WORKING = ControlSettings(
     controller="cartesian_impedance",
     joint_stiffness_nm_rad=(600.0, 600.0, 600.0, 600.0, 250.0, 150.0, 50.0),
     tool_xyz_m=(0.0, 0.0, 0.1034),
@@ -25,14 +25,14 @@ WORKING = ArmSettings(
 )
 
 
-def check(settings: ArmSettings) -> ArmSettings:
+def check(settings: ControlSettings) -> ControlSettings:
     """Check for the Panda."""
     model = panda_model()
     return validate_settings(settings, arm="left", joints=model.arm_joints, limits=model.limits)
 
 
-@pytest.mark.parametrize("settings", [ArmSettings(), WORKING])
-def test_what_the_arm_can_work_with_is_taken(settings: ArmSettings) -> None:
+@pytest.mark.parametrize("settings", [ControlSettings(), WORKING])
+def test_what_the_arm_can_work_with_is_taken(settings: ControlSettings) -> None:
     assert check(settings) == settings
 
 
@@ -70,6 +70,6 @@ def test_what_it_cannot_is_refused_in_words(change: dict[str, object], message: 
 def test_an_arm_too_weak_for_the_default_tool_stiffness_takes_settings_that_do_not_use_it() -> None:
     small = replace_limits(panda_model().limits, effort_nm=(1.0,) * 7)
     names = panda_model().arm_joints
-    assert validate_settings(ArmSettings(speed_override=0.5), arm="left", joints=names, limits=small)
+    assert validate_settings(ControlSettings(speed_override=0.5), arm="left", joints=names, limits=small)
     with pytest.raises(RobotError, match=r"along x cannot be 3000 \(at least 0 and at most 100"):
-        validate_settings(ArmSettings(controller="cartesian_impedance"), arm="left", joints=names, limits=small)
+        validate_settings(ControlSettings(controller="cartesian_impedance"), arm="left", joints=names, limits=small)

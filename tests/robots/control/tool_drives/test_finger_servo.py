@@ -7,6 +7,7 @@ import pytest
 from robots.control.motion_event import AnyMotionEvent, MotionFinished
 from robots.control.tool_drives.finger_servo import FingerServo
 from robots.model.registry import model_by_name
+from robots.port import MotionEnd
 
 GRIPPER = model_by_name("panda").gripper
 assert GRIPPER is not None
@@ -45,7 +46,7 @@ def test_without_an_object_the_fingers_reach_the_width_at_the_speed() -> None:
     fingers.servo.close_to(1, width_m=0.03, speed_m_s=0.1, force_n=40.0, now_m=fingers.width_m)
     event, steps = fingers.until_event()
     assert isinstance(event, MotionFinished)
-    assert (event.end, event.progress) == ("reached", pytest.approx(1.0, abs=0.02))
+    assert (event.report.end, event.progress) == (MotionEnd.REACHED, pytest.approx(1.0, abs=0.02))
     assert fingers.width_m == pytest.approx(0.03, abs=0.001)
     assert 500 <= steps < 700
 
@@ -55,7 +56,7 @@ def test_against_an_object_the_force_builds_up_is_never_exceeded_and_stays() -> 
     fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=fingers.width_m)
     event, _ = fingers.until_event()
     assert isinstance(event, MotionFinished)
-    assert event.end == "reached"
+    assert event.report.end == MotionEnd.REACHED
     for _ in range(500):
         fingers.step()
         assert fingers.servo.force_n == pytest.approx(-25.0)
@@ -116,8 +117,8 @@ def test_fingers_that_never_rest_fail_in_words() -> None:
         if told:
             (end,) = told
             assert isinstance(end, MotionFinished)
-            assert end.end == "failed"
-            assert "neither reached 0.0 mm nor stopped against an object" in end.reason
+            assert end.report.end == MotionEnd.FAILED
+            assert "neither reached 0.0 mm nor stopped against an object" in end.report.reason
             return
     raise AssertionError("it waited for ever")
 
@@ -130,7 +131,7 @@ def test_fingers_that_are_stopped_for_a_cause_fail_with_it_and_stay_where_they_a
     fingers.servo.stop("the engine was silent")
     event, _ = fingers.until_event()
     assert isinstance(event, MotionFinished)
-    assert (event.end, event.reason) == ("failed", "the engine was silent")
+    assert (event.report.end, event.report.reason) == (MotionEnd.FAILED, "the engine was silent")
     left_at_m = fingers.width_m
     for _ in range(1000):
         fingers.step()

@@ -6,6 +6,7 @@ import pytest
 
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.control.tool_drives.magnet_drive import MagnetCommand, MagnetDrive
+from robots.port import MotionEnd
 
 STEP_S = 0.001
 
@@ -14,10 +15,10 @@ def run(switch: MagnetDrive, steps: int, *, still: bool = True) -> list[AnyMotio
     return [event for _ in range(steps) for event in switch.step(STEP_S, still=still)]
 
 
-def end_of(events: list[AnyMotionEvent]) -> str:
+def end_of(events: list[AnyMotionEvent]) -> MotionEnd:
     (event,) = events
     assert isinstance(event, MotionFinished)
-    return event.end
+    return event.report.end
 
 
 def test_the_field_is_up_after_its_time_and_down_again() -> None:
@@ -25,16 +26,16 @@ def test_the_field_is_up_after_its_time_and_down_again() -> None:
     switch.switch(1, on=True)
     assert run(switch, 195) == []
     assert 0.9 < switch.level < 1.0
-    assert (end_of(run(switch, 100)), switch.level) == ("reached", 1.0)
+    assert (end_of(run(switch, 100)), switch.level) == (MotionEnd.REACHED, 1.0)
     switch.switch(2, on=False)
-    assert (end_of(run(switch, 300)), switch.level) == ("reached", 0.0)
+    assert (end_of(run(switch, 300)), switch.level) == (MotionEnd.REACHED, 0.0)
 
 
 def test_it_is_not_over_while_a_part_still_moves() -> None:
     switch = MagnetDrive(switch_s=0.1)
     switch.switch(1, on=True)
     assert run(switch, 1000, still=False) == []
-    assert end_of(run(switch, 100)) == "reached"
+    assert end_of(run(switch, 100)) == MotionEnd.REACHED
 
 
 @pytest.mark.parametrize("on", [True, False])
@@ -44,7 +45,7 @@ def test_a_cancelled_switch_is_carried_through(on: bool) -> None:
     switch.switch(1, on=on)
     run(switch, 100)
     switch.cancel(1)
-    assert end_of(run(switch, 300)) == "canceled"
+    assert end_of(run(switch, 300)) == MotionEnd.CANCELED
     assert (switch.on, switch.level) == (on, 1.0 if on else 0.0)
 
 
@@ -56,7 +57,7 @@ def test_a_held_switch_tells_its_end_only_once_resumed() -> None:
     switch.resume(1, request=2)
     resumed, finished = run(switch, 300)
     assert resumed == MotionResumed(motion=1, request=2)
-    assert end_of([finished]) == "reached"
+    assert end_of([finished]) == MotionEnd.REACHED
 
 
 def test_what_pulls_at_a_part_that_never_rests_fails_in_words() -> None:
@@ -64,7 +65,7 @@ def test_what_pulls_at_a_part_that_never_rests_fails_in_words() -> None:
     switch.switch(1, on=True)
     (event,) = run(switch, 3000, still=False)
     assert isinstance(event, MotionFinished)
-    assert (event.end, "did not come to rest" in event.reason) == ("failed", True)
+    assert (event.report.end, "did not come to rest" in event.report.reason) == (MotionEnd.FAILED, True)
 
 
 def test_another_life_of_the_switch_goes_on_as_it_was() -> None:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.control.tool_drives.tendon_servo import TendonServo
+from robots.port import MotionEnd
 
 STEP_S = 0.001
 TRAVEL_M, FORCE_N = 0.17, 150.0
@@ -40,9 +41,9 @@ class Tendon:
         raise AssertionError("nothing was told")
 
 
-def finished(event: AnyMotionEvent) -> tuple[str, str]:
+def finished(event: AnyMotionEvent) -> tuple[MotionEnd, str]:
     assert isinstance(event, MotionFinished)
-    return event.end, event.reason
+    return event.report.end, event.report.reason
 
 
 @settings(max_examples=10, deadline=None)
@@ -50,7 +51,7 @@ def finished(event: AnyMotionEvent) -> tuple[str, str]:
 def test_a_free_hand_closes_by_the_share_in_the_time(share: float, time_s: float) -> None:
     tendon = Tendon()
     tendon.servo.close_to(1, share=share, time_s=time_s)
-    assert finished(tendon.until_event()) == ("reached", "")
+    assert finished(tendon.until_event()) == (MotionEnd.REACHED, "")
     assert tendon.servo.closed_share == pytest.approx(share)
     # Its seconds are a sum of steps.
     assert time_s - 1e-9 < tendon.passed_s < time_s + 0.5
@@ -66,7 +67,7 @@ def test_a_time_too_short_is_as_fast_as_the_motor_can() -> None:
 def test_a_blocked_hand_stalls_at_its_whole_force_and_keeps_it() -> None:
     tendon = Tendon(blocked_m=0.08)
     tendon.servo.close_to(1, share=1.0, time_s=1.0)
-    assert finished(tendon.until_event()) == ("reached", "")
+    assert finished(tendon.until_event()) == (MotionEnd.REACHED, "")
     for _ in range(500):
         tendon.step()
         assert tendon.servo.force_n == pytest.approx(FORCE_N, rel=0.05)
@@ -95,7 +96,7 @@ def test_a_held_hand_stands_still_and_goes_on_when_resumed() -> None:
     assert tendon.servo.closed_share == share < 0.5
     tendon.servo.resume(1, request=2)
     assert tendon.until_event() == MotionResumed(motion=1, request=2)
-    assert finished(tendon.until_event()) == ("reached", "")
+    assert finished(tendon.until_event()) == (MotionEnd.REACHED, "")
 
 
 def test_a_cancelled_hand_stays_where_it_is() -> None:
@@ -104,7 +105,7 @@ def test_a_cancelled_hand_stays_where_it_is() -> None:
     for _ in range(1000):
         tendon.step()
     tendon.servo.cancel(1)
-    assert finished(tendon.until_event()) == ("canceled", "")
+    assert finished(tendon.until_event()) == (MotionEnd.CANCELED, "")
     share = tendon.servo.closed_share
     for _ in range(500):
         tendon.step()
@@ -128,7 +129,7 @@ def test_fingers_that_never_rest_fail_in_words() -> None:
     servo.close_to(1, share=0.7, time_s=1.0)
     for step in range(5000):
         for event in servo.step(STEP_S, pulled_m=0.05, velocity_m_s=0.5 if step % 2 else -0.5):
-            assert finished(event)[0] == "failed"
+            assert finished(event)[0] == MotionEnd.FAILED
             assert "while closing to 70 %" in finished(event)[1]
             return
     raise AssertionError("it waited for ever")

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from engine.messages import Vector3
-from robots.port import ArmSettings
+from engine.skills.arm_control import ControlSettings
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.sim_cell import ABOVE_PART, one_arm
 from tests.robots.sim.stepped import SteppedArm
 
 CONTROLLERS = pytest.mark.parametrize(
-    "settings", [ArmSettings(), ArmSettings(controller="cartesian_impedance")], ids=["joint", "cartesian"]
+    "settings", [ControlSettings(), ControlSettings(controller="cartesian_impedance")], ids=["joint", "cartesian"]
 )
 
 
@@ -23,7 +23,7 @@ def _cell() -> CellModel:
 
 @CONTROLLERS
 @pytest.mark.parametrize("force", [(20.0, 0.0, 0.0), (0.0, -12.0, 0.0), (0.0, 0.0, -30.0), (0.8, 0.6, -0.4)])
-def test_a_push_at_the_tool_is_measured(cell: CellModel, settings: ArmSettings, force: Vector3) -> None:
+def test_a_push_at_the_tool_is_measured(cell: CellModel, settings: ControlSettings, force: Vector3) -> None:
     """Within 1 % and 0.05 N at rest; the joints feel its torque, J^T F."""
     arm = SteppedArm(cell, settings)
     arm.push(force, 2.0)
@@ -45,7 +45,7 @@ def test_a_push_beside_the_tool_centre_point_is_measured_as_force_and_torque(cel
 
 def test_the_wrench_is_about_the_tool_centre_point_that_is_set(cell: CellModel) -> None:
     """A point 0.2 m farther down: the same push turns the other way round about it."""
-    arm = SteppedArm(cell, ArmSettings(tool_xyz_m=(0.0, 0.0, 0.2)))
+    arm = SteppedArm(cell, ControlSettings(tool_xyz_m=(0.0, 0.0, 0.2)))
     arm.push((10.0, 0.0, 0.0), 2.0)
     arm.run(1.5)
     assert arm.sample.wrench == pytest.approx([10.0, 0.0, 0.0, 0.0, 2.0, 0.0], abs=0.05)
@@ -60,7 +60,7 @@ def test_a_push_at_the_forearm_is_felt_by_the_joints_and_not_by_the_tool(cell: C
 
 
 @CONTROLLERS
-def test_its_own_motion_is_no_external_force(cell: CellModel, settings: ArmSettings) -> None:
+def test_its_own_motion_is_no_external_force(cell: CellModel, settings: ControlSettings) -> None:
     """Weight and inertia of arm and tool are known: on a fast way nothing is felt."""
     arm = SteppedArm(cell, settings)
     arm.follow(ABOVE_PART, 0.8)

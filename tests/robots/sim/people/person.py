@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from engine.messages import Vector3
+from engine.skills.people import Reach
 from robots.port import Array
 from robots.scene.sim_scene import PersonBody, SimScene
 from robots.sim.commands.world_commands import MovePersonHand
@@ -35,7 +36,9 @@ class SteppedPerson:
 
     def reach(self, hand_m: Vector3, *, speed_m_s: float = 1.0, stay_s: float | None = None) -> None:
         """Send the hand to a place."""
-        self.simulation.apply(MovePersonHand(person="anna", hand_m=hand_m, speed_m_s=speed_m_s, stay_s=stay_s))
+        self.simulation.apply(
+            MovePersonHand(reach=Reach(person="anna", hand_m=hand_m, speed_m_s=speed_m_s, stay_s=stay_s))
+        )
 
     def run(self, seconds: float) -> None:
         """Let time pass."""

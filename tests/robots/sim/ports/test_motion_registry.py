@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed
-from robots.port import MotionEnd
+from robots.port import MotionEnd, MotionReport
 from robots.sim.commands.world_commands import AnyCommand
 from robots.sim.ports.motion_registry import SimMotion
 
@@ -61,6 +61,6 @@ async def test_the_end_answers_all() -> None:
     asked = Asked()
     waiting = [await asked.ask(asked.motion.hold()), await asked.ask(asked.motion.resume())]
     waiting[0].cancel()
-    asked.motion.take(MotionFinished(motion=7, end="canceled", progress=0.4))
+    asked.motion.take(MotionFinished(motion=7, progress=0.4, report=MotionReport(end=MotionEnd.CANCELED)))
     assert await done(*waiting) == (True, True)
     assert ((await asked.motion.report()).end, asked.motion.progress) == (MotionEnd.CANCELED, 0.4)

@@ -9,7 +9,8 @@ import pytest
 from msgspec.structs import replace
 
 from engine.errors import RobotError
-from robots.port import ArmSettings, ContactCondition, ForceRecord, ForceTask, MotionEnd, Tolerance
+from engine.skills.arm_control import ControlSettings
+from robots.port import ContactCondition, ForceRecord, ForceTask, MotionEnd, Tolerance
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, both_hosts_nightly, move, one_arm, opened, smooth, until
 
@@ -187,7 +188,7 @@ async def test_a_speed_override_slows_what_runs_and_what_comes(host: str) -> Non
         arm = world.arm("left")
         motion = arm.follow(smooth(HOME, HOME + 0.4, 1.0), tolerance=Tolerance())
         await until(lambda: motion.progress > 0.3)
-        arm.configure(ArmSettings(speed_override=0.25))
+        arm.configure(ControlSettings(speed_override=0.25))
         left, start = 1.0 - motion.progress, world.measured().time_s
         assert (await motion.report()).end is MotionEnd.REACHED
         assert world.measured().time_s - start > left / 0.25 * 0.8
@@ -200,7 +201,7 @@ async def test_a_speed_override_slows_what_runs_and_what_comes(host: str) -> Non
 async def test_settings_are_kept_or_refused_as_a_whole(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        good = ArmSettings(controller="cartesian_impedance", load_kg=1.0)
+        good = ControlSettings(controller="cartesian_impedance", load_kg=1.0)
         arm.configure(good)
         with pytest.raises(RobotError, match="load_kg cannot be -1"):
             arm.configure(replace(good, load_kg=-1.0, speed_override=0.5))
@@ -212,19 +213,19 @@ async def test_settings_are_kept_or_refused_as_a_whole(host: str) -> None:
     ("controller", "load_kg"), [("cartesian_impedance", 0.0), ("joint_impedance", 1.5), ("cartesian_impedance", 1.5)]
 )
 async def test_a_restored_world_keeps_its_settings_and_nothing_sags(controller: str, load_kg: float) -> None:
-    settings = replace(ArmSettings(speed_override=0.5), controller=controller, load_kg=load_kg)
+    settings = replace(ControlSettings(speed_override=0.5), controller=controller, load_kg=load_kg)
     async with opened(one_arm()) as world:
         arm = world.arm("left")
         arm.configure(settings)
-        world.push(TOOL, force_n=(0.0, 0.0, -9.81 * load_kg), duration_s=100.0)
+        world.push(TOOL, force_n=(0.0, 0.0, -9.81 * load_kg), duration_s=60.0)
         await asyncio.sleep(0.8)
         snapshot, before = world.snapshot(), arm.sample().position_rad.copy()
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        world.arm("left").configure(ArmSettings(load_kg=3.0))
+        world.arm("left").configure(ControlSettings(load_kg=3.0))
         await world.restore(snapshot)
         assert arm.settings == settings
-        world.push(TOOL, force_n=(0.0, 0.0, -9.81 * load_kg), duration_s=100.0)
+        world.push(TOOL, force_n=(0.0, 0.0, -9.81 * load_kg), duration_s=60.0)
         await asyncio.sleep(0.5)
         assert off_rad(world, before) < 0.0005
 
@@ -244,6 +245,8 @@ async def test_senseless_requests_are_refused_in_words() -> None:
             arm.guide(damping=1.5)
         with pytest.raises(RobotError, match="there is no body left/arm"):
             world.push("left/arm", force_n=(0.0, 0.0, 1.0), duration_s=1.0)
+        with pytest.raises(RobotError, match="a push of 61 s"):
+            world.push(TOOL, force_n=(0.0, 0.0, 1.0), duration_s=61.0)
         stream = arm.stream("joint_velocity", watchdog_s=0.1)
         with pytest.raises(RobotError, match="send 7 finite numbers"):
             stream.send((0.0,))

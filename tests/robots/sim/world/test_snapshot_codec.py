@@ -9,12 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.errors import RobotError
-from robots.port import ArmSettings, GraspCommand
+from engine.skills.arm_control import ControlSettings
+from robots.port import GraspCommand
 from robots.sim.world.snapshot_codec import FORMAT, WorldImage, decode_snapshot, encode_snapshot
 
 NUMBERS = np.arange(40.0) / 3.0
 GRIPS = {"left/gripper": GraspCommand(least_m=0.02, most_m=0.04, force_n=20.0)}
-SETTINGS = {"left": ArmSettings(controller="cartesian_impedance", load_kg=2.0, collision_force_n=20.0)}
+SETTINGS = {"left": ControlSettings(controller="cartesian_impedance", load_kg=2.0, collision_force_n=20.0)}
 REFLEXES = {"left": "external force limit exceeded: 31.0 N > 20 N at the tool"}
 OUTPUTS = {"left": (True, False)}
 IMAGE = WorldImage.of(NUMBERS, GRIPS, SETTINGS, REFLEXES, OUTPUTS)

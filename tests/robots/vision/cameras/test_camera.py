@@ -21,9 +21,9 @@ from robots.vision.cameras.camera import (
     optical_frame_pose,
     pinhole,
     pixels,
-    points_seen,
     reduced,
 )
+from tests.robots.vision.watched_cell import points_seen
 
 SIZES = st.tuples(st.integers(16, 200), st.integers(16, 200))
 FIELDS = st.floats(0.1, 2.5)

@@ -17,9 +17,9 @@ from engine.document.cell_perception import DepthCamera
 from engine.errors import CellError
 from engine.messages.sensing import DepthImage
 from robots.vision.camera_rig import CameraRig
-from robots.vision.cameras.camera import camera_of, depths, points_seen
+from robots.vision.cameras.camera import camera_of, depths
 from robots.vision.cameras.depth_image import frame_number, measured_image
-from tests.robots.vision.watched_cell import FRONT, PANDA, block, cameras, look, perception_setup, scene
+from tests.robots.vision.watched_cell import FRONT, PANDA, block, cameras, look, perception_setup, points_seen, scene
 
 _ROOT = Path(__file__).parents[4]
 # A camera above a block whose top is at 0.4 m: everything that it measures there is 1.6 m away.

@@ -7,7 +7,7 @@ type Shifts = GraphDifference['shifts']
 type Transitions = EditNode['transitions']
 
 /** Where a line of the old text is in the new one. */
-export function shiftedLine(line: number, shifts: Shifts): number {
+function shiftedLine(line: number, shifts: Shifts): number {
   const last = shifts.findLast(([begin]) => begin <= line)
   return last ? line + last[1] : line
 }

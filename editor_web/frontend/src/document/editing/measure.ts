@@ -2,12 +2,12 @@
 import { isMachine, outgoingTransitions, type EditNode } from './model'
 import type { Size } from '../geometry'
 
-export const HEAD_HEIGHT = 48
+const HEAD_HEIGHT = 48
 export const FRAME_HEAD = 40
-export const ROW_HEIGHT = 22
+const ROW_HEIGHT = 22
 export const RULE_HEIGHT = 22
 export const PILL_HEIGHT = 28
-export const TWIG_HEIGHT = 40
+const TWIG_HEIGHT = 40
 /** Line and space above the rows. */
 const ROWS_TOP = 3.5
 const MIN_WIDTH = 172
@@ -18,7 +18,7 @@ function textWidth(text: string, perCharacter: number): number {
 }
 
 /** The words beside a port whose arrow is not drawn: `failed → lost`. */
-export function transitionText(outcome: string, target: string | undefined): string {
+function transitionText(outcome: string, target: string | undefined): string {
   return target === undefined || target === outcome ? outcome : `${outcome} → ${target}`
 }
 

@@ -41,7 +41,7 @@ export function chooseArrow(arrow: string | undefined): void {
 }
 
 /** Paths of the chosen nodes without those that are inside another chosen one. */
-export function outermost(): readonly string[] {
+function outermost(): readonly string[] {
   const { selection } = editor()
   return selection.filter((path) => path !== ROOT && !selection.some((other) => path.startsWith(`${other}/`)))
 }
@@ -191,7 +191,7 @@ export async function paste(): Promise<void> {
   await pasteText(yaml, root)
 }
 
-export async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
+async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
   if (!root || !yaml.trim()) {
     showEditorRefusal('Paste', 'the clipboard is empty', 'Copy nodes first, here or in another behavior.')
     return

@@ -79,7 +79,7 @@ function firstLine(text: string): string {
 }
 
 /** The way from one document's folder to another document, as a reference is written. */
-export function relative(from: string, to: string): string {
+function relative(from: string, to: string): string {
   const here = from.split('/').slice(0, -1)
   const there = to.split('/')
   let same = 0

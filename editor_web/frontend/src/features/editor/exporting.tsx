@@ -26,7 +26,7 @@ export async function exportPicture(format: 'svg' | 'png'): Promise<void> {
 }
 
 /** The SVG of the present draft, with containers as they are opened by hand. */
-export async function pictureOfDraft(): Promise<string> {
+async function pictureOfDraft(): Promise<string> {
   const state = editor()
   const root = rootOf(state)
   if (!root) throw new Error('there is nothing to draw yet')

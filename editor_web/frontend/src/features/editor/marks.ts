@@ -50,7 +50,7 @@ function placedOf(findings: readonly FindingView[]): Placed {
 }
 
 /** The findings that name a way out: they are shown at its arrow or port. */
-export function findingsOfTransition(findings: readonly FindingView[], path: string, outcome: string): readonly FindingView[] {
+function findingsOfTransition(findings: readonly FindingView[], path: string, outcome: string): readonly FindingView[] {
   return findings.filter((finding) => finding.path === path && finding.message.includes(`\`${outcome}\``))
 }
 
