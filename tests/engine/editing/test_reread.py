@@ -43,6 +43,13 @@ def _shape(found: Syntax | Member | None) -> object:
     return found.start, found.end, found.flow, found.column, found.data, [_shape(each) for each in found.members]
 
 
+def _nodes(outline: Outline) -> list[object]:
+    return [
+        (ref.path, ref.name, ref.kind, ref.keys, id(ref.data), ref.parent and ref.parent.path)
+        for ref in outline.refs.values()
+    ]
+
+
 def _check(draft: Draft) -> None:
     again = Draft(draft.given, file=draft.file)
     collections, others = list(draft.collections()), list(again.collections())
@@ -59,9 +66,11 @@ def test_any_edits_leave_the_tree_of_a_full_read(data: Plain, chance: random.Ran
         edits, problem = read_edits([draw.draw(any_edits(list(Outline(draft.data).refs)))])
         assume(problem is None)
         text = draft.given
-        done = apply_edits_to_draft(draft, edits, context=context())
+        done = apply_edits_to_draft(draft, edits, context=context(), outline=Outline(draft.data))
         draft = done.draft or Draft(text, file="x.yaml")
         _check(draft)
+        if done.outline is not None:
+            assert _nodes(done.outline) == _nodes(Outline(draft.data))
 
 
 @pytest.mark.parametrize("text", [TEXT, TEXT.rstrip("\n"), flat_document(20), large_document(80)])
