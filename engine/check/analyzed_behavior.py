@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+import msgspec
+
 from engine.check.end_statuses import BOTH, Status, Statuses, closed_statuses, end_statuses
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import DocumentGaps
@@ -22,8 +24,7 @@ _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
 _NOTHING_GIVEN: GivenValues = {}
 
 
-@dataclass(frozen=True, kw_only=True)
-class NodeAt:
+class NodeAt(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """A node with its path inside its own document and the path of the container around it."""
 
     path: str
@@ -34,11 +35,8 @@ class NodeAt:
     container: NodeSpec | None
     in_tree: bool
     """Whether the node is a direct child of `tree`, a composite or a decorator."""
-
-    @property
-    def is_part(self) -> bool:
-        """True for composites, decorators and py_trees behaviours, which occur only in trees."""
-        return self.kind in _PARTS
+    is_part: bool
+    """True for composites, decorators and py_trees behaviours, which occur only in trees."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,14 +225,16 @@ def _placed(behavior: Behavior) -> tuple[dict[str, NodeAt], dict[str, tuple[Node
     for path, node in behavior.nodes():
         parent, _, name = path.rpartition("/")
         around = nodes[parent] if parent else None
+        kind = node.kind
         nodes[path] = placed = NodeAt(
             path=path,
             name=name,
-            kind=node.kind,
+            kind=kind,
             node=node,
             parent=parent or None,
             container=around.node if around is not None else None,
             in_tree=around is not None and (around.is_part or around.kind == "tree"),
+            is_part=kind in _PARTS,
         )
         if parent:
             inside.setdefault(parent, []).append(placed)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.editing.apply import EditResult, apply_edits, apply_edits_to_draft
 from engine.editing.diagnostics import (
     DocumentAnalysis,
-    analyze_graph,
     analyze_unreadable_text,
+    draw_document,
     text_hash,
     with_findings,
 )
@@ -41,7 +41,7 @@ class _CachedDraft:
 
 @dataclass(frozen=True, kw_only=True)
 class EditAnswer:
-    """What an edit makes of a text, the graph of the result, and its difference from a graph that the asker has."""
+    """What an edit makes of a text, and the graph of the result; its difference from that of the asker instead."""
 
     result: EditResult
     analysis: DocumentAnalysis
@@ -70,7 +70,8 @@ class DraftCache:
             return analyze_unreadable_text(text, error, file=file, context=context)
         outline = sheet.outline if sheet is not None and kept is not None else Outline(draft.data)
         graph = sheet.graph if sheet is not None else None
-        return self._analyzed(draft, outline, file, context, graph, check=check)[0]
+        analysis, now = self._analyzed(draft, outline, file, context, graph, check=check)
+        return replace(analysis, graph=now.whole())
 
     def edit(
         self,
@@ -101,11 +102,11 @@ class DraftCache:
             return EditAnswer(result=done, analysis=self.draw(text, file=file, context=context, check=check))
         before = sheet.graph if sheet is not None else None
         analysis, now = self._analyzed(done.draft, done.outline, file, context, before, check=check)
-        difference = None
-        base = text_hash(text)
-        if before is not None and before.root is not None and now.root is not None and graph == base:
-            difference = graph_difference(base, before.nodes, now.nodes)
-        return EditAnswer(result=done, analysis=analysis, difference=difference)
+        if graph is not None and before is not None and before.nodes and now.nodes and graph == text_hash(text):
+            return EditAnswer(
+                result=done, analysis=analysis, difference=graph_difference(graph, before.nodes, now.nodes)
+            )
+        return EditAnswer(result=done, analysis=replace(analysis, graph=now.whole()))
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
@@ -130,9 +131,9 @@ class DraftCache:
         *,
         check: bool,
     ) -> tuple[DocumentAnalysis, DrawnGraph]:
-        drawn, graph = analyze_graph(draft, outline, file=file, context=context, before=before)
+        drawn, graph = draw_document(draft, outline, file=file, context=context, before=before)
         if check:
-            drawn = with_findings(drawn, draft.given, file=file, context=context, draft=draft)
+            drawn = with_findings(drawn, graph, draft.given, file=file, context=context, draft=draft)
         with self._lock:
             self._cache[file, draft.given] = _CachedDraft(graph, outline, draft)
             self._cache.move_to_end((file, draft.given))

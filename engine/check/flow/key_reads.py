@@ -12,6 +12,9 @@ from engine.document.expression.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 
+_NO_CONDITIONS: Mapping[tuple[str, ...], Template | ExpressionError] = {}
+_NO_ASSIGNMENTS: Mapping[tuple[str, str, str], Template | ExpressionError] = {}
+
 ReadOrigin = Literal["input", "mapped", "expression", "collect", "shared", "post"]
 
 
@@ -62,9 +65,11 @@ def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tup
             yield keys, found
 
 
-def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionError]:
+def conditions(placed: NodeAt) -> Mapping[tuple[str, ...], Template | ExpressionError]:
     """Return the compiled expressions of guard and foreach of a node, by the keys that lead to them."""
     node = placed.node
+    if node.guard is None and node.foreach is None:
+        return _NO_CONDITIONS
     found: dict[tuple[str, ...], Template | ExpressionError] = {}
     if node.guard is not None:
         found["guard", "when"] = template(node.guard.when)
@@ -74,20 +79,18 @@ def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionErr
     return found
 
 
-def assignments(placed: NodeAt) -> dict[tuple[str, str, str], Template | ExpressionError]:
+def assignments(placed: NodeAt) -> Mapping[tuple[str, str, str], Template | ExpressionError]:
     """Return the compiled values of post-conditions by `post`, event and userdata key, in run order."""
     post = placed.node.post
+    if post is None:
+        return _NO_ASSIGNMENTS
     sections = (
-        ()
-        if post is None
-        else (("on_success", post.on_success), ("on_failure", post.on_failure), ("on_halted", post.on_halted))
+        ("on_success", post.on_success),
+        ("on_failure", post.on_failure),
+        ("on_halted", post.on_halted),
+        ("always", post.always),
     )
-    always = (("always", post.always),) if post is not None else ()
-    return {
-        ("post", when, key): template(value)
-        for when, assigned in (*sections, *always)
-        for key, value in assigned.items()
-    }
+    return {("post", when, key): template(value) for when, assigned in sections for key, value in assigned.items()}
 
 
 def only_name(found: Template | ExpressionError) -> str | None:

@@ -65,9 +65,10 @@ def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Fi
     for name, found in subject.given_to(placed).items():
         if isinstance(found, ExpressionError):
             yield subject.finding("bad-expression", found.message, placed.path, "with", name, hint=found.hint or "")
-    for keys, found in (*conditions(placed).items(), *assignments(placed).items()):
-        if isinstance(found, ExpressionError):
-            yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
+    for several in (conditions(placed), assignments(placed)):
+        for keys, found in several.items():
+            if isinstance(found, ExpressionError):
+                yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
 
 
 def _check_names(
