@@ -34,7 +34,8 @@ class Draft:
         self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
         self._tree = reread.tree if reread is not None else read_syntax(self._plain(text), file=file)
         self._sources: dict[int, Collection] = reread.sources if reread is not None else {}
-        self._kept: list[object] = []
+        self._borrowed: list[object] = []
+        """Data with the text of other data, or of a clipboard."""
         if reread is None:
             self._take(self._tree)
         root = cast("Collection", self._tree.root)
@@ -67,6 +68,7 @@ class Draft:
         """
         other = read_syntax(self._plain(text), file="clipboard.yaml")
         self._take(other)
+        self._borrowed += [found.data for found in other.collections()]
         return cast("dict[str, object]", cast("Collection", other.root).data)
 
     def copied(self, value: object) -> object:
@@ -89,7 +91,7 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        return self._in_full(self._written()).given
+        return self._in_full(self._written(self._rewriter())).given
 
     def rewritten(self) -> Draft:
         """Return the current document, parsed again from its text; this consumes the draft.
@@ -97,12 +99,18 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        made = self._written()
-        found = reread(self._tree, made, self.data, file=self.file)
+        rewriter = self._rewriter()
+        made = self._written(rewriter)
+        for each in self._borrowed:
+            self._sources.pop(id(each), None)
+        found = reread(self._tree, made, self.data, file=self.file, sources=self._sources, unchanged=rewriter.whole)
         return Draft(self._with_newlines(made), file=self.file, reread=found) if found else self._in_full(made)
 
-    def _written(self) -> str:
-        return TextRewriter(self._sources, self.json).document(self._tree, self.data)
+    def _rewriter(self) -> TextRewriter:
+        return TextRewriter(self._sources, self.json)
+
+    def _written(self, rewriter: TextRewriter) -> str:
+        return rewriter.document(self._tree, self.data)
 
     def _in_full(self, made: str) -> Draft:
         # Text that ends with a line feed cannot be written on a last line without one.
@@ -129,11 +137,10 @@ class Draft:
     def _take(self, tree: SyntaxTree) -> None:
         for found in tree.collections():
             self._sources[id(found.data)] = found
-            self._kept.append(found.data)
 
     def _alike(self, original: object, made: object) -> object:
         source = self._sources.get(id(original))
         if source is not None:
             self._sources[id(made)] = source
-        self._kept.append(made)  # ids are reused after objects are deleted
+        self._borrowed.append(made)  # ids are reused after objects are deleted
         return made

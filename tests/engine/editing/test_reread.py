@@ -55,6 +55,7 @@ def _check(draft: Draft) -> None:
     collections, others = list(draft.collections()), list(again.collections())
     assert _shape(collections[0]) == _shape(others[0])
     assert all(draft.source_of(found.data) is found and found.origin is draft.origin for found in collections)
+    assert len(draft.sources) == len(collections)
     assert draft.data == again.data
 
 
