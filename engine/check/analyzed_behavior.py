@@ -170,6 +170,11 @@ def template(value: object) -> Template | ExpressionError:
         return ExpressionError(error.message, where=error.where, hint=error.hint)
 
 
+def is_constant(given: GivenValues) -> bool:
+    """Return whether no value contains an expression."""
+    return all(isinstance(found, Template) and found.constant for found in given.values())
+
+
 def leaf_success(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
     """Return the outcomes of a leaf of a tree that mean SUCCESS there."""
     return frozenset(placed.node.success) or subject.nominal[placed.path]

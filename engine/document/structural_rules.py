@@ -31,6 +31,7 @@ _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
 """Kinds that are only allowed inside a tree."""
 _STATUS_TARGETS = WRAPPERS[1:]
 """The wrappers that have a target."""
+_RULES_OF_TREES, _RULES_OUTSIDE = "rules inside trees", "rules outside trees"
 _CONTAINER_KEYS = {
     "with": "only states and behavior references have parameters",
     "in": "the children of a container read the keys around it directly",
@@ -74,8 +75,13 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         parent = path.rpartition("/")[0]
         if parent not in in_tree:
             continue
-        kinds = _one_kind(behavior, path, node)
-        found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        rules = _RULES_OF_TREES if in_tree[parent] else _RULES_OUTSIDE
+        found: list[RuleViolation] = []
+        if rules not in node.clear_of:
+            kinds = _one_kind(behavior, path, node)
+            found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        if not found:
+            node.clear_of.add(rules)
         yield from found
         if all(breach.excess is not None for breach in found):
             # Inside a machine that is a leaf of a tree, machine rules apply again.

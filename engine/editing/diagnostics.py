@@ -10,10 +10,9 @@ import msgspec
 
 from engine.check import Finding, check_survey
 from engine.document.loader import survey_behavior
-from engine.document.text.yaml_source import DocumentSource
 from engine.editing.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
 from engine.editing.draft import Draft
-from engine.editing.draft_source import syntax_source
+from engine.editing.draft_source import keep_nodes, syntax_source
 from engine.editing.outline import Outline, Plain
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError, Position
@@ -87,13 +86,12 @@ def with_findings(
     *,
     file: Path,
     context: ProjectContext,
-    draft: Draft | None = None,
+    read: tuple[Draft, Outline] | None = None,
 ) -> DocumentAnalysis:
-    """Return the diagnostics of a text whose graph exists, with its findings; `draft` is the text as it was read."""
+    """Return the diagnostics of a text whose graph exists, with its findings; `read` is the text as it was read."""
     if drawn.checked:
         return drawn
-    source = syntax_source(draft) if draft is not None else None
-    found = _check(text, file, context, source)
+    found = _check(text, file, context, read)
     return replace(drawn, findings=sorted_findings(found, graph), checked=True)
 
 
@@ -108,8 +106,13 @@ def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[Find
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
 
 
-def _check(text: str, file: Path, context: ProjectContext, source: DocumentSource | None = None) -> list[FindingView]:
+def _check(
+    text: str, file: Path, context: ProjectContext, read: tuple[Draft, Outline] | None = None
+) -> list[FindingView]:
+    source = syntax_source(read[0]) if read is not None else None
     survey = survey_behavior(file, text, source=source, within=context.project)
+    if read is not None and survey.behavior is not None and survey.behavior.source is source:
+        keep_nodes(survey.behavior, *read)
     cell = survey.behavior.cell_file if survey.behavior is not None else None
     entries = context.stored(cell) if cell is not None else None
     return [finding_view(finding, file) for finding in check_survey(survey, file, context.catalogue, entries)]

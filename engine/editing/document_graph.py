@@ -68,14 +68,14 @@ Lines = tuple[int, int, int]
 class DrawnNode(msgspec.Struct, frozen=True, gc=False):
     """A node by itself: `node` has no children, transitions and lines; `own` is its JSON.
 
-    `children` are the names of its children, `arrows` the transitions from each of them that has any.
+    `children` are the names of its children, `arrows` its own transitions, which belong to its container.
     """
 
     node: DocumentNode
     own: bytes
     lines: Lines
-    children: tuple[str, ...] = ()
-    arrows: dict[str, tuple[GraphTransition, ...]] = {}
+    children: tuple[str, ...]
+    arrows: tuple[GraphTransition, ...]
 
 
 class _Leaf(msgspec.Struct, frozen=True):
@@ -105,7 +105,7 @@ class DrawnGraph:
                 column=column,
                 end_line=end_line,
                 children=tuple(made[f"{path}/{name}"] for name in drawn.children),
-                transitions=tuple(arrow for group in drawn.arrows.values() for arrow in group),
+                transitions=tuple(arrow for name in drawn.children for arrow in self.nodes[f"{path}/{name}"].arrows),
             )
         return made.get("root")
 
@@ -181,32 +181,25 @@ class _Drawing:
         source = self._draft.source_of(ref.data)
         lines = self._lines(source)
         if source is None or not isinstance(ref.data.get("state"), str) or ref.parent is None:
-            node = self._new(ref)
             self._place(ref.data, ref.data.get(ref.kind), ref.body.get("states"), ref.body.get("children"))
-            names = tuple(child.name for child in self._outline.children(ref))
-            return DrawnNode(node, msgspec.json.encode(node), lines, names, self._arrows(ref))
+            return self._drawn(ref, lines)
         # What it shows follows from its text and from these.
         around = (
-            ref.path, ref.role, ref.parent.kind in MACHINES, _text(self._notes.get(ref.path)), self._point(ref.path),
+            ref.path, ref.role, ref.parent.kind in MACHINES, _text(self._notes.get(ref.path)),
+            self._draft.source_of(self._view.get(ref.path)),
         )  # fmt: skip
         leaf = self._known.get(id(source))
-        if leaf is not None and leaf.source is source and leaf.around == around:
-            if leaf.drawn.lines != lines:
-                leaf = _Leaf(source, around, DrawnNode(leaf.drawn.node, leaf.drawn.own, lines))
-        else:
-            node = self._new(ref)
-            leaf = _Leaf(source, around, DrawnNode(node, msgspec.json.encode(node), lines))
+        if leaf is None or leaf.source is not source or leaf.around != around:
+            leaf = _Leaf(source, around, self._drawn(ref, lines))
+        elif leaf.drawn.lines != lines:
+            leaf = _Leaf(source, around, msgspec.structs.replace(leaf.drawn, lines=lines))
         self.leaves[id(source)] = leaf
         return leaf.drawn
 
-    def _point(self, path: str) -> tuple[float, float] | None:
-        point = self._view.get(path)
-        if not isinstance(point, list):
-            return None
-        numbers = [
-            each for each in cast("list[object]", point) if isinstance(each, int | float) and not isinstance(each, bool)
-        ]
-        return (float(numbers[0]), float(numbers[1])) if len(numbers) == 2 else None
+    def _drawn(self, ref: NodeRef, lines: Lines) -> DrawnNode:
+        node = self._new(ref)
+        children = tuple(child.name for child in self._outline.children(ref))
+        return DrawnNode(node, msgspec.json.encode(node), lines, children, _arrows(ref))
 
     def _new(self, ref: NodeRef) -> DocumentNode:
         """Draw a node by itself."""
@@ -249,7 +242,7 @@ class _Drawing:
             success=texts(data.get("success")),
             every=data.get("every"),
             notes=_text(self._notes.get(ref.path)),
-            position=self._point(ref.path),
+            position=_point(self._view.get(ref.path)),
             rules=tuple(_rules(ref)),
             otherwise=_optional(body.get("otherwise")) if ref.kind == "concurrency" else None,
             userdata=_mapping(body.get("userdata")),
@@ -262,20 +255,6 @@ class _Drawing:
         """Return the outcomes of a node; for the root also the declared ones to which nothing leads yet."""
         declared = texts(self._draft.data.get("outcomes")) if ref.parent is None else ()
         return tuple(dict.fromkeys((*declared, *own)))
-
-    def _arrows(self, ref: NodeRef) -> dict[str, tuple[GraphTransition, ...]]:
-        found: dict[str, tuple[GraphTransition, ...]] = {}
-        for child in self._outline.children(ref) if ref.kind in MACHINES else ():
-            ways = _names(child.data.get("transitions"))
-            guard, timeout = _mapping(child.data.get("guard")), _mapping(child.data.get("timeout"))
-            ways |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
-            ways |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
-            ways |= {"error": str(child.data["on_error"])} if child.data.get("on_error") else {}
-            if ways:
-                found[child.name] = tuple(
-                    GraphTransition(source=child.name, outcome=way, target=target) for way, target in ways.items()
-                )
-        return found
 
     def _document(self, reference: object) -> str | None:
         file = self._knowledge.file_of(reference) if isinstance(reference, str) else None
@@ -290,6 +269,17 @@ class _Drawing:
 
     def _line(self, offset: int) -> int:
         return bisect_right(self._starts, offset) - 1
+
+
+def _arrows(ref: NodeRef) -> tuple[GraphTransition, ...]:
+    if ref.parent is None or ref.parent.kind not in MACHINES:
+        return ()
+    ways = _names(ref.data.get("transitions"))
+    guard, timeout = _mapping(ref.data.get("guard")), _mapping(ref.data.get("timeout"))
+    ways |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
+    ways |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
+    ways |= {"error": str(ref.data["on_error"])} if ref.data.get("on_error") else {}
+    return tuple(GraphTransition(source=ref.name, outcome=way, target=target) for way, target in ways.items())
 
 
 def _rules(ref: NodeRef) -> list[ConcurrencyCondition]:
@@ -320,3 +310,12 @@ def _text(value: object) -> str:
 
 def _optional(value: object) -> str | None:
     return value if isinstance(value, str) and value else None
+
+
+def _point(value: object) -> tuple[float, float] | None:
+    if not isinstance(value, list):
+        return None
+    numbers = [
+        each for each in cast("list[object]", value) if isinstance(each, int | float) and not isinstance(each, bool)
+    ]
+    return (float(numbers[0]), float(numbers[1])) if len(numbers) == 2 else None

@@ -133,7 +133,7 @@ class DraftCache:
     ) -> tuple[DocumentAnalysis, DrawnGraph]:
         drawn, graph = draw_document(draft, outline, file=file, context=context, before=before)
         if check:
-            drawn = with_findings(drawn, graph, draft.given, file=file, context=context, draft=draft)
+            drawn = with_findings(drawn, graph, draft.given, file=file, context=context, read=(draft, outline))
         with self._lock:
             self._cache[file, draft.given] = _CachedDraft(graph, outline, draft)
             self._cache.move_to_end((file, draft.given))

@@ -13,6 +13,7 @@ from typing import Protocol, cast
 import msgspec
 import yaml
 
+from engine.document.nodes.node_spec import NodeSpec
 from engine.document.text.yaml_source import SURROGATE_PAIR, StrictReader
 from engine.errors import DocumentError, Position
 
@@ -74,6 +75,8 @@ class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
     entries: list[Member] = []
     behind: int = 0
     read: Content | None = None
+    node: NodeSpec | None = None
+    """The node that its text describes, once it was decoded."""
 
     @property
     def members(self) -> list[Member]:

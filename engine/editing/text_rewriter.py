@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from operator import is_
 from typing import cast
 
 from engine.document.nodes.node_kind import KINDS
@@ -108,7 +109,10 @@ class TextRewriter:
         if isinstance(data, dict) and tuple(data) != content.keys:
             return False
         values = tuple(data.values() if isinstance(data, dict) else data)
-        if len(values) != len(content.values) or not all(map(_is_unchanged, content.values, values)):
+        if len(values) != len(content.values):
+            return False
+        # Nearly all values are the same objects, which needs no call of a function for each.
+        if not all(map(is_, content.values, values)) and not all(map(_is_unchanged, content.values, values)):
             return False
         return all(self._is_whole(inner, inner.data) for inner in content.inside)
 
