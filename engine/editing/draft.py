@@ -31,8 +31,8 @@ class Draft:
     def __init__(self, text: str, *, file: str, reread: RereadTree | None = None) -> None:
         self.file = file
         self.given = text
-        self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
-        self._tree = reread.tree if reread is not None else read_syntax(self._plain(text), file=file)
+        self._newline = _newline_of(text)
+        self._tree = reread.tree if reread is not None else read_syntax(_plain(text), file=file)
         self._sources: dict[int, Collection] = reread.sources if reread is not None else {}
         self._borrowed: list[object] = []
         """Data with the text of other data, or of a clipboard."""
@@ -66,7 +66,7 @@ class Draft:
         Raises:
             DocumentError: it cannot be read.
         """
-        other = read_syntax(self._plain(text), file="clipboard.yaml")
+        other = read_syntax(_plain(text), file="clipboard.yaml")
         self._take(other)
         self._borrowed += [found.data for found in other.collections()]
         return cast("dict[str, object]", cast("Collection", other.root).data)
@@ -106,6 +106,17 @@ class Draft:
         found = reread(self._tree, made, self.data, file=self.file, sources=self._sources, unchanged=rewriter.whole)
         return Draft(self._with_newlines(made), file=self.file, reread=found) if found else self._in_full(made)
 
+    def reread(self, text: str) -> Draft:
+        """Return the draft of another text, of which only the lines that differ are read; this consumes the draft.
+
+        The draft must not have been changed.
+
+        Raises:
+            DocumentError: the text cannot be read.
+        """
+        found = reread(self._tree, _plain(text), None, file=self.file, sources=self._sources, unchanged=None)
+        return Draft(text, file=self.file, reread=found)
+
     def _rewriter(self) -> TextRewriter:
         return TextRewriter(self._sources, self.json)
 
@@ -131,9 +142,6 @@ class Draft:
     def _with_newlines(self, made: str) -> str:
         return made.replace("\n", self._newline) if self._newline != "\n" else made
 
-    def _plain(self, text: str) -> str:
-        return text.replace("\r\n", "\n") if self._newline != "\n" else text
-
     def _take(self, tree: SyntaxTree) -> None:
         for found in tree.collections():
             self._sources[id(found.data)] = found
@@ -144,3 +152,11 @@ class Draft:
             self._sources[id(made)] = source
         self._borrowed.append(made)  # ids are reused after objects are deleted
         return made
+
+
+def _newline_of(text: str) -> str:
+    return "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
+
+
+def _plain(text: str) -> str:
+    return text.replace("\r\n", "\n") if _newline_of(text) != "\n" else text

@@ -55,11 +55,11 @@ class RereadTree:
 def reread(
     before: SyntaxTree,
     text: str,
-    data: Plain,
+    data: Plain | None,
     *,
     file: str,
     sources: dict[int, Collection],
-    unchanged: Mapping[Collection, bool],
+    unchanged: Mapping[Collection, bool] | None,
 ) -> RereadTree | None:
     """Return the tree of `text` if it says `data`; it consumes the tree `before`. None asks for a full read.
 
@@ -68,10 +68,11 @@ def reread(
     Args:
         before: The tree of the text before.
         text: The new text, with lines that end in a line feed.
-        data: The data of `before` after an edit: unchanged dicts and lists are the same objects.
+        data: The data of `before` after an edit: unchanged dicts and lists are the same objects. None for any text.
         file: Its name, for positions.
         sources: The collections of `before` by the id of their data; it becomes that of the new tree.
-        unchanged: Collections of `before`: true where the data is known to be what the text says.
+        unchanged: Collections of `before`: true where the data is known to be what the text says; None if it is
+            everywhere.
     """
     root = before.root
     if before.origin.json or not isinstance(root, Collection) or root.flow or len(text) > MAX_BYTES:
@@ -81,7 +82,7 @@ def reread(
     before.origin.text = text
     try:
         made = reading.document(root)
-        reading.take(made, data, 0, 1)
+        reading.take(made, reading.said(made) if data is None else data, 0, 1)
         reading.require_limits()
         reading.forget_gone()
     except (_Unlike, DocumentError):
@@ -95,7 +96,7 @@ class _Rereading:
     origin: SourceText
     file: str
     sources: dict[int, Collection]
-    unchanged: Mapping[Collection, bool]
+    unchanged: Mapping[Collection, bool] | None
     _shifts: dict[int, list[int | None]] = field(default_factory=dict[int, "list[int | None]"])
     """By the id of a new collection around kept members: how far each of them moved; None for a new one."""
     _homes: dict[int, Collection] = field(default_factory=dict[int, Collection])
@@ -248,7 +249,7 @@ class _Rereading:
     def take(self, found: Collection, value: object, by: int, depth: int) -> None:
         """Move a collection and everything inside it, and require that it says `value`."""
         found.move(by)
-        if value is found.data and self.unchanged.get(found):
+        if value is found.data and self._is_unchanged(found):
             content = found.content
             self._nodes += content.nodes
             self._expressions += content.expressions
@@ -275,6 +276,18 @@ class _Rereading:
         else:
             for member, inner in zip(found.members, data, strict=True):
                 self._value(member.value, inner, depth)
+
+    def _is_unchanged(self, found: Collection) -> bool:
+        if self.unchanged is None:
+            return self.sources.get(id(found.data)) is found
+        return self.unchanged.get(found, False)
+
+    def said(self, found: Collection) -> Plain | list[object]:
+        """Return the data of a collection; that of kept and new parts is the one that was read."""
+        if id(found) not in self._shifts:
+            return found.data
+        parts = ((cast("Scalar", member.key).value, member.value) for member in found.entries)
+        return {str(key): self.said(part) if isinstance(part, Collection) else part.value for key, part in parts}
 
     def _take_entries(self, found: Collection, data: Plain, shifts: list[int | None], depth: int) -> None:
         previous = found.start
