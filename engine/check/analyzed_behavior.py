@@ -63,6 +63,8 @@ class AnalyzedBehavior:
     """Its unreadable parts."""
     given: Mapping[str, GivenValues]
     """The compiled values under `with`, by path and name; nodes without values are absent."""
+    targets: Mapping[str, Mapping[tuple[str, ...], str]]
+    """The targets of each node as in a machine, by path and by the keys inside the node that name them."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
     nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
@@ -141,8 +143,7 @@ def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[Analyze
     return tuple(_make(current, catalogue, bases, made) for current in order)
 
 
-def targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
-    """Return the targets of a node in a machine, by the keys inside the node that name them."""
+def _targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
     if node.guard is not None or node.timeout is not None or node.on_error is not None:
         found.update(diversions(node))
@@ -207,6 +208,7 @@ def _make(
             for path, placed in nodes.items()
             if placed.node.parameters
         },
+        targets={path: _targets(placed.node) for path, placed in nodes.items()},
         outcomes=outcomes,
         nominal=nominal,
         statuses=statuses,
@@ -291,7 +293,7 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
         return FOREACH_OUTCOMES
     if node.sequential is None:
         return TREE_OUTCOMES
-    leading = [target for child in node.children.values() for target in targets(child).values()]
+    leading = [target for child in subject.children(placed) for target in subject.targets[child.path].values()]
     return tuple(dict.fromkeys(target for target in leading if target not in node.children))
 
 
