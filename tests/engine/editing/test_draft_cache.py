@@ -11,7 +11,7 @@ from msgspec import Meta
 from benchmarks.large_document import large_document
 from engine.document import parse_behavior
 from engine.document.loader import survey_behavior
-from engine.document.node_spec import NodeSpec
+from engine.document.nodes.node_spec import NodeSpec
 from engine.editing import DocumentAnalysis, Draft, ProjectContext, analyze_text, apply_edits, read_edits
 from engine.editing.apply import apply_edits_to_draft
 from engine.editing.diagnostics import text_hash
