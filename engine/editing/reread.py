@@ -82,7 +82,7 @@ def reread(
     before.origin.text = text
     try:
         made = reading.document(root)
-        reading.take(made, reading.said(made) if data is None else data, 0, 1)
+        reading.take(made, reading.data_of(made) if data is None else data, 0, 1)
         reading.require_limits()
         reading.forget_gone()
     except (_Unlike, DocumentError):
@@ -282,12 +282,12 @@ class _Rereading:
             return self.sources.get(id(found.data)) is found
         return self.unchanged.get(found, False)
 
-    def said(self, found: Collection) -> Plain | list[object]:
+    def data_of(self, found: Collection) -> Plain | list[object]:
         """Return the data of a collection; that of kept and new parts is the one that was read."""
         if id(found) not in self._shifts:
             return found.data
         parts = ((cast("Scalar", member.key).value, member.value) for member in found.entries)
-        return {str(key): self.said(part) if isinstance(part, Collection) else part.value for key, part in parts}
+        return {str(key): self.data_of(part) if isinstance(part, Collection) else part.value for key, part in parts}
 
     def _take_entries(self, found: Collection, data: Plain, shifts: list[int | None], depth: int) -> None:
         previous = found.start
