@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 from fastapi import HTTPException, Query
@@ -96,14 +95,13 @@ def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditResultB
     """Apply edits to a text, all or none; nothing is saved. A graph that the server knows comes as a difference."""
     edits, refusal = read_edits(body.edits)
     answer = services.documents.edit(document_id, body.text, edits, check=body.check, graph=body.graph)
-    done, difference = answer.result, answer.difference
-    analysis = answer.analysis if difference is None else replace(answer.analysis, graph=None)
+    done = answer.result
     return EditResultBody(
-        **fields_of(analysis),
+        **fields_of(answer.analysis),
         text=done.text,
         changed=done.changed,
         refused=refusal or done.refused,
-        difference=difference,
+        difference=answer.difference,
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+import msgspec
+
 from engine.check.end_statuses import BOTH, Status, Statuses, closed_statuses, end_statuses
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import DocumentGaps
@@ -22,8 +24,7 @@ _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
 _NOTHING_GIVEN: GivenValues = {}
 
 
-@dataclass(frozen=True, kw_only=True)
-class NodeAt:
+class NodeAt(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """A node with its path inside its own document and the path of the container around it."""
 
     path: str
@@ -34,11 +35,8 @@ class NodeAt:
     container: NodeSpec | None
     in_tree: bool
     """Whether the node is a direct child of `tree`, a composite or a decorator."""
-
-    @property
-    def is_part(self) -> bool:
-        """True for composites, decorators and py_trees behaviours, which occur only in trees."""
-        return self.kind in _PARTS
+    is_part: bool
+    """True for composites, decorators and py_trees behaviours, which occur only in trees."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +63,8 @@ class AnalyzedBehavior:
     """Its unreadable parts."""
     given: Mapping[str, GivenValues]
     """The compiled values under `with`, by path and name; nodes without values are absent."""
+    targets: Mapping[str, Mapping[tuple[str, ...], str]]
+    """The targets of each node as in a machine, by path and by the keys inside the node that name them."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
     nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
@@ -143,8 +143,7 @@ def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[Analyze
     return tuple(_make(current, catalogue, bases, made) for current in order)
 
 
-def targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
-    """Return the targets of a node in a machine, by the keys inside the node that name them."""
+def _targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
     if node.guard is not None or node.timeout is not None or node.on_error is not None:
         found.update(diversions(node))
@@ -170,6 +169,11 @@ def template(value: object) -> Template | ExpressionError:
     except ExpressionError as error:
         # Without its traceback, whose frames would keep the checked objects alive.
         return ExpressionError(error.message, where=error.where, hint=error.hint)
+
+
+def is_constant(given: GivenValues) -> bool:
+    """Return whether no value contains an expression."""
+    return all(isinstance(found, Template) and found.constant for found in given.values())
 
 
 def leaf_success(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
@@ -204,6 +208,7 @@ def _make(
             for path, placed in nodes.items()
             if placed.node.parameters
         },
+        targets={path: _targets(placed.node) for path, placed in nodes.items()},
         outcomes=outcomes,
         nominal=nominal,
         statuses=statuses,
@@ -227,14 +232,16 @@ def _placed(behavior: Behavior) -> tuple[dict[str, NodeAt], dict[str, tuple[Node
     for path, node in behavior.nodes():
         parent, _, name = path.rpartition("/")
         around = nodes[parent] if parent else None
+        kind = node.kind
         nodes[path] = placed = NodeAt(
             path=path,
             name=name,
-            kind=node.kind,
+            kind=kind,
             node=node,
             parent=parent or None,
             container=around.node if around is not None else None,
             in_tree=around is not None and (around.is_part or around.kind == "tree"),
+            is_part=kind in _PARTS,
         )
         if parent:
             inside.setdefault(parent, []).append(placed)
@@ -286,7 +293,7 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
         return FOREACH_OUTCOMES
     if node.sequential is None:
         return TREE_OUTCOMES
-    leading = [target for child in node.children.values() for target in targets(child).values()]
+    leading = [target for child in subject.children(placed) for target in subject.targets[child.path].values()]
     return tuple(dict.fromkeys(target for target in leading if target not in node.children))
 
 

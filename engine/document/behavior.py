@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
@@ -90,9 +90,9 @@ class Behavior(DocumentFile[BehaviorDocument]):
         meaning = sha256(self.meaning.encode() + substitutes.text).hexdigest()
         return replace(self, substitutes=substitutes, meaning=meaning)
 
-    def nodes(self) -> Iterator[tuple[str, NodeSpec]]:
-        """Yield (path, node) in document order, containers before their children."""
-        return walk("root", self.root)
+    def nodes(self) -> tuple[tuple[str, NodeSpec], ...]:
+        """Return (path, node) in document order, containers before their children."""
+        return self.root.nodes_as_root
 
     def position(self, path: str, *keys: str | int) -> Position:
         """Return the position of the node at `path` (`root/approach/left`), or of a value inside it.
@@ -117,12 +117,3 @@ class Behavior(DocumentFile[BehaviorDocument]):
             steps += node.child_keys(name)
             node = node.children[name]
         return tuple(steps)
-
-
-def walk(path: str, node: NodeSpec) -> Iterator[tuple[str, NodeSpec]]:
-    """Yield (path, node) of a node and everything inside it, in document order."""
-    due = [(path, node)]
-    while due:
-        here, current = due.pop()
-        yield here, current
-        due += [(f"{here}/{name}", child) for name, child in reversed(list(current.children.items()))]

@@ -17,6 +17,7 @@ from engine.document.nodes.node_spec import (
     TREE_KINDS,
     TREE_OUTCOMES,
     ConcurrencySpec,
+    ForEachSpec,
     NodeSpec,
     ParallelSpec,
 )
@@ -26,6 +27,11 @@ from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 
 _SHORTEST_EVERY_S = 1e-3
+_PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
+"""Kinds that are only allowed inside a tree."""
+_STATUS_TARGETS = WRAPPERS[1:]
+"""The wrappers that have a target."""
+_RULES_OF_TREES, _RULES_OUTSIDE = "rules inside trees", "rules outside trees"
 _CONTAINER_KEYS = {
     "with": "only states and behavior references have parameters",
     "in": "the children of a container read the keys around it directly",
@@ -69,12 +75,17 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         parent = path.rpartition("/")[0]
         if parent not in in_tree:
             continue
-        kinds = _one_kind(behavior, path, node)
-        found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        rules = _RULES_OF_TREES if in_tree[parent] else _RULES_OUTSIDE
+        found: list[RuleViolation] = []
+        if rules not in node.clear_of:
+            kinds = _one_kind(behavior, path, node)
+            found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        if not found:
+            node.clear_of.add(rules)
         yield from found
         if all(breach.excess is not None for breach in found):
             # Inside a machine that is a leaf of a tree, machine rules apply again.
-            in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
+            in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in _PARTS)
 
 
 def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:
@@ -85,20 +96,22 @@ def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) ->
     if node.concurrency is not None:
         yield from _conditions(behavior, path, node.concurrency)
     yield from _tree_part(behavior, path, node) if in_tree else _no_tree_part(behavior, path, node)
-    yield from _rounds(behavior, path, node)
-    yield from _every(behavior, path, node, in_tree=in_tree)
+    if node.foreach is not None:
+        yield from _rounds(behavior, path, node.foreach)
+    if node.every is not None:
+        yield from _every(behavior, path, node, node.every, in_tree=in_tree)
 
 
-def _every(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:
-    if node.every is None:
-        return
+def _every(
+    behavior: Behavior, path: str, node: NodeSpec, every: float | str, *, in_tree: bool
+) -> Iterator[RuleViolation]:
     where = behavior.key_position(path, "every")
     if not in_tree or (node.behaviour is None and node.kind not in KINDS):
         own = [f"`{kind.kind}`" for kind in NODE_KINDS.values() if kind.is_decorator and kind.has("every")]
         hint = f"a {' or '.join(own)} has its own inside it"
         error = DocumentError("`every` goes with a check or a `behaviour` in a tree", where=where, hint=hint)
         yield RuleViolation(path=path, error=error, excess=("every",))
-    elif seconds(node.every) < _SHORTEST_EVERY_S:
+    elif seconds(every) < _SHORTEST_EVERY_S:
         error = DocumentError("`every` is at least 1 ms", where=where, hint="100 ms is typical")
         yield RuleViolation(path=path, error=error, excess=("every",))
 
@@ -152,7 +165,7 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
             hint = "trees have success and failure"
             error = DocumentError(f"a part of a tree has no `{key}`", where=where, hint=hint)
             yield RuleViolation(path=path, error=error, excess=(key,))
-    for key in WRAPPERS[1:]:
+    for key in _STATUS_TARGETS:
         wrapper = getattr(node, key)
         if wrapper is None:
             continue
@@ -172,17 +185,17 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
             f"`on_error` inside a tree cannot be `{node.on_error}`", where=where, hint=f"use {_list(TREE_OUTCOMES)}"
         )
         yield RuleViolation(path=path, error=error, excess=("on_error",))
-    if node.kind in (*TREE_KINDS, *WRAPPERS):
+    if node.kind in _PARTS:
         yield from _bare(behavior, path, node)
-    yield from _policy(behavior, path, node)
+    if isinstance(node.parallel, ParallelSpec):
+        yield from _policy(behavior, path, node, node.parallel)
 
 
-def _policy(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+def _policy(behavior: Behavior, path: str, node: NodeSpec, group: ParallelSpec) -> Iterator[RuleViolation]:
     """Require that a policy of a parallel names its children."""
-    policy = node.parallel.policy if isinstance(node.parallel, ParallelSpec) else ()
-    if isinstance(node.parallel, ParallelSpec) and node.parallel.counts:
-        yield from _thresholds(behavior, path, node.parallel)
-    for index, name in enumerate(() if isinstance(policy, str) else policy):
+    if group.counts:
+        yield from _thresholds(behavior, path, group)
+    for index, name in enumerate(() if isinstance(group.policy, str) else group.policy):
         if name not in node.children:
             where = behavior.position(path, "parallel", "policy", index)
             error = DocumentError(
@@ -284,7 +297,7 @@ def _bare(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolati
 
 
 def _no_tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
-    if node.kind in (*TREE_KINDS, *WRAPPERS):
+    if node.kind in _PARTS:
         where = behavior.key_position(path, node.kind)
         hint = f"put it inside `tree:`, or use one of {_list(KINDS)}"
         error = DocumentError(f"`{node.kind}` is only allowed inside a tree", where=where, hint=hint)
@@ -295,7 +308,7 @@ def _no_tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[Rul
             where = behavior.key_position(path, key)
             error = DocumentError(f"`{key}` of a node is only allowed inside a tree", where=where, hint="remove it")
             yield RuleViolation(path=path, error=error, excess=(key,))
-    for key in WRAPPERS[1:]:
+    for key in _STATUS_TARGETS:
         wrapper = getattr(node, key)
         if wrapper is not None and wrapper.to is None:
             where = behavior.position(path, key)
@@ -303,9 +316,8 @@ def _no_tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[Rul
             yield RuleViolation(path=path, error=error, excess=(key,))
 
 
-def _rounds(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
-    rounds = node.foreach
-    if rounds is not None and (rounds.items is None) == (rounds.times is None):
+def _rounds(behavior: Behavior, path: str, rounds: ForEachSpec) -> Iterator[RuleViolation]:
+    if (rounds.items is None) == (rounds.times is None):
         where = behavior.key_position(path, "foreach")
         error = DocumentError("a foreach has either `items` or `times`", where=where, hint="set one of them")
         yield RuleViolation(path=path, error=error, excess=("foreach", "times") if rounds.times is not None else ())

@@ -105,7 +105,6 @@ def apply_edits_to_draft(
         session = EditSession(draft, context, outline)
         for each in edits:
             _MAKERS[type(each)](session, each)
-            session.stale()
             index += 1
         changed = session.changed()
         made = draft.rewritten()

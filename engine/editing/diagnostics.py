@@ -10,10 +10,9 @@ import msgspec
 
 from engine.check import Finding, check_survey
 from engine.document.loader import survey_behavior
-from engine.document.text.yaml_source import DocumentSource
 from engine.editing.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
 from engine.editing.draft import Draft
-from engine.editing.draft_source import syntax_source
+from engine.editing.draft_source import keep_nodes, syntax_source
 from engine.editing.outline import Outline, Plain
 from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError, Position
@@ -45,7 +44,8 @@ def analyze_text(text: str, *, file: Path, context: ProjectContext) -> DocumentA
         draft = Draft(text, file=str(file))
     except DocumentError as error:
         return analyze_unreadable_text(text, error, file=file, context=context)
-    return with_findings(draw_document(draft, file=file, context=context), text, file=file, context=context)
+    drawn, graph = draw_document(draft, Outline(draft.data), file=file, context=context)
+    return replace(with_findings(drawn, graph, text, file=file, context=context), graph=graph.whole())
 
 
 def analyze_unreadable_text(
@@ -57,15 +57,12 @@ def analyze_unreadable_text(
     return DocumentAnalysis(hash=text_hash(text), graph=None, document=None, findings=told, checked=True)
 
 
-def draw_document(draft: Draft, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
-    """Build the graph of a text, as if it were the content of `file`; one that leaves the project is not checked."""
-    return analyze_graph(draft, Outline(draft.data), file=file, context=context)[0]
-
-
-def analyze_graph(
+def draw_document(
     draft: Draft, outline: Outline, *, file: Path, context: ProjectContext, before: DrawnGraph | None = None
 ) -> tuple[DocumentAnalysis, DrawnGraph]:
-    """Build the graph of a text like `draw_document`; also return it node by node.
+    """Build the graph of a text, as if it were the content of `file`; one that leaves the project is not checked.
+
+    The analysis is without the graph: who needs it as one value takes it `whole`.
 
     Args:
         draft: The text as it was read.
@@ -75,28 +72,32 @@ def analyze_graph(
         before: The graph of the text from which the draft was made.
     """
     graph = draw_graph(draft, context, outline, before)
-    out = sorted_findings(find_external_references(draft, context, file, outline), graph.root)
+    out = sorted_findings(find_external_references(draft, context, file, outline), graph)
     drawn = DocumentAnalysis(
-        hash=text_hash(draft.given), graph=graph.root, document=info_of(draft), findings=out, checked=bool(out)
+        hash=text_hash(draft.given), graph=None, document=info_of(draft), findings=out, checked=bool(out)
     )
     return drawn, graph
 
 
 def with_findings(
-    drawn: DocumentAnalysis, text: str, *, file: Path, context: ProjectContext, draft: Draft | None = None
+    drawn: DocumentAnalysis,
+    graph: DrawnGraph,
+    text: str,
+    *,
+    file: Path,
+    context: ProjectContext,
+    read: tuple[Draft, Outline] | None = None,
 ) -> DocumentAnalysis:
-    """Return the diagnostics of a text whose graph exists, with its findings; `draft` is the text as it was read."""
+    """Return the diagnostics of a text whose graph exists, with its findings; `read` is the text as it was read."""
     if drawn.checked:
         return drawn
-    source = syntax_source(draft) if draft is not None else None
-    found = _check(text, file, context, source)
-    return replace(drawn, findings=sorted_findings(found, drawn.graph), checked=True)
+    found = _check(text, file, context, read)
+    return replace(drawn, findings=sorted_findings(found, graph), checked=True)
 
 
-def sorted_findings(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
+def sorted_findings(found: list[FindingView], graph: DrawnGraph) -> tuple[FindingView, ...]:
     """Return findings in the order of the text, each with its line and node where one follows from the other."""
-    nodes = _by_line(graph) if found and graph is not None else []
-    return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
+    return tuple(sorted((_placed(each, graph) for each in found), key=lambda each: (each.line, each.column)))
 
 
 def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
@@ -105,8 +106,13 @@ def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[Find
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
 
 
-def _check(text: str, file: Path, context: ProjectContext, source: DocumentSource | None = None) -> list[FindingView]:
+def _check(
+    text: str, file: Path, context: ProjectContext, read: tuple[Draft, Outline] | None = None
+) -> list[FindingView]:
+    source = syntax_source(read[0]) if read is not None else None
     survey = survey_behavior(file, text, source=source, within=context.project)
+    if read is not None and survey.behavior is not None and survey.behavior.source is source:
+        keep_nodes(survey.behavior, *read)
     cell = survey.behavior.cell_file if survey.behavior is not None else None
     entries = context.stored(cell) if cell is not None else None
     return [finding_view(finding, file) for finding in check_survey(survey, file, context.catalogue, entries)]
@@ -175,20 +181,15 @@ def finding_view(finding: Finding, file: Path) -> FindingView:
     )  # fmt: skip
 
 
-def _by_line(graph: DocumentNode) -> list[DocumentNode]:
-    found = [graph]
-    for node in found:
-        found += node.children
-    return found
-
-
-def _placed(finding: FindingView, nodes: list[DocumentNode]) -> FindingView:
+def _placed(finding: FindingView, graph: DrawnGraph) -> FindingView:
     """Complete a finding that has only a node or only a line with the other one."""
     if finding.line == 0:
-        node = next((each for each in nodes if each.path == finding.path), None)
-        line, column = (node.line, node.column) if node is not None else (1, 1)
+        node = graph.nodes.get(finding.path)
+        line, column = node.lines[:2] if node is not None else (1, 1)
         return msgspec.structs.replace(finding, line=line, column=column)
     if finding.path:
         return finding
-    around = [node for node in nodes if node.line <= finding.line <= node.end_line]
-    return msgspec.structs.replace(finding, path=around[-1].path) if around else finding
+    around = [path for path, node in graph.nodes.items() if node.lines[0] <= finding.line <= node.lines[2]]
+    # The innermost one; the last where several are on this line.
+    path = max(reversed(around), key=lambda each: each.count("/"), default="")
+    return msgspec.structs.replace(finding, path=path)

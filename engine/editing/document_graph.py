@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import accumulate, groupby
-from operator import attrgetter
+from itertools import accumulate
 from typing import cast
 
 import msgspec
@@ -67,15 +66,16 @@ Lines = tuple[int, int, int]
 
 
 class DrawnNode(msgspec.Struct, frozen=True, gc=False):
-    """A node by itself: `own` is its JSON without children, transitions and lines.
+    """A node by itself: `node` has no children, transitions and lines; `own` is its JSON.
 
-    `children` are the names of its children, `arrows` the transitions from each of them that has any.
+    `children` are the names of its children, `arrows` its own transitions, which belong to its container.
     """
 
+    node: DocumentNode
     own: bytes
     lines: Lines
     children: tuple[str, ...]
-    arrows: dict[str, tuple[GraphTransition, ...]]
+    arrows: tuple[GraphTransition, ...]
 
 
 class _Leaf(msgspec.Struct, frozen=True):
@@ -83,18 +83,31 @@ class _Leaf(msgspec.Struct, frozen=True):
 
     source: Collection
     around: tuple[object, ...]
-    node: DocumentNode
-    own: bytes
+    drawn: DrawnNode
 
 
 @dataclass(frozen=True)
 class DrawnGraph:
-    """The graph of a document; None as `root` if it has none. `nodes` are those of the graph by path."""
+    """The graph of a document: its nodes by path, containers before their children."""
 
-    root: DocumentNode | None
     nodes: dict[str, DrawnNode]
     leaves: dict[int, _Leaf] = field(repr=False)
     """States by the id of their text, for the next graph."""
+
+    def whole(self) -> DocumentNode | None:
+        """Return the root with everything inside it; None if the document has no nodes."""
+        made: dict[str, DocumentNode] = {}
+        for path, drawn in reversed(self.nodes.items()):
+            line, column, end_line = drawn.lines
+            made[path] = msgspec.structs.replace(
+                drawn.node,
+                line=line,
+                column=column,
+                end_line=end_line,
+                children=tuple(made[f"{path}/{name}"] for name in drawn.children),
+                transitions=tuple(arrow for name in drawn.children for arrow in self.nodes[f"{path}/{name}"].arrows),
+            )
+        return made.get("root")
 
 
 class DocumentInfo(msgspec.Struct, frozen=True, kw_only=True):
@@ -138,13 +151,11 @@ def draw_graph(draft: Draft, context: ProjectContext, outline: Outline, before: 
         before: The graph of the text from which the draft was made: states whose text is the same are not drawn again.
     """
     drawing = _Drawing(draft, context, outline, before.leaves if before is not None else {})
-    root = outline.refs.get("root")
-    return DrawnGraph(drawing.node(root) if root is not None else None, drawing.drawn, drawing.leaves)
+    return DrawnGraph({path: drawing.node(ref) for path, ref in outline.refs.items()}, drawing.leaves)
 
 
 class _Drawing:
     def __init__(self, draft: Draft, context: ProjectContext, outline: Outline, known: Mapping[int, _Leaf]) -> None:
-        self.drawn: dict[str, DrawnNode] = {}
         self.leaves: dict[int, _Leaf] = {}
         self._known = known
         self._draft = draft
@@ -165,40 +176,34 @@ class _Drawing:
             for member in source.members if source is not None else ():
                 self._places[id(member.value)] = member.at
 
-    def node(self, ref: NodeRef) -> DocumentNode:
-        """Draw a node and everything inside it."""
-        lines = self._lines(ref.data)
+    def node(self, ref: NodeRef) -> DrawnNode:
+        """Draw a node, after its container."""
         source = self._draft.source_of(ref.data)
+        lines = self._lines(source)
         if source is None or not isinstance(ref.data.get("state"), str) or ref.parent is None:
-            return self._add(self._new(ref), lines)[0]
+            self._place(ref.data, ref.data.get(ref.kind), ref.body.get("states"), ref.body.get("children"))
+            return self._drawn(ref, lines)
         # What it shows follows from its text and from these.
         around = (
-            ref.path, ref.role, ref.kind, ref.parent.kind in MACHINES,
-            _text(self._notes.get(ref.path)), _point(self._view.get(ref.path)),
+            ref.path, ref.role, ref.parent.kind in MACHINES, _text(self._notes.get(ref.path)),
+            self._draft.source_of(self._view.get(ref.path)),
         )  # fmt: skip
         leaf = self._known.get(id(source))
-        if leaf is not None and leaf.source is source and leaf.around == around:
-            node, own = self._add(leaf.node, lines, leaf.own)
-        else:
-            node, own = self._add(self._new(ref), lines)
-        self.leaves[id(source)] = _Leaf(source, around, node, own)
-        return node
+        if leaf is None or leaf.source is not source or leaf.around != around:
+            leaf = _Leaf(source, around, self._drawn(ref, lines))
+        elif leaf.drawn.lines != lines:
+            leaf = _Leaf(source, around, msgspec.structs.replace(leaf.drawn, lines=lines))
+        self.leaves[id(source)] = leaf
+        return leaf.drawn
 
-    def _add(self, node: DocumentNode, lines: Lines, own: bytes | None = None) -> tuple[DocumentNode, bytes]:
-        """Return the node with its lines, and its own JSON."""
-        if own is None:
-            bare = msgspec.structs.replace(node, children=(), transitions=()) if node.children else node
-            own = msgspec.json.encode(bare)
-        children = tuple(child.name for child in node.children)
-        self.drawn[node.path] = DrawnNode(own, lines, children, _by_source(node.transitions))
-        if (node.line, node.column, node.end_line) != lines:
-            node = msgspec.structs.replace(node, line=lines[0], column=lines[1], end_line=lines[2])
-        return node, own
+    def _drawn(self, ref: NodeRef, lines: Lines) -> DrawnNode:
+        node = self._new(ref)
+        children = tuple(child.name for child in self._outline.children(ref))
+        return DrawnNode(node, msgspec.json.encode(node), lines, children, _arrows(ref))
 
     def _new(self, ref: NodeRef) -> DocumentNode:
-        """Draw a node, without its lines."""
+        """Draw a node by itself."""
         data, body = ref.data, ref.body
-        self._place(data, data.get(ref.kind), body.get("states"), body.get("children"))
         ends = self._knowledge.ends(self._outline, ref, known=self._ends)
         targets = _names(data.get("transitions"))
         wired = ref.parent is not None and ref.parent.kind in MACHINES
@@ -212,8 +217,8 @@ class _Drawing:
             title=_text(data.get("state") or reference or data.get("behaviour")),
             description=_text(data.get("description")),
             outcomes=self._outcomes(ref, ends.outcomes),
-            children=tuple(self.node(child) for child in self._outline.children(ref)),
-            transitions=self._arrows(ref),
+            children=(),
+            transitions=(),
             initial=_optional(body.get("initial")),
             conditions=_in_words(ref),
             line=0,
@@ -251,26 +256,12 @@ class _Drawing:
         declared = texts(self._draft.data.get("outcomes")) if ref.parent is None else ()
         return tuple(dict.fromkeys((*declared, *own)))
 
-    def _arrows(self, ref: NodeRef) -> tuple[GraphTransition, ...]:
-        if ref.kind not in MACHINES:
-            return ()
-        found: list[GraphTransition] = []
-        for child in self._outline.children(ref):
-            ways = _names(child.data.get("transitions"))
-            guard, timeout = _mapping(child.data.get("guard")), _mapping(child.data.get("timeout"))
-            ways |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
-            ways |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
-            ways |= {"error": str(child.data["on_error"])} if child.data.get("on_error") else {}
-            found += [GraphTransition(source=child.name, outcome=way, target=target) for way, target in ways.items()]
-        return tuple(found)
-
     def _document(self, reference: object) -> str | None:
         file = self._knowledge.file_of(reference) if isinstance(reference, str) else None
         return file.relative_to(self._knowledge.project.resolve()).as_posix() if file is not None else None
 
-    def _lines(self, data: Plain) -> Lines:
-        source = self._draft.source_of(data)
-        if not isinstance(source, Collection):
+    def _lines(self, source: Collection | None) -> Lines:
+        if source is None:
             return 1, 1, 1
         at = self._places.get(id(source), source.start)
         line = self._line(at)
@@ -280,8 +271,15 @@ class _Drawing:
         return bisect_right(self._starts, offset) - 1
 
 
-def _by_source(arrows: Iterable[GraphTransition]) -> dict[str, tuple[GraphTransition, ...]]:
-    return {source: tuple(group) for source, group in groupby(arrows, key=attrgetter("source"))}
+def _arrows(ref: NodeRef) -> tuple[GraphTransition, ...]:
+    if ref.parent is None or ref.parent.kind not in MACHINES:
+        return ()
+    ways = _names(ref.data.get("transitions"))
+    guard, timeout = _mapping(ref.data.get("guard")), _mapping(ref.data.get("timeout"))
+    ways |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
+    ways |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
+    ways |= {"error": str(ref.data["on_error"])} if ref.data.get("on_error") else {}
+    return tuple(GraphTransition(source=ref.name, outcome=way, target=target) for way, target in ways.items())
 
 
 def _rules(ref: NodeRef) -> list[ConcurrencyCondition]:

@@ -31,10 +31,11 @@ class Draft:
     def __init__(self, text: str, *, file: str, reread: RereadTree | None = None) -> None:
         self.file = file
         self.given = text
-        self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
-        self._tree = reread.tree if reread is not None else read_syntax(self._plain(text), file=file)
+        self._newline = _newline_of(text)
+        self._tree = reread.tree if reread is not None else read_syntax(_plain(text), file=file)
         self._sources: dict[int, Collection] = reread.sources if reread is not None else {}
-        self._kept: list[object] = []
+        self._borrowed: list[object] = []
+        """Data with the text of other data, or of a clipboard."""
         if reread is None:
             self._take(self._tree)
         root = cast("Collection", self._tree.root)
@@ -65,8 +66,9 @@ class Draft:
         Raises:
             DocumentError: it cannot be read.
         """
-        other = read_syntax(self._plain(text), file="clipboard.yaml")
+        other = read_syntax(_plain(text), file="clipboard.yaml")
         self._take(other)
+        self._borrowed += [found.data for found in other.collections()]
         return cast("dict[str, object]", cast("Collection", other.root).data)
 
     def copied(self, value: object) -> object:
@@ -89,7 +91,7 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        return self._in_full(self._written()).given
+        return self._in_full(self._written(self._rewriter())).given
 
     def rewritten(self) -> Draft:
         """Return the current document, parsed again from its text; this consumes the draft.
@@ -97,12 +99,29 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than requested.
         """
-        made = self._written()
-        found = reread(self._tree, made, self.data, file=self.file)
+        rewriter = self._rewriter()
+        made = self._written(rewriter)
+        for each in self._borrowed:
+            self._sources.pop(id(each), None)
+        found = reread(self._tree, made, self.data, file=self.file, sources=self._sources, unchanged=rewriter.whole)
         return Draft(self._with_newlines(made), file=self.file, reread=found) if found else self._in_full(made)
 
-    def _written(self) -> str:
-        return TextRewriter(self._sources, self.json).document(self._tree, self.data)
+    def reread(self, text: str) -> Draft:
+        """Return the draft of another text, of which only the lines that differ are read; this consumes the draft.
+
+        The draft must not have been changed.
+
+        Raises:
+            DocumentError: the text cannot be read.
+        """
+        found = reread(self._tree, _plain(text), None, file=self.file, sources=self._sources, unchanged=None)
+        return Draft(text, file=self.file, reread=found)
+
+    def _rewriter(self) -> TextRewriter:
+        return TextRewriter(self._sources, self.json)
+
+    def _written(self, rewriter: TextRewriter) -> str:
+        return rewriter.document(self._tree, self.data)
 
     def _in_full(self, made: str) -> Draft:
         # Text that ends with a line feed cannot be written on a last line without one.
@@ -123,17 +142,21 @@ class Draft:
     def _with_newlines(self, made: str) -> str:
         return made.replace("\n", self._newline) if self._newline != "\n" else made
 
-    def _plain(self, text: str) -> str:
-        return text.replace("\r\n", "\n") if self._newline != "\n" else text
-
     def _take(self, tree: SyntaxTree) -> None:
         for found in tree.collections():
             self._sources[id(found.data)] = found
-            self._kept.append(found.data)
 
     def _alike(self, original: object, made: object) -> object:
         source = self._sources.get(id(original))
         if source is not None:
             self._sources[id(made)] = source
-        self._kept.append(made)  # ids are reused after objects are deleted
+        self._borrowed.append(made)  # ids are reused after objects are deleted
         return made
+
+
+def _newline_of(text: str) -> str:
+    return "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
+
+
+def _plain(text: str) -> str:
+    return text.replace("\r\n", "\n") if _newline_of(text) != "\n" else text

@@ -5,14 +5,14 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.editing.apply import EditResult, apply_edits, apply_edits_to_draft
 from engine.editing.diagnostics import (
     DocumentAnalysis,
-    analyze_graph,
     analyze_unreadable_text,
+    draw_document,
     text_hash,
     with_findings,
 )
@@ -41,7 +41,7 @@ class _CachedDraft:
 
 @dataclass(frozen=True, kw_only=True)
 class EditAnswer:
-    """What an edit makes of a text, the graph of the result, and its difference from a graph that the asker has."""
+    """What an edit makes of a text, and the graph of the result; its difference from that of the asker instead."""
 
     result: EditResult
     analysis: DocumentAnalysis
@@ -63,14 +63,12 @@ class DraftCache:
 
     def draw(self, text: str, *, file: Path, context: ProjectContext, check: bool = False) -> DocumentAnalysis:
         """Parse a text and build its graph; the check runs if asked for, and if the text cannot be read."""
-        kept, sheet = self._taken(file, text)
         try:
-            draft = kept or Draft(text, file=str(file))
+            draft, outline, before = self._taken(file, text)
         except DocumentError as error:
             return analyze_unreadable_text(text, error, file=file, context=context)
-        outline = sheet.outline if sheet is not None and kept is not None else Outline(draft.data)
-        graph = sheet.graph if sheet is not None else None
-        return self._analyzed(draft, outline, file, context, graph, check=check)[0]
+        analysis, now = self._analyzed(draft, outline, file, context, before, check=check)
+        return replace(analysis, graph=now.whole())
 
     def edit(
         self,
@@ -92,33 +90,54 @@ class DraftCache:
             check: Whether to find the problems of the result.
             graph: The hash of the text of which the asker has the graph, if any.
         """
-        draft, sheet = self._taken(file, text)
-        if draft is not None and sheet is not None:
-            done = apply_edits_to_draft(draft, edits, context=context, outline=sheet.outline)
-        else:
+        before = self._graph_of(file, text)
+        near: DrawnGraph | None = None
+        try:
+            draft, outline, near = self._taken(file, text)
+            done = apply_edits_to_draft(draft, edits, context=context, outline=outline)
+        except DocumentError:
             done = apply_edits(text, edits, file=str(file), context=context)
         if done.draft is None or done.outline is None:
             return EditAnswer(result=done, analysis=self.draw(text, file=file, context=context, check=check))
-        before = sheet.graph if sheet is not None else None
-        analysis, now = self._analyzed(done.draft, done.outline, file, context, before, check=check)
-        difference = None
-        base = text_hash(text)
-        if before is not None and before.root is not None and now.root is not None and graph == base:
-            difference = graph_difference(base, before.nodes, now.nodes)
-        return EditAnswer(result=done, analysis=analysis, difference=difference)
+        analysis, now = self._analyzed(done.draft, done.outline, file, context, near, check=check)
+        if graph is not None and before is not None and before.nodes and now.nodes and graph == text_hash(text):
+            return EditAnswer(
+                result=done, analysis=analysis, difference=graph_difference(graph, before.nodes, now.nodes)
+            )
+        return EditAnswer(result=done, analysis=replace(analysis, graph=now.whole()))
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
         return self.draw(text, file=file, context=context, check=True)
 
-    def _taken(self, file: Path, text: str) -> tuple[Draft | None, _CachedDraft | None]:
-        """Return the draft of a text, and what else is known of it; the draft is taken out, to be changed."""
+    def _graph_of(self, file: Path, text: str) -> DrawnGraph | None:
         with self._lock:
-            sheet = self._cache.get((file, text))
-            if sheet is None:
-                return None, None
-            draft, sheet.draft = sheet.draft, None
-            return draft, sheet
+            known = self._cache.get((file, text))
+            return known.graph if known is not None else None
+
+    def _taken(self, file: Path, text: str) -> tuple[Draft, Outline, DrawnGraph | None]:
+        """Return the draft of a text, to be changed, with its nodes and a graph that has most of them.
+
+        It is that of another text of the file, of which the lines that differ are read, if it was used up: after a
+        step back, or for text that was typed.
+
+        Raises:
+            DocumentError: the text cannot be read.
+        """
+        with self._lock:
+            own = self._cache.get((file, text))
+            others = (each for (at, _), each in reversed(self._cache.items()) if at == file and each.draft is not None)
+            known = own if own is not None and own.draft is not None else next(others, None)
+            draft = known.draft if known is not None else None
+            if known is not None:
+                known.draft = None
+        if known is None or draft is None:
+            draft = Draft(text, file=str(file))
+            return draft, Outline(draft.data), None
+        if own is not None and known is own:
+            return draft, own.outline, own.graph
+        draft = draft.reread(text)
+        return draft, Outline(draft.data), known.graph
 
     def _analyzed(
         self,
@@ -130,9 +149,9 @@ class DraftCache:
         *,
         check: bool,
     ) -> tuple[DocumentAnalysis, DrawnGraph]:
-        drawn, graph = analyze_graph(draft, outline, file=file, context=context, before=before)
+        drawn, graph = draw_document(draft, outline, file=file, context=context, before=before)
         if check:
-            drawn = with_findings(drawn, draft.given, file=file, context=context, draft=draft)
+            drawn = with_findings(drawn, graph, draft.given, file=file, context=context, read=(draft, outline))
         with self._lock:
             self._cache[file, draft.given] = _CachedDraft(graph, outline, draft)
             self._cache.move_to_end((file, draft.given))

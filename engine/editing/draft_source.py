@@ -6,16 +6,42 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
+from typing import cast
 
+from engine.document.behavior import Behavior
 from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree, parse_source
 from engine.editing.draft import Draft
+from engine.editing.outline import Outline
 from engine.editing.syntax import Collection, Member, Syntax
 from engine.errors import Position
 
 
 def syntax_source(draft: Draft) -> DocumentSource:
-    """Return the source of a draft that has not been changed since it was read; it is valid until it changes."""
-    return _SyntaxSource(file=draft.file, data=draft.data, place=PositionTree(0, 0, 0, 0), draft=draft)
+    """Return the source of a draft that has not been changed since it was read; it is valid until it changes.
+
+    Nodes that were decoded before are the same objects as then.
+    """
+    data = {key: _decoded(value, draft) if key == "root" else value for key, value in draft.data.items()}
+    return _SyntaxSource(file=draft.file, data=data, place=PositionTree(0, 0, 0, 0), draft=draft)
+
+
+def keep_nodes(behavior: Behavior, draft: Draft, outline: Outline) -> None:
+    """Keep the nodes that were decoded from a draft, for the source of the next one."""
+    for path, node in behavior.nodes():
+        source = draft.source_of(outline.refs[path].data)
+        if source is not None:
+            source.node = node
+
+
+def _decoded(value: object, draft: Draft) -> object:
+    if not isinstance(value, dict | list):
+        return value
+    source = draft.source_of(cast("object", value))
+    if source is not None and source.node is not None:
+        return source.node
+    if isinstance(value, dict):
+        return {key: _decoded(each, draft) for key, each in cast("dict[str, object]", value).items()}
+    return [_decoded(each, draft) for each in cast("list[object]", value)]
 
 
 # No slots: cached properties need a `__dict__`.

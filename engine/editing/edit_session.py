@@ -19,7 +19,7 @@ DanglingTarget = Callable[[Plain, str], "str | None"]
 
 
 class EditSession:
-    """One document under edit; edits change its data and call `stale`."""
+    """One document under edit; edits change its data, and call `stale` where nodes come, go or get other names."""
 
     def __init__(self, draft: Draft, context: ProjectContext, outline: Outline | None = None) -> None:
         self.draft = draft
@@ -160,7 +160,6 @@ class ReferenceUpdate:
                 self._follow_leads(now, ref.parent, beside, after, instead or {}, stray)
         for key in ("view", "notes"):
             self._follow_paths(key, before, after)
-        self.session.stale()
 
     def _follow_leads(
         self,

@@ -49,17 +49,16 @@ def graph_difference(base: str, before: Mapping[str, DrawnNode], now: Mapping[st
     lines: dict[str, Lines] = {}
     for path, node in now.items():
         was = before.get(path)
+        if node.arrows != (was.arrows if was is not None else ()):
+            container, _, name = path.rpartition("/")
+            arrows.setdefault(container, {})[name] = node.arrows
         if was is None:
             nodes[path], children[path], lines[path] = msgspec.Raw(node.own), node.children, node.lines
-            arrows |= {path: node.arrows} if node.arrows else {}
             continue
         if was.own != node.own:
             nodes[path] = msgspec.Raw(node.own)
         if was.children != node.children:
             children[path] = node.children
-        if was.arrows != node.arrows:
-            names = (name for name in node.children if was.arrows.get(name) != node.arrows.get(name))
-            arrows[path] = {name: node.arrows.get(name, ()) for name in names}
         kept.append((path, was.lines, node.lines))
     shifts = _shifts(kept)
     begins, moves = [begin for begin, _ in shifts], [by for _, by in shifts]

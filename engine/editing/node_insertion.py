@@ -45,7 +45,7 @@ def add_node(session: EditSession, edit: AddNode) -> None:
         )
     _check_edge(session, container, edit.on_edge)
     tree = container.kind == "tree" or container.is_part
-    name = edit.name or (own_name(node) if tree else session.free_name(container, snake_case(edit.runs or edit.kind)))
+    name = edit.name or (own_name(node) if tree else snake_case(edit.runs or edit.kind))
     if edit.name is not None and edit.name in [child.name for child in session.outline.children(container)]:
         raise EditRefused(f"`{container.path}` has a `{edit.name}` already", hint="choose another name")
     insert_nodes(session, container, {name: node}, index=index, named=edit.name is not None)
@@ -136,8 +136,9 @@ def insert_nodes(
         names[name] = session.free_name(container, name, names.values())
     for node in nodes.values():
         drop_unsupported_keys(container, node)
-    known = {child.name for child in session.outline.children(container)}
-    known |= set(session.outcomes_inside(container)) if container.kind in MACHINES else set()
+    known: set[str] | None = None
+    if foreign and container.kind in MACHINES:
+        known = {child.name for child in session.outline.children(container)} | {*session.outcomes_inside(container)}
     if container.kind in NAMED:
         states = named_children(container)
         for number, (name, node) in enumerate(nodes.items()):
@@ -146,7 +147,7 @@ def insert_nodes(
         _put_in_tree(session, container, nodes, names, index, named=named)
     session.stale()
     if container.kind in MACHINES:
-        _rewire(session, container, nodes, names, known if foreign else None)
+        _rewire(session, container, nodes, names, known)
 
 
 def drop_unsupported_keys(container: NodeRef, node: Plain) -> None:
@@ -306,7 +307,6 @@ def _rewire(
     children = session.outline.children(machine)
     if not isinstance(initial, str) and children:
         write_initial(machine, children[0].name)
-        session.stale()
 
 
 def _check_edge(session: EditSession, container: NodeRef, edge: TransitionRef | None) -> None:
@@ -326,9 +326,11 @@ def _into_edge(session: EditSession, ref: NodeRef, edge: TransitionRef, source: 
     wired[edge.outcome] = ref.name
     session.mark(source.data)
     ends = session.ends(ref)
-    outside = session.outcomes_inside(ref.parent) if ref.parent is not None else ()
+    good = ends.success if len(ends.outcomes) > 1 else ends.outcomes
+    bad = [outcome for outcome in ends.outcomes if outcome not in good]
+    outside = session.outcomes_inside(ref.parent) if bad and ref.parent is not None else ()
     for outcome in ends.outcomes:
-        if outcome in ends.success or len(ends.outcomes) == 1:
+        if outcome in good:
             connect(session, ref, outcome, target)
         elif outcome in outside:
             connect(session, ref, outcome, outcome)

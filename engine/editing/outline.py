@@ -59,6 +59,7 @@ class Outline:
 
     def __init__(self, document: Plain) -> None:
         self.refs: dict[str, NodeRef] = {}
+        self._inside: dict[str, tuple[NodeRef, ...]] = {}
         root = document.get("root")
         if isinstance(root, dict):
             self._walk(cast("Plain", root))
@@ -71,7 +72,7 @@ class Outline:
 
     def children(self, ref: NodeRef) -> tuple[NodeRef, ...]:
         """Return the nodes directly inside one."""
-        return tuple(self.refs[f"{ref.path}/{name}"] for name, _, _ in child_entries(ref.data))
+        return self._inside.get(ref.path, ())
 
     def path_of(self, data: Plain) -> str:
         """Return the path of a node by its data."""
@@ -82,11 +83,13 @@ class Outline:
         while due:
             ref = due.pop()
             self.refs[ref.path] = ref
-            inside = [
-                NodeRef(f"{ref.path}/{name}", name, kind_of(child, in_tree=ref.kind == "tree" or ref.is_part), child,
-                     (*ref.keys, *keys), ref)
+            if isinstance(ref.data.get(ref.kind), str):
+                continue
+            in_tree = ref.kind == "tree" or ref.is_part
+            inside = self._inside[ref.path] = tuple(
+                NodeRef(f"{ref.path}/{name}", name, kind_of(child, in_tree=in_tree), child, (*ref.keys, *keys), ref)
                 for name, keys, child in child_entries(ref.data)
-            ]  # fmt: skip
+            )
             due += reversed(inside)
 
 

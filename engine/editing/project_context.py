@@ -46,6 +46,7 @@ class ProjectContext:
     project: Path
     stored: StoredEntryNames = lambda _: None
     _known: dict[str, NodeOutcomes | None] = field(default_factory=dict[str, "NodeOutcomes | None"])
+    _of_states: dict[str, NodeOutcomes | None] = field(default_factory=dict[str, "NodeOutcomes | None"])
 
     def signature(self, state: str) -> StateSignature | None:
         """Return the signature of a state; None if there is no such state, or it is broken."""
@@ -93,12 +94,11 @@ class ProjectContext:
         return NodeOutcomes(TREE_OUTCOMES, TREE_OUTCOMES[:1])
 
     def _of_state(self, name: str, data: Plain) -> NodeOutcomes:
-        signature = self.signature(name)
-        return (
-            NodeOutcomes(signature.outcomes, signature.success or signature.outcomes)
-            if signature is not None
-            else _used(data)
-        )
+        if name not in self._of_states:
+            found = self.signature(name)
+            ends = NodeOutcomes(found.outcomes, found.success or found.outcomes) if found is not None else None
+            self._of_states[name] = ends
+        return self._of_states[name] or _used(data)
 
     def _of_reference(self, written: str) -> NodeOutcomes | None:
         if written not in self._known:

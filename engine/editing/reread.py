@@ -8,6 +8,7 @@ parsed alone. Whatever does not fit this rule is left to a full read.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -51,7 +52,15 @@ class RereadTree:
     sources: dict[int, Collection]
 
 
-def reread(before: SyntaxTree, text: str, data: Plain, *, file: str) -> RereadTree | None:
+def reread(
+    before: SyntaxTree,
+    text: str,
+    data: Plain | None,
+    *,
+    file: str,
+    sources: dict[int, Collection],
+    unchanged: Mapping[Collection, bool] | None,
+) -> RereadTree | None:
     """Return the tree of `text` if it says `data`; it consumes the tree `before`. None asks for a full read.
 
     A collection whose lines are the same is the same object as before; every other one is new.
@@ -59,17 +68,23 @@ def reread(before: SyntaxTree, text: str, data: Plain, *, file: str) -> RereadTr
     Args:
         before: The tree of the text before.
         text: The new text, with lines that end in a line feed.
-        data: The data of `before` after an edit: unchanged dicts and lists are the same objects.
+        data: The data of `before` after an edit: unchanged dicts and lists are the same objects. None for any text.
         file: Its name, for positions.
+        sources: The collections of `before` by the id of their data; it becomes that of the new tree.
+        unchanged: Collections of `before`: true where the data is known to be what the text says; None if it is
+            everywhere.
     """
     root = before.root
     if before.origin.json or not isinstance(root, Collection) or root.flow or len(text) > MAX_BYTES:
         return None
-    reading = _Rereading(before.origin.text, SourceText(text, json=False), file)
+    reading = _Rereading(before.origin.text, before.origin, file, sources, unchanged)
+    # The one text of all collections, also of those that are not looked at again.
+    before.origin.text = text
     try:
         made = reading.document(root)
-        reading.take(made, data, 0, 1)
+        reading.take(made, reading.data_of(made) if data is None else data, 0, 1)
         reading.require_limits()
+        reading.forget_gone()
     except (_Unlike, DocumentError):
         return None
     return RereadTree(SyntaxTree(reading.origin, made), cast("Plain", made.data), reading.sources)
@@ -80,9 +95,14 @@ class _Rereading:
     old: str
     origin: SourceText
     file: str
-    sources: dict[int, Collection] = field(default_factory=dict[int, Collection])
+    sources: dict[int, Collection]
+    unchanged: Mapping[Collection, bool] | None
     _shifts: dict[int, list[int | None]] = field(default_factory=dict[int, "list[int | None]"])
     """By the id of a new collection around kept members: how far each of them moved; None for a new one."""
+    _homes: dict[int, Collection] = field(default_factory=dict[int, Collection])
+    """By the id of such a collection: the one that it replaces."""
+    _gone: list[Collection] = field(default_factory=list[Collection])
+    """Collections of the old tree without a part in the new one."""
     _nodes: int = 0
     _expressions: int = 0
     _expression_text: int = 0
@@ -105,6 +125,7 @@ class _Rereading:
         begin = block_start(self.origin.text, first, home.column)
         made = Collection(self.origin, begin, begin, False, home.column, {}, members)
         self._shifts[id(made)] = shifts
+        self._homes[id(made)] = home
         return made
 
     def _entries(self, home: Collection, old_end: int, start: int, end: int) -> tuple[list[Member], list[int | None]]:
@@ -127,9 +148,11 @@ class _Rereading:
                 follower, to = self._next_common(olds, begins, number + 1, last, at + 1, stop)
                 changed = self._changed(olds[number], begins[number], begins[number + 1], at, to)
                 fresh = [changed] if changed is not None else read_entries(self.origin, at, to, home.column, self.file)
+                self._let_go(olds[number + 1 if changed is not None else number : follower])
                 number = follower
             else:
                 fresh = read_entries(self.origin, at, to, home.column, self.file) if to > at else []
+                self._let_go(olds[number:following])
                 number = following
             self._require_entries(fresh, home, at, to)
             made += fresh
@@ -225,17 +248,22 @@ class _Rereading:
 
     def take(self, found: Collection, value: object, by: int, depth: int) -> None:
         """Move a collection and everything inside it, and require that it says `value`."""
+        found.move(by)
+        if value is found.data and self._is_unchanged(found):
+            content = found.content
+            self._nodes += content.nodes
+            self._expressions += content.expressions
+            self._expression_text += content.expression_text
+            return
         shifts = self._shifts.get(id(found))
         if depth > MAX_DEPTH or (shifts is None and value is not found.data) or type(value) is not type(found.data):
             raise _Unlike
         data = found.data = value
-        if id(data) in self.sources or len(data) != len(found.members):
+        was = self.sources.get(id(data), found)
+        if (was is not found and was is not self._homes.get(id(found))) or len(data) != len(found.entries):
             raise _Unlike
         self.sources[id(data)] = found
         self._nodes += 1
-        found.origin = self.origin
-        found.start += by
-        found.end += by
         if shifts is not None:
             self._take_entries(found, cast("Plain", data), shifts, depth)
         elif isinstance(data, dict):
@@ -244,12 +272,22 @@ class _Rereading:
                 own = cast("Scalar", member.key)
                 if own.value != key:
                     raise _Unlike
-                self._move(member, by)
-                self._value(member.value, inner, by, depth)
+                self._value(member.value, inner, depth)
         else:
             for member, inner in zip(found.members, data, strict=True):
-                self._move(member, by)
-                self._value(member.value, inner, by, depth)
+                self._value(member.value, inner, depth)
+
+    def _is_unchanged(self, found: Collection) -> bool:
+        if self.unchanged is None:
+            return self.sources.get(id(found.data)) is found
+        return self.unchanged.get(found, False)
+
+    def data_of(self, found: Collection) -> Plain | list[object]:
+        """Return the data of a collection; that of kept and new parts is the one that was read."""
+        if id(found) not in self._shifts:
+            return found.data
+        parts = ((cast("Scalar", member.key).value, member.value) for member in found.entries)
+        return {str(key): self.data_of(part) if isinstance(part, Collection) else part.value for key, part in parts}
 
     def _take_entries(self, found: Collection, data: Plain, shifts: list[int | None], depth: int) -> None:
         previous = found.start
@@ -259,14 +297,14 @@ class _Rereading:
                 raise _Unlike
             self._nodes += 1
             if shift is not None:
-                self._move(member, shift)
-                self._value(member.value, data[key], shift, depth)
+                member.move(shift)
+                self._value(member.value, data[key], depth, by=shift)
             elif isinstance(member.value, Collection):
                 if id(member.value) not in self._shifts:
                     self._adopt(member.value, data, key)
                 self.take(member.value, data[key], 0, depth + 1)
             else:
-                self._value(member.value, data[key], 0, depth)
+                self._value(member.value, data[key], depth)
             member.start = min(previous + 1, member.at) if number else previous
             if shift is None:
                 end = max(member.value.end, member.at + 1)
@@ -280,16 +318,7 @@ class _Rereading:
             raise _Unlike
         data[key] = fresh.data
 
-    def _move(self, member: Member, by: int) -> None:
-        if by:
-            member.start += by
-            member.at += by
-            member.stop += by
-            if member.key is not None:
-                member.key.start += by
-                member.key.end += by
-
-    def _value(self, found: Syntax, value: object, by: int, depth: int) -> None:
+    def _value(self, found: Syntax, value: object, depth: int, *, by: int = 0) -> None:
         if isinstance(found, Collection):
             self.take(found, value, by, depth + 1)
             return
@@ -297,12 +326,27 @@ class _Rereading:
         was = found.value
         if was is not value and not is_same_value(was, value):
             raise _Unlike
-        if by:
-            found.start += by
-            found.end += by
+        found.move(by)
         if isinstance(was, str) and "${" in was:
             self._expressions += was.count("${")
             self._expression_text += len(was)
+
+    def _let_go(self, olds: Sequence[Member]) -> None:
+        self._gone += [member.value for member in olds if isinstance(member.value, Collection)]
+
+    def forget_gone(self) -> None:
+        """Remove what the text no longer contains from the sources."""
+        # Of one that was replaced, the members are kept or gone by themselves.
+        for home in self._homes.values():
+            self._forget(home)
+        while self._gone:
+            gone = self._gone.pop()
+            self._forget(gone)
+            self._gone += gone.content.inside
+
+    def _forget(self, gone: Collection) -> None:
+        if self.sources.get(id(gone.data)) is gone:
+            del self.sources[id(gone.data)]
 
     def require_limits(self) -> None:
         """Leave a text beyond the limits of a document to a full read, which says so."""

@@ -13,6 +13,7 @@ from typing import Protocol, cast
 import msgspec
 import yaml
 
+from engine.document.nodes.node_spec import NodeSpec
 from engine.document.text.yaml_source import SURROGATE_PAIR, StrictReader
 from engine.errors import DocumentError, Position
 
@@ -30,6 +31,11 @@ class Scalar(msgspec.Struct, eq=False, gc=False, tag=True):
     value: object
     style: str
 
+    def move(self, by: int) -> None:
+        """Move it by a number of characters."""
+        self.start += by
+        self.end += by
+
 
 class Member(msgspec.Struct, eq=False, gc=False):
     """One entry of a mapping or item of a list, with the lines and comments that belong to it.
@@ -45,9 +51,20 @@ class Member(msgspec.Struct, eq=False, gc=False):
     value: Syntax
     stop: int
 
+    def move(self, by: int) -> None:
+        """Move its lines and its key, but not its value."""
+        self.start += by
+        self.at += by
+        self.stop += by
+        if self.key is not None:
+            self.key.move(by)
+
 
 class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
-    """A mapping or list; `data` is the plain dict or list parsed from it, `column` the column of its members."""
+    """A mapping or list; `data` is the plain dict or list parsed from it, `column` the column of its members.
+
+    Positions inside it move only when they are read: until then they are `behind` by a number of characters.
+    """
 
     origin: SourceText
     start: int
@@ -55,7 +72,35 @@ class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
     flow: bool
     column: int
     data: dict[str, object] | list[object]
-    members: list[Member] = []
+    entries: list[Member] = []
+    behind: int = 0
+    read: Content | None = None
+    node: NodeSpec | None = None
+    """The node that its text describes, once it was decoded."""
+
+    @property
+    def members(self) -> list[Member]:
+        """Its entries, with their positions in the text."""
+        by = self.behind
+        if by:
+            self.behind = 0
+            for member in self.entries:
+                member.move(by)
+                member.value.move(by)
+        return self.entries
+
+    @property
+    def content(self) -> Content:
+        """What its text says, which stays the same."""
+        if self.read is None:
+            self.read = _content_of(self)
+        return self.read
+
+    def move(self, by: int) -> None:
+        """Move it with everything inside it."""
+        self.start += by
+        self.end += by
+        self.behind += by
 
     @property
     def bare(self) -> bool:
@@ -64,6 +109,38 @@ class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
 
 
 Syntax = Scalar | Collection
+
+
+class Content(msgspec.Struct, frozen=True, gc=False):
+    """What the text of a collection says, whatever its data has become.
+
+    `values` are scalars, and the data of the collections that are `inside`. `nodes`, `expressions` and
+    `expression_text` count everything in it as the limits of a document do.
+    """
+
+    keys: tuple[object, ...]
+    values: tuple[object, ...]
+    inside: tuple[Collection, ...]
+    nodes: int
+    expressions: int
+    expression_text: int
+
+
+def _content_of(found: Collection) -> Content:
+    keys = tuple(member.key.value for member in found.entries if member.key is not None)
+    values = tuple(
+        each.value.data if isinstance(each.value, Collection) else each.value.value for each in found.entries
+    )
+    inside = tuple(member.value for member in found.entries if isinstance(member.value, Collection))
+    texts = [value for value in values if isinstance(value, str) and "${" in value]
+    return Content(
+        keys,
+        values,
+        inside,
+        nodes=1 + len(keys) + len(values) - len(inside) + sum(each.content.nodes for each in inside),
+        expressions=sum(text.count("${") for text in texts) + sum(each.content.expressions for each in inside),
+        expression_text=sum(map(len, texts)) + sum(each.content.expression_text for each in inside),
+    )
 
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
@@ -93,7 +170,7 @@ class SyntaxTree:
             found = due.pop()
             if isinstance(found, Collection):
                 yield found
-                due += [member.value for member in found.members]
+                due += [member.value for member in found.entries]
 
 
 class _Mark(Protocol):

@@ -13,6 +13,7 @@ from engine.check import check_targets
 from engine.document.loader import survey_behavior
 from engine.editing.diagnostics import draw_document, finding_view, sorted_findings
 from engine.editing.draft import Draft
+from engine.editing.outline import Outline
 from engine.editing.project_context import ProjectContext
 from engine.editing.target_messages import TargetFindings, TargetRequest
 from engine.errors import DocumentError, FlexcellError
@@ -53,11 +54,12 @@ def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) 
     """
     context = ProjectContext(catalogue, file.parent, project)
     try:
-        drawn = draw_document(Draft(text, file=str(file)), file=file, context=context)
+        draft = Draft(text, file=str(file))
     except DocumentError:
         return TargetFindings()
+    drawn, graph = draw_document(draft, Outline(draft.data), file=file, context=context)
     behavior = survey_behavior(file, text, within=project).behavior if not drawn.findings else None
     if behavior is None:
         return TargetFindings()
     found = [finding_view(each, file) for each in check_targets(behavior, catalogue) if each.severity == "warning"]
-    return TargetFindings(findings=sorted_findings(found, drawn.graph))
+    return TargetFindings(findings=sorted_findings(found, graph))

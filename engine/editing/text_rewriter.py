@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from operator import is_
 from typing import cast
 
 from engine.document.nodes.node_kind import KINDS
@@ -60,7 +61,8 @@ class TextRewriter:
     json: bool
     _homes: dict[int, tuple[Collection, Member]] = field(default_factory=dict[int, tuple[Collection, Member]])
     _blocks: dict[int, bool] = field(default_factory=dict[int, bool])
-    _whole: dict[int, bool] = field(default_factory=dict[int, bool])
+    whole: dict[Collection, bool] = field(default_factory=dict[Collection, bool])
+    """Whether the data of a collection is what its text says, of those that were looked at."""
 
     def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
         """Return the text of a tree with `data` instead of its own data."""
@@ -76,7 +78,7 @@ class TextRewriter:
         found = cast("Plain", value)
         source = self._source(found)
         if not found:
-            kept = source is not None and source.flow and not source.members and not source.bare
+            kept = source is not None and source.flow and not source.entries and not source.bare
             return RenderedText(
                 _slice(source) if source is not None and kept else "{}" if isinstance(found, dict) else "[]"
             )
@@ -97,32 +99,26 @@ class TextRewriter:
         """Return whether a value and everything inside it is unchanged, so that its text can be reused."""
         if source.data is not value:
             return False
-        known = self._whole.get(id(source))
+        known = self.whole.get(source)
         if known is None:
-            known = self._whole[id(source)] = source.origin.json == self.json and self._says_as_before(source)
+            known = self.whole[source] = source.origin.json == self.json and self._says_as_before(source)
         return known
 
     def _says_as_before(self, source: Collection) -> bool:
-        data, members = source.data, source.members
-        if len(data) != len(members):
+        data, content = source.data, source.content
+        if isinstance(data, dict) and tuple(data) != content.keys:
             return False
-        values: Iterable[object] = data.values() if isinstance(data, dict) else data
-        if isinstance(data, dict) and any(
-            member.key is None or member.key.value != key for member, key in zip(members, data, strict=True)
-        ):
+        values = tuple(data.values() if isinstance(data, dict) else data)
+        if len(values) != len(content.values):
             return False
-        for member, value in zip(members, values, strict=True):
-            was = member.value
-            if isinstance(was, Scalar):
-                if was.value is not value and not is_same_value(was.value, value):
-                    return False
-            elif not self._is_whole(was, cast("Plain", value)):
-                return False
-        return True
+        # Nearly all values are the same objects, which needs no call of a function for each.
+        if not all(map(is_, content.values, values)) and not all(map(_is_unchanged, content.values, values)):
+            return False
+        return all(self._is_whole(inner, inner.data) for inner in content.inside)
 
     def _stays_flow(self, source: Collection, value: Plain, place: WritePosition) -> bool:
         """Return whether a value stays in flow style: unless a block value is inserted into it."""
-        if not source.flow or not source.members or source.bare or self._has_block(value):
+        if not source.flow or not source.entries or source.bare or self._has_block(value):
             return False
         return place.flow or not has_node(value) or _had_node(source)
 
@@ -218,6 +214,9 @@ class TextRewriter:
         if was is None:
             return " " * place.column + self._entry(key, value, place)
         home, member = was
+        if not elsewhere and self._stays(home, key, value, member):
+            begin = " " * home.column if member is home.members[0] else ""
+            return begin + home.origin.text[member.start : member.stop]
         lead = home.origin.text[member.start : member.at]
         if member is home.members[0]:
             lead = " " * home.column + lead
@@ -225,6 +224,15 @@ class TextRewriter:
             lead = lead.lstrip("\n")
         segment = lead + self._block_entry(home, key, value, member)
         return indent_text(segment, place.column - home.column, first=True)
+
+    def _stays(self, home: Collection, key: str | None, value: object, member: Member) -> bool:
+        """Return whether an entry is as it was, so that its lines can be reused."""
+        was = member.value
+        if home.origin.json != self.json or key != (member.key.value if member.key is not None else None):
+            return False
+        if isinstance(was, Collection):
+            return was.data is value and bool(value) and self._is_whole(was, was.data)
+        return _is_unchanged(was.value, value)
 
     def _moved(self, value: object, *, mapping: bool) -> tuple[Collection, Member] | None:
         """Return the original entry of a moved value, whose comments move with it."""
@@ -250,7 +258,7 @@ class TextRewriter:
         """Return the original entry of a collection of a text."""
         if not self._homes:
             for collection in self.sources.values():
-                for member in collection.members:
+                for member in collection.entries:
                     self._homes[id(member.value)] = (collection, member)
         return self._homes.get(id(origin))
 
@@ -382,7 +390,7 @@ def _had_node(source: Collection) -> bool:
     return any(
         (member.key is not None and member.key.value in _NODES)
         or (isinstance(member.value, Collection) and _had_node(member.value))
-        for member in source.members
+        for member in source.entries
     )
 
 
@@ -403,6 +411,10 @@ def _inside(value: Plain) -> Iterable[object]:
     return value.values() if isinstance(value, dict) else value
 
 
+def _is_unchanged(was: object, value: object) -> bool:
+    return was is value or (not isinstance(was, dict | list) and is_same_value(was, value))
+
+
 def _slice(source: Collection) -> str:
     return source.origin.text[source.start : source.end]
 
@@ -414,5 +426,5 @@ def _indent_after(gap: str, otherwise: int) -> int:
 
 def _beside(source: Collection) -> bool | None:
     """Return whether the collections in a collection are in flow style; None if there are none."""
-    found = [member.value for member in source.members if isinstance(member.value, Collection) and member.value.members]
+    found = [member.value for member in source.entries if isinstance(member.value, Collection) and member.value.entries]
     return all(each.flow for each in found) if found else None

@@ -12,6 +12,9 @@ from engine.document.expression.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 
+_NO_CONDITIONS: Mapping[tuple[str, ...], Template | ExpressionError] = {}
+_NO_ASSIGNMENTS: Mapping[tuple[str, str, str], Template | ExpressionError] = {}
+
 ReadOrigin = Literal["input", "mapped", "expression", "collect", "shared", "post"]
 
 
@@ -36,19 +39,30 @@ class KeyRead:
 def key_reads(subject: AnalyzedBehavior) -> Iterator[KeyRead]:
     """Yield all reads, in document order."""
     for placed in subject.nodes.values():
-        yield from _inputs(subject, placed)
-        for keys, found in expressions(subject, placed):
-            for name in sorted(found.names):
-                yield KeyRead(placed=placed, key=name, by="expression", name=name, keys=keys)
-        for keys, assigned in assignments(placed).items():
-            for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
-                yield KeyRead(placed=placed, key=name, by="post", name=name, keys=keys)
-        if placed.node.foreach is not None:
-            for key in placed.node.foreach.collect:
-                yield KeyRead(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
-        if placed.node.concurrency is not None:
-            for index, key in enumerate(placed.node.concurrency.shared):
-                yield KeyRead(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
+        signature = subject.signature(placed.node)
+        search = (key_reads, signature.state if signature is not None else None)
+        if search in placed.node.clear_of:
+            continue
+        found = list(_reads_of(subject, placed))
+        if not found and signature is not None:
+            placed.node.clear_of.add(search)
+        yield from found
+
+
+def _reads_of(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[KeyRead]:
+    yield from _inputs(subject, placed)
+    for keys, found in expressions(subject, placed):
+        for name in sorted(found.names):
+            yield KeyRead(placed=placed, key=name, by="expression", name=name, keys=keys)
+    for keys, assigned in assignments(placed).items():
+        for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
+            yield KeyRead(placed=placed, key=name, by="post", name=name, keys=keys)
+    if placed.node.foreach is not None:
+        for key in placed.node.foreach.collect:
+            yield KeyRead(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
+    if placed.node.concurrency is not None:
+        for index, key in enumerate(placed.node.concurrency.shared):
+            yield KeyRead(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
 
 
 def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tuple[str | int, ...], Template]]:
@@ -62,9 +76,11 @@ def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tup
             yield keys, found
 
 
-def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionError]:
+def conditions(placed: NodeAt) -> Mapping[tuple[str, ...], Template | ExpressionError]:
     """Return the compiled expressions of guard and foreach of a node, by the keys that lead to them."""
     node = placed.node
+    if node.guard is None and node.foreach is None:
+        return _NO_CONDITIONS
     found: dict[tuple[str, ...], Template | ExpressionError] = {}
     if node.guard is not None:
         found["guard", "when"] = template(node.guard.when)
@@ -74,20 +90,18 @@ def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionErr
     return found
 
 
-def assignments(placed: NodeAt) -> dict[tuple[str, str, str], Template | ExpressionError]:
+def assignments(placed: NodeAt) -> Mapping[tuple[str, str, str], Template | ExpressionError]:
     """Return the compiled values of post-conditions by `post`, event and userdata key, in run order."""
     post = placed.node.post
+    if post is None:
+        return _NO_ASSIGNMENTS
     sections = (
-        ()
-        if post is None
-        else (("on_success", post.on_success), ("on_failure", post.on_failure), ("on_halted", post.on_halted))
+        ("on_success", post.on_success),
+        ("on_failure", post.on_failure),
+        ("on_halted", post.on_halted),
+        ("always", post.always),
     )
-    always = (("always", post.always),) if post is not None else ()
-    return {
-        ("post", when, key): template(value)
-        for when, assigned in (*sections, *always)
-        for key, value in assigned.items()
-    }
+    return {("post", when, key): template(value) for when, assigned in sections for key, value in assigned.items()}
 
 
 def only_name(found: Template | ExpressionError) -> str | None:

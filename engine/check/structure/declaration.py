@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from engine.check.analyzed_behavior import AnalyzedBehavior, targets
+from engine.check.analyzed_behavior import AnalyzedBehavior
 from engine.check.finding import Finding, new_finding
 from engine.document.parameter_spec import ParameterSpec
 from engine.suggestions import did_you_mean
@@ -36,7 +36,7 @@ def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
     reached = subject.possible(subject.nodes["root"])
     if reached is None:
         return
-    leaving = {*reached, *targets(subject.nodes["root"].node).values()}
+    leaving = {*reached, *subject.targets["root"].values()}
     for index, outcome in enumerate(declared):
         if outcome not in leaving:
             position = subject.behavior.source.position(("outcomes", index))

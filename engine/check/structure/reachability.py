@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, targets
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.suggestions import did_you_mean
 
@@ -24,7 +24,7 @@ def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:
 
 
 def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> Iterator[Finding]:
-    leads = {name: tuple(targets(child).values()) for name, child in placed.node.children.items()}
+    leads = {child.name: tuple(subject.targets[child.path].values()) for child in subject.children(placed)}
     reached = _reachable([initial], leads)
     for name in leads:
         if name not in reached:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, targets
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.document.nodes.node_spec import NodeSpec
 from engine.errors import FlexcellError, ModuleNotAllowed
@@ -85,7 +85,7 @@ def _machine_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[s
 def _check_targets(
     subject: AnalyzedBehavior, child: NodeAt, siblings: Mapping[str, NodeSpec], leaving: Collection[str] | None
 ) -> Iterator[Finding]:
-    for keys, target in targets(child.node).items():
+    for keys, target in subject.targets[child.path].items():
         if leaving is None or target in siblings or target in leaving:
             continue
         message = f"`{target}` is neither a state nor an outcome of this machine"
@@ -121,7 +121,7 @@ def _reported_inside(node: NodeSpec) -> bool:
 def _check_root(subject: AnalyzedBehavior) -> Iterator[Finding]:
     root = subject.nodes["root"]
     declared = subject.behavior.outcomes
-    for keys, target in targets(root.node).items():
+    for keys, target in subject.targets["root"].items():
         if target not in declared:
             message = f"`{target}` is not an outcome of this behavior"
             yield subject.finding("unknown-target", message, "root", *keys, hint=did_you_mean(target, declared))

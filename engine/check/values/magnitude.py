@@ -95,10 +95,16 @@ def check_magnitudes(subject: AnalyzedBehavior) -> Iterator[Finding]:
             position = subject.behavior.source.position(("parameters", name, "default"))
             yield new_finding("suspect-unit", found.message, path=subject.base, position=position, hint=found.hint)
     for placed in subject.nodes.values():
-        for name in subject.given_to(placed):
-            for found in _given(subject, placed, name):
-                keys = ("with", name, *found.steps)
-                yield subject.finding("suspect-unit", found.message, placed.path, *keys, hint=found.hint)
+        signature = subject.signature(placed.node)
+        check = (check_magnitudes, signature.state if signature is not None else None)
+        if check in placed.node.clear_of:
+            continue
+        suspicions = [(name, found) for name in subject.given_to(placed) for found in _given(subject, placed, name)]
+        if not suspicions and signature is not None:
+            placed.node.clear_of.add(check)
+        for name, found in suspicions:
+            keys = ("with", name, *found.steps)
+            yield subject.finding("suspect-unit", found.message, placed.path, *keys, hint=found.hint)
 
 
 def _given(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> Iterator[UnitSuspicion]:

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, is_constant
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import assignments, conditions
 from engine.document.expression.expression import Template
@@ -23,22 +23,37 @@ def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find unknown parameters and keys, invalid values, and malformed expressions."""
     defaults = default_values(subject)
     for placed in subject.nodes.values():
-        yield from _check_expressions(subject, placed)
         signature = subject.signature(placed.node)
-        referred = subject.referred(placed.node)
-        if signature is not None:
-            required = [name for name, parameter in signature.parameters.items() if parameter.required]
-            names = list(_check_names(subject, placed, signature.parameters, required))
-            yield from names
-            yield from _check_state(subject, placed, signature, defaults, complete=not names)
-            yield from _check_keys(subject, placed, signature.inputs, signature.outputs)
-        elif referred is not None:
-            parameters = referred.behavior.parameters
-            required = [name for name, parameter in parameters.items() if parameter.required]
-            yield from _check_names(subject, placed, parameters, required)
-            yield from _check_behavior(subject, placed, parameters, defaults)
-            userdata = referred.behavior.document.userdata
-            yield from _check_keys(subject, placed, userdata, userdata)
+        if signature is None:
+            yield from _check_node(subject, placed, defaults)
+            continue
+        check = (check_parameters, signature.state)
+        if check in placed.node.clear_of:
+            continue
+        found = list(_check_node(subject, placed, defaults))
+        # Expressions depend on the parameters of the behavior.
+        if not found and is_constant(subject.given_to(placed)):
+            placed.node.clear_of.add(check)
+        yield from found
+
+
+def _check_node(subject: AnalyzedBehavior, placed: NodeAt, defaults: Mapping[str, object]) -> Iterator[Finding]:
+    yield from _check_expressions(subject, placed)
+    signature = subject.signature(placed.node)
+    referred = subject.referred(placed.node)
+    if signature is not None:
+        required = [name for name, parameter in signature.parameters.items() if parameter.required]
+        names = list(_check_names(subject, placed, signature.parameters, required))
+        yield from names
+        yield from _check_state(subject, placed, signature, defaults, complete=not names)
+        yield from _check_keys(subject, placed, signature.inputs, signature.outputs)
+    elif referred is not None:
+        parameters = referred.behavior.parameters
+        required = [name for name, parameter in parameters.items() if parameter.required]
+        yield from _check_names(subject, placed, parameters, required)
+        yield from _check_behavior(subject, placed, parameters, defaults)
+        userdata = referred.behavior.document.userdata
+        yield from _check_keys(subject, placed, userdata, userdata)
 
 
 def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
@@ -65,9 +80,10 @@ def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Fi
     for name, found in subject.given_to(placed).items():
         if isinstance(found, ExpressionError):
             yield subject.finding("bad-expression", found.message, placed.path, "with", name, hint=found.hint or "")
-    for keys, found in (*conditions(placed).items(), *assignments(placed).items()):
-        if isinstance(found, ExpressionError):
-            yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
+    for several in (conditions(placed), assignments(placed)):
+        for keys, found in several.items():
+            if isinstance(found, ExpressionError):
+                yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
 
 
 def _check_names(

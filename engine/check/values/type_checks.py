@@ -62,7 +62,14 @@ class _Kinds:
         self._refused: dict[int, dict[str, _Refusal]] = {}
 
     def node(self, placed: NodeAt) -> Iterator[Finding]:
-        for use in _uses(self._subject, placed):
+        signature = self._subject.signature(placed.node)
+        search = (check_types, signature.state if signature is not None else None)
+        if search in placed.node.clear_of:
+            return
+        uses = list(_uses(self._subject, placed))
+        if not uses and signature is not None:
+            placed.node.clear_of.add(search)
+        for use in uses:
             try:
                 reaching = _reaching(self._resolver, use)
             except ExpressionError as error:

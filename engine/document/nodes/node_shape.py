@@ -52,6 +52,23 @@ class NodeShape(StrictModel, frozen=True, kw_only=True, dict=True):
         return self._keys_inside[name]
 
     @cached_property
+    def clear_of(self) -> set[object]:
+        """The checks that found nothing in this node and depend on nothing around it; they note it here."""
+        return set()
+
+    @cached_property
+    def nodes_as_root(self) -> tuple[tuple[str, Self], ...]:
+        """The nodes of a document whose root it is, with their paths, outer ones first."""
+        found: list[tuple[str, Self]] = []
+        due = [("root", self)]
+        while due:
+            path, node = due.pop()
+            found.append((path, node))
+            if inside := node.children:
+                due += [(f"{path}/{name}", child) for name, child in reversed(list(inside.items()))]
+        return tuple(found)
+
+    @cached_property
     def _inside(self) -> Mapping[str, Self]:
         return {name: child for name, _, child in self._placed()}
 

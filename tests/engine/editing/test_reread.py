@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
+from functools import partial
 
 import pytest
 from hypothesis import assume, given, settings
@@ -13,7 +15,9 @@ from benchmarks.large_document import large_document
 from engine.editing import Draft, apply_edits, read_edits
 from engine.editing.apply import apply_edits_to_draft
 from engine.editing.outline import Outline
+from engine.editing.reread import is_equal_data
 from engine.editing.syntax import Member, Scalar, Syntax
+from engine.errors import DocumentError
 from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import context
 from tests.engine.editing.layouts import Layout, Plain, chances
@@ -43,11 +47,19 @@ def _shape(found: Syntax | Member | None) -> object:
     return found.start, found.end, found.flow, found.column, found.data, [_shape(each) for each in found.members]
 
 
+def _nodes(outline: Outline) -> list[object]:
+    return [
+        (ref.path, ref.name, ref.kind, ref.keys, id(ref.data), ref.parent and ref.parent.path)
+        for ref in outline.refs.values()
+    ]
+
+
 def _check(draft: Draft) -> None:
     again = Draft(draft.given, file=draft.file)
     collections, others = list(draft.collections()), list(again.collections())
     assert _shape(collections[0]) == _shape(others[0])
     assert all(draft.source_of(found.data) is found and found.origin is draft.origin for found in collections)
+    assert len(draft.sources) == len(collections)
     assert draft.data == again.data
 
 
@@ -59,9 +71,11 @@ def test_any_edits_leave_the_tree_of_a_full_read(data: Plain, chance: random.Ran
         edits, problem = read_edits([draw.draw(any_edits(list(Outline(draft.data).refs)))])
         assume(problem is None)
         text = draft.given
-        done = apply_edits_to_draft(draft, edits, context=context())
+        done = apply_edits_to_draft(draft, edits, context=context(), outline=Outline(draft.data))
         draft = done.draft or Draft(text, file="x.yaml")
         _check(draft)
+        if done.outline is not None:
+            assert _nodes(done.outline) == _nodes(Outline(draft.data))
 
 
 @pytest.mark.parametrize("text", [TEXT, TEXT.rstrip("\n"), flat_document(20), large_document(80)])
@@ -92,3 +106,70 @@ def test_only_what_differs_is_read_again() -> None:
     texts = [done.text[found.start : found.end].strip() for found in fresh if len(found.members) < 4]
     assert "{duration_s: 3}" in texts
     assert len(fresh) <= 7
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=behaviors(), chance=chances, draw=st.data())
+def test_any_other_text_is_read_as_by_a_full_read(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
+    """Text that was typed: lines removed, repeated, moved, replaced, indented."""
+    text = Layout(chance).document(data)
+    draft = Draft(text, file="x.yaml")
+    for _ in range(3):
+        text = _typed(text, draw)
+        refusal = _refusal(partial(Draft, file="x.yaml"), text)
+        if refusal is not None:
+            assert _refusal(draft.reread, text) == refusal
+            return
+        draft = draft.reread(text)
+        assert is_equal_data(draft.data, Draft(text, file="x.yaml").data)
+        _check(draft)
+
+
+def _refusal(read: Callable[[str], Draft], text: str) -> tuple[str, object] | None:
+    try:
+        read(text)
+    except DocumentError as error:
+        return error.message, error.where
+    return None
+
+
+def _typed(text: str, draw: st.DataObject) -> str:
+    lines = text.split("\n")
+    number = draw.draw(st.integers(0, len(lines) - 1))
+    other = draw.draw(st.integers(0, len(lines) - 1))
+    line = lines[number]
+    match draw.draw(st.sampled_from(["remove", "repeat", "move", "indent", "cut", "put", "insert"])):
+        case "remove":
+            del lines[number]
+        case "repeat":
+            lines.insert(other, line)
+        case "move":
+            lines.insert(other, lines.pop(number))
+        case "indent":
+            lines[number] = draw.draw(st.sampled_from(["  " + line, line[2:], line[1:]]))
+        case "cut":
+            lines[number] = line[: draw.draw(st.integers(0, len(line)))]
+        case "put":
+            lines[number] = line + draw.draw(st.sampled_from(TYPED))
+        case _:
+            indent = " " * (len(line) - len(line.lstrip(" ")))
+            lines.insert(number, indent + draw.draw(st.sampled_from(TYPED)))
+    return "\n".join(lines)
+
+
+TYPED = (
+    "", " ", "# note", "x:", "x: 1", "state: flow.Wait", "'", '"', "{", "}", "[", "|", ">", "a: |", "- x", ": ", "---",
+    "...", "  deeper: 1", "root:", "view: {}", "&a", "? x", "\t", "x: {a: 1,", "x: 'a", "y: 'b'", "é", "%TAG",
+)  # fmt: skip
+
+
+def test_a_step_back_reads_only_what_differs() -> None:
+    text = flat_document(50)
+    draft = Draft(text, file="x.yaml")
+    edits, _ = read_edits([{"edit": "rename_node", "path": "root/s7", "name": "other"}])
+    done = apply_edits_to_draft(draft, edits, context=context())
+    assert done.draft is not None
+    before = {id(found) for found in done.draft.collections()}
+    back = done.draft.reread(text)
+    _check(back)
+    assert sum(id(found) not in before for found in back.collections()) <= 12
