@@ -11,7 +11,6 @@ from engine.messages.robot_states import (
     GripperState,
     HandState,
     JointState,
-    MagnetState,
     RobotDescription,
 )
 from engine.messages.scene import SceneDescription, VisualGeometry
@@ -23,7 +22,6 @@ __all__ = [
     "GripperState",
     "HandState",
     "JointState",
-    "MagnetState",
     "Message",
     "PartPoses",
     "Pose",

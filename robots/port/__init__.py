@@ -12,7 +12,6 @@ from robots.port.force_task import Admittance, ForceRecord, ForceTask
 from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
-from robots.port.magnet import MagnetPort, MagnetSample
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import OutputPort
 from robots.port.settings import ArmSettings, ControllerName, Vector6
@@ -34,8 +33,6 @@ __all__ = [
     "HandPort",
     "HandSample",
     "JointTrajectory",
-    "MagnetPort",
-    "MagnetSample",
     "Motion",
     "MotionEnd",
     "MotionReport",
