@@ -16,11 +16,11 @@ import numpy as np
 
 from engine.clock import run_virtual
 from robots.scene.sim_scene import SimScene
-from tests.robots.sim.grip import test_finger_mechanics_of_2f85 as two_fingers
-from tests.robots.sim.grip import test_finger_mechanics_of_claw as claw
-from tests.robots.sim.grip import test_magnet_mechanics as magnet
-from tests.robots.sim.grip import test_soft_hand_mechanics as hand
+from tests.robots.magnet import test_magnet_mechanics as magnet
 from tests.robots.sim.tool_cell import Reach, reaching, slip_while_held
+from tests.robots.standard_tools import test_finger_mechanics_of_2f85 as two_fingers
+from tests.robots.standard_tools import test_finger_mechanics_of_claw as claw
+from tests.robots.standard_tools import test_soft_hand_mechanics as hand
 
 OFF_M = 0.003
 Step = Callable[[Reach], Awaitable[object]]

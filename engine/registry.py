@@ -2,9 +2,9 @@
 
 Groups: `flexcell.states` (a mapping of state name → class), `flexcell.worlds` and
 `flexcell.drivers` (a factory per `kind`), `flexcell.servers`, `flexcell.models` (see
-`engine.cell.robot_models`). A user's own states are in modules that the project file allows, and are
-named `module:Class`. Only `load_states` imports such modules: at the start of a command or server,
-never because a document names them.
+`engine.cell.robot_models`), which also offer the kinds of tools with their states. A user's own
+states are in modules that the project file allows, and are named `module:Class`. Only `load_states`
+imports such modules: at the start of a command or server, never because a document names them.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Mapping
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
-from typing import Any, cast
+from typing import Any, Protocol, cast
 
 from engine.document.project_file import ProjectFile, find_project
 from engine.document.state_catalogue import StateCatalogue
@@ -31,6 +31,19 @@ WORLDS = "flexcell.worlds"
 DRIVERS = "flexcell.drivers"
 SERVERS = "flexcell.servers"
 MODELS = "flexcell.models"
+
+
+class _BringsStates(Protocol):
+    """A kind of tool (`engine.cell.tool_kind`), as far as its states are concerned."""
+
+    @property
+    def states(self) -> tuple[type[State], ...]: ...
+
+
+class _BringsTools(Protocol):
+    """The installed models (`engine.cell.robot_models`), as far as their kinds of tools are concerned."""
+
+    def tool_kinds(self) -> Mapping[str, _BringsStates]: ...
 
 
 def load_states(start: Path | None = None) -> StateCatalogue:
@@ -48,6 +61,8 @@ def load_states(start: Path | None = None) -> StateCatalogue:
     loading = _Loading()
     for point in entry_points(group=STATES):
         loading.add_entry_point(point)
+    if "standard" in registered_names(MODELS):
+        loading.add_tool_kinds()
     if project is not None:
         loading.add_project(project)
     prepare_types()
@@ -94,6 +109,37 @@ def load_factory(group: str, kind: str) -> Any:
     return found
 
 
+def installed_state(name: str) -> type[State]:
+    """Return a state of an installed package or of a kind of tool, by its name.
+
+    Raises:
+        RegistryError: there is none; suggests similar names.
+    """
+    models = _models()
+    kinds = models.tool_kinds().values() if models is not None else ()
+    found = {state.state_name: state for kind in kinds for state in kind.states}
+    for offered in _installed_states():
+        found.update(offered)
+    if name not in found:
+        raise RegistryError(f"no installed state is named {name!r}", hint=did_you_mean(name, found))
+    return found[name]
+
+
+# Cached: reading the lists of installed packages takes 20 ms.
+@cache
+def _models() -> _BringsTools | None:
+    try:
+        return load_factory(MODELS, "standard")
+    except RegistryError:
+        return None
+
+
+@cache
+def _installed_states() -> tuple[dict[str, type[State]], ...]:
+    loaded = (load_isolated(point.name, partial(_offered, point)) for point in entry_points(group=STATES))
+    return tuple(offered for offered in loaded if not isinstance(offered, LoadFailure))
+
+
 class _Loading:
     """The states loaded so far, and the errors of those that could not be loaded."""
 
@@ -109,6 +155,16 @@ class _Loading:
             return
         for name, state in offered.items():
             self._add(name, state, point.value)
+
+    def add_tool_kinds(self) -> None:
+        try:
+            models: _BringsTools = load_factory(MODELS, "standard")
+        except RegistryError as error:
+            self.broken["models"] = error
+            return
+        for kind in models.tool_kinds().values():
+            for state in kind.states:
+                self._add(state.state_name, state, state.__module__)
 
     def add_project(self, project: ProjectFile) -> None:
         folder = str(project.folder)

@@ -24,11 +24,19 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
+from engine.cause_chain import wrap_cause
 from engine.clock import Clock
+from engine.errors import PathBlocked
 from engine.event import Cause
 from engine.skill import Action, Service
 from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
 from engine.skills.goal_end import GoalEnd
+
+_BLOCKED = PathBlocked.__name__
+_NO_REASON = {
+    "canceled": "the goal was cancelled by somebody other than this state",
+    "rejected": "the device gave no reason for refusing it",
+}
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -182,3 +190,24 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     run: ClassVar[Callable[..., Coroutine[Any, Any, Outcome]]]
     """Execute the step: subclasses define `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""
+
+
+def goal_cause(what: str, goal: Action[Any, Any], end: GoalEnd[Any], *, to: str, where: str, kind: str) -> Cause:
+    """Return the cause chain of a failed goal.
+
+    Args:
+        what: The message, `left did not reach joints entry home`.
+        goal: The goal that was sent.
+        end: The end of the goal; its cause is the inner cause of the chain.
+        to: The bus namespace that the goal was sent to.
+        where: The path of the state.
+        kind: The name of the state.
+    """
+    skill = goal.skill_name()
+    fallback = Cause(message=_NO_REASON.get(end.status, "the device gave no reason"), where=f"{to}/{skill}")
+    return wrap_cause(f"{what}: {skill} was {end.status}", end.cause or fallback, where=where, kind=kind)
+
+
+def is_path_blocked(end: GoalEnd[Any]) -> bool:
+    """Tell whether a goal was refused because the planning scene blocks its path."""
+    return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

@@ -2,38 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from engine.cell import RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
-from robots.model.mechanics.link_names import link_names
-from robots.model.registry import model_of_entry, robot_names, tool_names
-from robots.model.tool_model import MagnetModel, SynergyModel, ToolModel
-from robots.planning.planner_names import PLANNERS
+from robots.tool_kinds import kind_of_mechanism, tool_kinds
 
 
 class InstalledModels:
-    """The built-in model folders and those that a cell references by path."""
+    """The built-in model folders and those that a cell references by path.
+
+    Each answer loads what it needs: whoever asks for the states of the kinds of tools loads no model and no numpy.
+    """
 
     def robots(self) -> tuple[str, ...]:
         """Return the names of the built-in arms."""
+        from robots.model.registry import robot_names
+
         return robot_names()
 
     def tools(self) -> tuple[str, ...]:
         """Return the names of the built-in tools."""
+        from robots.model.registry import tool_names
+
         return tool_names()
+
+    def tool_kinds(self) -> Mapping[str, ToolKind]:
+        """Return the kinds of tools of the table."""
+        return tool_kinds()
 
     def planners(self) -> tuple[str, ...]:
         """Return the names of the motion planners."""
+        from robots.planning.planner_names import PLANNERS
+
         return PLANNERS
 
     def summary(self, cell: Cell, robot: str) -> RobotSummary:
         """Return the capabilities of a robot of the cell; raises CellError or DocumentError for an invalid model."""
+        from robots.model.mechanics.link_names import link_names
+        from robots.model.registry import model_of_entry
+
         model = model_of_entry(cell.document.robots[robot], cell.resolve)
         return RobotSummary(
             base_link=model.base_link,
             links=link_names(model),
             joints=tuple(zip(model.limits.lower_rad, model.limits.upper_rad, strict=True)),
-            tool=_kind(model.tool),
+            tool=kind_of_mechanism(model.tool.kind).name if model.tool is not None else None,
             digital_outputs=model.digital_outputs,
         )
 
@@ -43,14 +58,6 @@ class InstalledModels:
         from robots.planning.search.reachability import ReachabilityChecker
 
         return ReachabilityChecker(cell)
-
-
-def _kind(tool: ToolModel | None) -> ToolKind | None:
-    if tool is None:
-        return None
-    if isinstance(tool.mechanism, MagnetModel):
-        return "magnet"
-    return "hand" if isinstance(tool.mechanism, SynergyModel) else "gripper"
 
 
 MODELS: RobotModels = InstalledModels()

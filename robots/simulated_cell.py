@@ -17,7 +17,7 @@ from robots.sim.host.process_host import NewStopLine
 from robots.sim.world.sim_robot import SimRobot
 from robots.sim.world.sim_world import SimWorld
 from robots.sim.world.sim_world import new_world as new_sim_world
-from robots.tool_servers import tool_server
+from robots.standard_tools.tool_simulation import tool_server
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.planning_services import PlanningServices

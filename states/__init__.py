@@ -21,9 +21,6 @@ from states.hand.check_held import CheckHeld as HandCheckHeld
 from states.hand.close import Close as HandClose
 from states.hand.open import Open as HandOpen
 from states.io.set_output import SetOutput
-from states.magnet.check_held import CheckHeld as MagnetCheckHeld
-from states.magnet.off import Off as MagnetOff
-from states.magnet.on import On as MagnetOn
 from states.manipulation.pick_part import PickPart
 from states.manipulation.place_part import PlacePart
 from states.motion.execute_plan import ExecutePlan
@@ -79,9 +76,6 @@ _STATES: tuple[type[State], ...] = (
     LearnCartDmp,
     LearnJointDmp,
     Log,
-    MagnetCheckHeld,
-    MagnetOff,
-    MagnetOn,
     Move,
     MoveFree,
     MoveJoints,

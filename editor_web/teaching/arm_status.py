@@ -7,12 +7,12 @@ import json
 from msgspec.structs import asdict
 
 from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
+from engine.cell import tool_kinds
 from engine.errors import FlexcellError
-from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
+from engine.messages import FramePoses, JointState, Message, RobotDescription
 from engine.project import Session
 from engine.skills.arm_control import ArmStatus
 
-_TOOLS = (GripperState, HandState, MagnetState)
 _STILL_RAD = 1e-4
 _DIGITS = 6
 
@@ -31,7 +31,7 @@ class ArmStatusReader:
         rows = await self._backend.bus.listing()
         arms = {row.name.rpartition("/")[0]: row.name for row in rows if row.type == RobotDescription.__name__}
         skills = [row.name for row in rows if row.kind in ("action", "service")]
-        kinds = {kind.__name__ for kind in _TOOLS}
+        kinds = {kind.measured.__name__ for kind in tool_kinds().values()}
         cards: list[ArmInfo] = []
         for name, topic in sorted(arms.items()):
             description = self._backend.latest(topic)
@@ -94,15 +94,17 @@ class ArmStatusReader:
         return tuple(round(value, _DIGITS) for value in (*pose["xyz"], *pose["xyzw"]))
 
     def _tool(self, name: str) -> ToolLive | None:
-        match self._backend.latest(self._tools[name]) if name in self._tools else None:
-            case GripperState() as state:
-                return ToolLive(width_m=round(state.width_m, 4), held=state.held)
-            case HandState() as state:
-                return ToolLive(closed_percent=round(state.closed_percent, 1), held=state.held)
-            case MagnetState() as state:
-                return ToolLive(held=state.held)
-            case _:
-                return None
+        state = self._backend.latest(self._tools[name]) if name in self._tools else None
+        if not isinstance(state, Message):
+            return None
+        # What a kind of tool does not measure is missing.
+        measured = asdict(state)
+        width_m, closed_percent = measured.get("width_m"), measured.get("closed_percent")
+        return ToolLive(
+            width_m=round(width_m, 4) if width_m is not None else None,
+            closed_percent=round(closed_percent, 1) if closed_percent is not None else None,
+            held=measured["held"],
+        )
 
 
 def _still(before: tuple[float, ...], now: tuple[float, ...]) -> bool:

@@ -10,7 +10,8 @@ _HOMES = {
     "OpenCell": "engine.cell.open_cell",
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",
-    "ToolKind": "engine.cell.robot_models",
+    "ToolKind": "engine.cell.tool_kind",
+    "tool_kinds": "engine.cell.robot_models",
 }
 
 __all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`

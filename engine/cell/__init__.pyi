@@ -2,7 +2,8 @@
 
 from engine.cell.cell_connection import CellConnection
 from engine.cell.open_cell import OpenCell
-from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind
+from engine.cell.robot_models import RobotModels, RobotSummary, tool_kinds
+from engine.cell.tool_kind import ToolKind
 
 __all__ = [
     "CellConnection",
@@ -10,4 +11,5 @@ __all__ = [
     "RobotModels",
     "RobotSummary",
     "ToolKind",
+    "tool_kinds",
 ]

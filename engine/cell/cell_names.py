@@ -9,26 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Literal, get_args
 
-from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind, robot_models
+from engine.cell.robot_models import RobotModels, RobotSummary, robot_models, tool_kinds
 from engine.document.cell import Cell, RobotSpec
 from engine.errors import FlexcellError
 from engine.suggestions import did_you_mean
 
-CellNameKind = Literal[
-    "robot", "gripper", "magnet", "hand", "tool", "link", "output", "part", "person", "camera", "detector", "label",
-    "frame", "arm_frame", "body", "obstacle", "scene_part", "planner",
-]  # fmt: skip
-"""`gripper`, `magnet` and `hand` are robots with such a tool. `tool` (`left/gripper`), `link` (`left/panda_hand`) and
-`output` (`left/3`, `left/gripper`) belong to a robot, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is
-a frame in which an arm accepts poses, `frame` a frame of the cell's view. `body`, `obstacle` and `scene_part` are
-objects of the planning scene, to which behaviors add."""
+CellNameKind = str
+"""One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
+_KINDS = frozenset((
+    "robot", "tool", "link", "output", "part", "person", "camera", "detector", "label", "frame", "arm_frame", "body",
+    "obstacle", "scene_part", "planner",
+))  # fmt: skip
+"""`tool` (`left/gripper`), `link` (`left/panda_hand`) and `output` (`left/3`, `left/gripper`) belong to a robot,
+`label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
+of the cell's view. `body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add."""
 
 _WORDS: Mapping[str, str] = {
-    "gripper": "robot with a gripper",
-    "magnet": "robot with a magnet",
-    "hand": "robot with a hand",
     "detector": "camera that detects",
     "arm_frame": "frame for the poses of an arm",
     "body": "body",
@@ -37,7 +34,6 @@ _WORDS: Mapping[str, str] = {
 _OWNED = frozenset[CellNameKind](("tool", "link", "output", "label"))
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
-_TOOLS: tuple[ToolKind, ...] = get_args(ToolKind)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +72,7 @@ class CellNames:
             name: The missing name.
             more: Additional names besides those of the cell.
         """
-        other = next((of for of in _OTHERS.get(kind, ()) if name in self.by_kind.get(of, ())), None)
+        other = next((of for of in _others(kind) if name in self.by_kind.get(of, ())), None)
         if other is not None:
             return f"`{name}` is a {_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
@@ -97,9 +93,6 @@ class CellNames:
 
 _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
     "robot": ("person", "part", "camera"),
-    "gripper": ("magnet", "hand", "robot"),
-    "magnet": ("gripper", "hand", "robot"),
-    "hand": ("gripper", "magnet", "robot"),
     "detector": ("camera",),
     "arm_frame": ("part", "link"),
     "part": ("obstacle",),
@@ -107,28 +100,33 @@ _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
 """Other kinds that a misused name may have, the most likely first."""
 
 
-def _word(kind: str) -> str:
-    return _WORDS.get(kind, kind)
+def _others(kind: CellNameKind) -> tuple[CellNameKind, ...]:
+    tools = tuple(tool_kinds())
+    return (*(tool for tool in tools if tool != kind), "robot") if kind in tools else _OTHERS.get(kind, ())
+
+
+def _word(kind: CellNameKind) -> str:
+    return f"robot with a {kind}" if kind in tool_kinds() else _WORDS.get(kind, kind)
 
 
 def is_kind(found: object) -> CellNameKind | None:
     """Return the kind of name given in a JSON Schema, None when the value is not a kind."""
-    return next((kind for kind in get_args(CellNameKind) if kind == found), None)
+    return found if isinstance(found, str) and (found in _KINDS or found in tool_kinds()) else None
 
 
 def cell_names(cell: Cell) -> CellNames:
     """Return the names that a cell offers."""
     document = cell.document
-    models = robot_models()
+    models, kinds = robot_models(), tuple(tool_kinds())
     robots = document.robots
     summaries = {name: _summary(models, cell, name) for name in robots}
     links = frozenset(_links(summaries))
     parts, fixtures, people = (frozenset(each) for each in (document.parts, document.fixtures, document.people))
     detectors = {name: camera.detect for name, camera in document.cameras.items() if camera.detect is not None}
     bases = {f"{name}/{summary.base_link}" for name, summary in summaries.items() if summary is not None}
+    tools = {name: _tools(robots[name], summaries[name], kinds) for name in robots}
     found: dict[CellNameKind, frozenset[str]] = {
         "robot": frozenset(robots),
-        "tool": frozenset(f"{name}/{kind}" for name in robots for kind in _tools(robots[name], summaries[name])),
         "link": links,
         "output": frozenset(_outputs(robots, summaries)),
         "part": parts,
@@ -144,8 +142,10 @@ def cell_names(cell: Cell) -> CellNames:
         "obstacle": fixtures,
         "scene_part": parts,
     }
-    for kind in _TOOLS:
-        found[kind] = frozenset(name for name in robots if kind in _tools(robots[name], summaries[name]))
+    if kinds:
+        found["tool"] = frozenset(f"{name}/{kind}" for name, possible in tools.items() for kind in possible)
+    for kind in kinds:
+        found[kind] = frozenset(name for name, possible in tools.items() if kind in possible)
     if models is not None:
         found["planner"] = frozenset(models.planners())
     undescribed = frozenset(name for name, summary in summaries.items() if summary is None)
@@ -166,10 +166,10 @@ def _links(summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
             yield from (f"{name}/{link}" for link in summary.links)
 
 
-def _tools(robot: RobotSpec, summary: RobotSummary | None) -> tuple[ToolKind, ...]:
+def _tools(robot: RobotSpec, summary: RobotSummary | None, kinds: tuple[str, ...]) -> tuple[str, ...]:
     """Return the possible tools of a robot: any when its model is unknown, or when its driver may add one."""
     if summary is None or (summary.tool is None and not robot.simulated):
-        return _TOOLS if robot.gripper is not None or not robot.simulated else ()
+        return kinds if robot.gripper is not None or not robot.simulated else ()
     return (summary.tool,) if summary.tool is not None else ()
 
 

@@ -6,30 +6,29 @@ connected or simulated.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
-from typing import Literal, Protocol
+from typing import Protocol
 
 import msgspec
 
+from engine.cell.tool_kind import ToolKind
 from engine.document.cell import Cell
 from engine.errors import RegistryError
 from engine.skills.arm_target import StaticCell
-
-ToolKind = Literal["gripper", "magnet", "hand"]
-"""The kind of a tool: gripper with fingers, switchable magnet, or hand with one motor."""
 
 
 class RobotSummary(msgspec.Struct, frozen=True, kw_only=True):
     """The properties of one robot of a cell, from its model, its tool and its options.
 
     `links` are those of arm and tool, `base_link` is their root. `joints` are the lower and upper position limits of
-    the arm's joints in radians, in the order of its goals. `tool` is None for a bare flange.
+    the arm's joints in radians, in the order of its goals. `tool` is the kind of its tool, None for a bare flange.
     """
 
     base_link: str
     links: frozenset[str]
     joints: tuple[tuple[float, float], ...]
-    tool: ToolKind | None
+    tool: str | None
     digital_outputs: int
 
 
@@ -42,6 +41,10 @@ class RobotModels(Protocol):
 
     def tools(self) -> tuple[str, ...]:
         """Return the names of the built-in gripper models."""
+        ...
+
+    def tool_kinds(self) -> Mapping[str, ToolKind]:
+        """Return the kinds of tools by name."""
         ...
 
     def planners(self) -> tuple[str, ...]:
@@ -75,3 +78,9 @@ def robot_models() -> RobotModels | None:
         return load_factory(MODELS, "standard")
     except RegistryError:
         return None
+
+
+def tool_kinds() -> Mapping[str, ToolKind]:
+    """Return the kinds of tools of the installed models by name; none without models, or when they fail to load."""
+    models = robot_models()
+    return models.tool_kinds() if models is not None else {}

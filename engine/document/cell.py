@@ -137,7 +137,7 @@ class Fixture(StrictModel, frozen=True, kw_only=True):
 
 
 class PartSpec(StrictModel, frozen=True, kw_only=True):
-    """A free body with contact physics; a magnet attracts it if it is `magnetic`.
+    """A free body with contact physics; `magnetic` if it is of iron or steel.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
     `at` is its centre.

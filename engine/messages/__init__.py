@@ -20,7 +20,6 @@ from engine.messages.robot_states import (
     GripperState,
     HandState,
     JointState,
-    MagnetState,
     RobotDescription,
 )
 from engine.messages.scene import SceneDescription, VisualGeometry
@@ -31,7 +30,6 @@ __all__ = [
     "GripperState",
     "HandState",
     "JointState",
-    "MagnetState",
     "Message",
     "PartPoses",
     "Pose",

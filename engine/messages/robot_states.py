@@ -1,4 +1,4 @@
-"""States and descriptions of robots and tools: joints, grippers, hands, magnets."""
+"""States and descriptions of robots and tools: joints, grippers, hands."""
 
 from __future__ import annotations
 
@@ -30,17 +30,6 @@ class HandState(Message, frozen=True, kw_only=True):
     time_s: float
     closed_percent: float
     force_n: float
-    held: bool
-    part: str = ""
-    """Name of the held part, `?` when unknown, empty for none."""
-
-
-class MagnetState(Message, frozen=True, kw_only=True):
-    """Measured state of a switchable magnet with the pull on the part at its face."""
-
-    time_s: float
-    on: bool
-    pull_n: float
     held: bool
     part: str = ""
     """Name of the held part, `?` when unknown, empty for none."""

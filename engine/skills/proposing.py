@@ -13,7 +13,8 @@ StepKind = Literal["joints", "pose", "trajectory", "dmp", "cart_dmp", "gripper",
 """The kind of an entry; the name of an `action` is `open` or `close`."""
 Role = Literal["via", "approach", "grasp", "release", "depart", "follow", "open", "close"]
 """The role of a step: via point, approach, grasp, release, departure, a motion to follow, or a tool action."""
-ToolName = Literal["gripper", "hand", "magnet"]
+ToolName = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
+"""The name of a kind of tool."""
 
 
 class TaughtStep(Message, frozen=True, kw_only=True):

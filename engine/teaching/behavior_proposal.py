@@ -7,10 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import cast
 
+from engine.cell.robot_models import tool_kinds
+from engine.cell.tool_kind import ToolKind
 from engine.document.text.yaml_writer import write_yaml
 from engine.errors import SkillFailed
 from engine.messages import Vector3
 from engine.skills.proposing import Proposal, ProposalOptions, TaughtStep, ToolName
+from engine.suggestions import did_you_mean
 from engine.teaching.proposal_nodes import Node, ProposalNodeBuilder
 from engine.teaching.step_roles import MOTIONS, PLACES, ObservedStep, assign_step_roles, guess_part
 
@@ -39,17 +42,17 @@ def build_proposal(
         steps: The steps in order; a step without a role gets one.
         options: Its name, and the defaults of its parameters.
         arm: The arm that moves.
-        tool: The tool of the arm.
+        tool: The kind of the arm's tool.
         parts: The parts that can be grasped, with their centres in the world where known.
 
     Raises:
-        SkillFailed: a role does not fit its entry, or no step moves the arm.
+        SkillFailed: a role does not fit its entry, no step moves the arm, or there is no such kind of tool.
     """
     known = parts or {}
     roles = [_with_part(taught, known) for taught in assign_step_roles(steps)]
     if all(taught.step.kind not in (*PLACES, *MOTIONS) for taught in roles):
         raise SkillFailed("no step moves the arm", where="teach", hint="select at least one pose or motion")
-    plan = _Plan(ProposalNodeBuilder(arm, tool), options)
+    plan = _Plan(ProposalNodeBuilder(arm, _kind(tool)), options)
     index = 0
     while index < len(roles):
         index += plan.take(roles, index)
@@ -58,6 +61,13 @@ def build_proposal(
         text=text, steps=tuple(each.step for each in roles), words=tuple(plan.words), remarks=plan.all_remarks(),
         arm=arm, tool=tool, parts=tuple(known),
     )  # fmt: skip
+
+
+def _kind(tool: ToolName) -> ToolKind:
+    kinds = tool_kinds()
+    if tool not in kinds:
+        raise SkillFailed(f"there is no kind of tool {tool}", where="teach", hint=did_you_mean(tool, kinds))
+    return kinds[tool]
 
 
 def _with_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> ObservedStep:
@@ -230,7 +240,7 @@ class _Plan:
         """Return the parameter with the width of the grasped part; one parameter for each taught width."""
         taught = like is not None and like.step.kind == "gripper" and like.width_m > 0.0
         width_m = like.width_m if like is not None and taught else self.options.width_m
-        if self.nodes.tool != "gripper":
+        if not self.nodes.takes_width:
             return ""
         if width_m is None:
             self.remarks[_UNKNOWN_WIDTH] = None

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from engine.skills.proposing import ToolName
+from engine.cell.tool_kind import ToolKind
+from engine.registry import installed_state
 from engine.teaching.step_roles import ObservedStep
 
 Node = dict[str, object]
 SPEED, LINE_SPEED, APPROACH = "${speed}", "${line_speed_m_s}", "${approach_m}"
-_KINDS = {"gripper": "gripper", "hand": "hand", "magnet": "magnet"}
 LINE_S = 3.0
-_LETS_GO = {
-    "gripper": ("gripper.Open", "opened"),
-    "hand": ("hand.Open", "opened"),
-    "magnet": ("magnet.Off", "released"),
-}
-_HOLDS = {"gripper": "gripper.Grasp", "hand": "hand.Close", "magnet": "magnet.On"}
-_ASKS = {"gripper": "gripper.CheckHeld", "hand": "hand.CheckHeld", "magnet": "magnet.CheckHeld"}
 
 
 @dataclass
@@ -25,9 +18,14 @@ class ProposalNodeBuilder:
     """Creates nodes for one arm and its tool, and collects the parameters and outcomes that they require."""
 
     arm: str
-    tool: ToolName
+    tool: ToolKind
     needed: dict[str, None] = field(default_factory=dict[str, None])
     outcomes: dict[str, None] = field(default_factory=dict[str, None])
+
+    @property
+    def takes_width(self) -> bool:
+        """True if the tool is told the width of the part that it grasps."""
+        return "width_m" in installed_state(self.tool.hold).__struct_fields__
 
     def free(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:
         """Move to a pose, or to the approach pose before it, along a collision-free path."""
@@ -62,27 +60,29 @@ class ProposalNodeBuilder:
 
     def let_go(self, then: str, words: str, *, part: str = "") -> Node:
         """Open the tool, or switch it off."""
-        state, outcome = _LETS_GO[self.tool]
-        return self._state(state, {**self._tool(), **_named(part)}, {outcome: then}, words)
+        state = installed_state(self.tool.release)
+        return self._state(state.state_name, {**self._tool(), **_named(part)}, {state.success[0]: then}, words)
 
     def hold(self, then: str, missed: str, words: str, *, part: str, width: str, like: ObservedStep | None) -> Node:
         """Close the tool, or switch it on; `width` is the parameter of the width, empty if it is unknown."""
+        state = installed_state(self.tool.hold)
         given = {**self._tool(), **_named(part)}
-        if self.tool == "hand":
+        settings = state.__struct_fields__
+        if "percent" in settings:
             given["percent"] = 80
-        elif self.tool == "gripper" and width:
+        if "width_m" in settings and width:
             self.needed[width] = None
             given["width_m"] = f"${{{width}}}"
-        elif self.tool == "gripper":
+        elif "width_m" in settings:
             # Any object between the fingers counts.
             given |= {"width_m": 0.04, "tolerance_inner_m": 0.038, "tolerance_outer_m": 0.2}
-        if self.tool == "gripper" and like is not None and like.force_n > 0.0:
+        if "force_n" in settings and like is not None and like.force_n > 0.0:
             given["force_n"] = round(like.force_n, 1)
-        return self._state(_HOLDS[self.tool], given, {"held": then, "missed": missed}, words)
+        return self._state(state.state_name, given, {"held": then, "missed": missed}, words)
 
     def still_held(self, then: str, lost: str, words: str, *, part: str) -> Node:
         """Check whether the tool holds its part."""
-        node = self._state(_ASKS[self.tool], {**self._tool(), **_named(part)}, {"held": then, "lost": lost}, words)
+        node = self._state(self.tool.check, {**self._tool(), **_named(part)}, {"held": then, "lost": lost}, words)
         node["transitions"] = {"held": then, "lost": lost}
         return node
 
@@ -107,7 +107,7 @@ class ProposalNodeBuilder:
         return {"back_m": APPROACH}
 
     def _tool(self) -> Node:
-        return {self.tool: self.arm}
+        return {self.tool.name: self.arm}
 
     @staticmethod
     def _state(state: str, given: Node, ends: dict[str, str], words: str) -> Node:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TypeVar
 
 import msgspec
 
 from engine.bus import SkillBus
+from engine.cell.robot_models import tool_kinds
 from engine.document.cell import Cell
 from engine.errors import BusError, SkillFailed
 from engine.messages import FramePoses, PartPoses, Pose, RobotDescription, Vector3
@@ -25,8 +26,8 @@ from engine.teaching.step_roles import ObservedStep
 M = TypeVar("M", bound=msgspec.Struct)
 
 _WORLD = "world"
-_TOOLS: Mapping[str, ToolName] = {"magnet": "magnet", "synergy": "hand"}
-"""The kinds of tools other than two-finger grippers."""
+_USUAL_TOOL = "gripper"
+"""The kind of a tool that is not described."""
 
 
 async def propose(bus: SkillBus, request: ProposeBehavior) -> Proposal:
@@ -41,7 +42,7 @@ async def propose(bus: SkillBus, request: ProposeBehavior) -> Proposal:
     taught = [await _known(bus, arm, step, record) for step, record in zip(request.steps, records, strict=True)]
     poses = _latest(bus, "cell/parts", PartPoses)
     parts: dict[str, Vector3 | None] = {name: pose.xyz for name, pose in poses.poses.items()} if poses else {}
-    tool = request.options.tool or _TOOLS.get(described[arm].tool_kind, "gripper")
+    tool = request.options.tool or _kind_of(described[arm].tool_kind)
     made = build_proposal(taught, request.options, arm=arm, tool=tool, parts=parts)
     return msgspec.structs.replace(made, arms=tuple(described))
 
@@ -59,7 +60,7 @@ async def propose_offline(store: Store, cell: Cell, request: ProposeBehavior) ->
     arm = _arm(request, arms, records)
     taught = [_plain(step, record) for step, record in zip(request.steps, records, strict=True)]
     parts: dict[str, Vector3 | None] = {name: part.at.xyz for name, part in cell.document.parts.items()}
-    made = build_proposal(taught, request.options, arm=arm, tool=request.options.tool or "gripper", parts=parts)
+    made = build_proposal(taught, request.options, arm=arm, tool=request.options.tool or _USUAL_TOOL, parts=parts)
     return msgspec.structs.replace(made, arms=arms)
 
 
@@ -69,6 +70,11 @@ def _described(bus: SkillBus) -> dict[str, RobotDescription]:
     topics = sorted(row.name for row in bus.listing() if row.kind == "topic" and row.name.endswith(ending))
     said = {name.removesuffix(ending): bus.find_topic(name).latest for name in topics}
     return {name: one for name, one in said.items() if isinstance(one, RobotDescription)}
+
+
+def _kind_of(mechanism: str) -> ToolName:
+    """Return the kind of the tools with a mechanism."""
+    return next((kind.name for kind in tool_kinds().values() if mechanism in kind.mechanisms), _USUAL_TOOL)
 
 
 async def _record(bus: SkillBus, step: TaughtStep) -> EntryRecord | None:

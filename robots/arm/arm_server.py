@@ -51,7 +51,7 @@ class ArmServer:
         base: Pose of the arm's base link in the world.
         port: Commands the arm; connected by its owner before this robot is entered.
         clock: Virtual time plans inline, real time in a thread.
-        gripper: The gripper, hand or magnet on the arm, if any; served and stopped together with it.
+        gripper: The tool on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
         tolerance: Following tolerance of the port.
         workspace: The workspace shared with other arms; without one the arm has no collision-free motions and

@@ -1,4 +1,4 @@
-"""Executes the motions of one tool, one at a time, for the servers of grippers, hands and magnets."""
+"""Executes the motions of one tool, one at a time, for the servers of all kinds of tools."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class ToolServer(Protocol):
 
     @property
     def name(self) -> str:
-        """Its bus namespace, `<arm>/gripper`, `<arm>/hand` or `<arm>/magnet`."""
+        """Its bus namespace, `<arm>/<kind of tool>`."""
         ...
 
     @property

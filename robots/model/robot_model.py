@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from robots.model.finger_mechanisms import GripperModel
 from robots.model.joint_map import JointMap
-from robots.model.tool_model import GripperModel, PadBox, ToolModel
-
-__all__ = ["GripperModel", "JointLimits", "PadBox", "RobotModel"]
+from robots.model.tool_model import ToolModel
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,6 @@ from robots.port.force_task import ForceRecord, ForceTask
 from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
-from robots.port.magnet import MagnetPort, MagnetSample
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import OutputPort
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
@@ -30,8 +29,6 @@ __all__ = [
     "HandPort",
     "HandSample",
     "JointTrajectory",
-    "MagnetPort",
-    "MagnetSample",
     "Motion",
     "MotionEnd",
     "MotionReport",

@@ -9,7 +9,7 @@
 - *Stop*: equals a cancel of every motion; it does not wait for the engine.
 - *Its own pulse*: it increments its counter once per control period and nowhere else, so that a process whose
   control loop stalls is silent. The engine then declares it lost within 0.3 s, kills it, and fails its motions.
-- Held objects stay held: brakes, grippers and magnets keep their state.
+- Held objects stay held: brakes and tools keep their state.
 
 `EngineMonitor` implements the engine silence and the process's own pulse; a driver's process calls `look` once per
 control period.

@@ -71,7 +71,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A free body with uniform density; magnets attract `magnetic` ones."""
+    """A free body with uniform density; `magnetic` if it is of iron or steel."""
 
     name: str
     shape: str

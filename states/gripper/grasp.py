@@ -10,11 +10,10 @@ from msgspec import Meta
 from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
-from engine.state import ActivationRecord, Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.skills.part_label import PartLabel, part_label
+from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
-from states.part_label import PartLabel, part_label
 
 Force = Annotated[float, Meta(gt=0, le=1000, description="Grasp force", extra_json_schema={"unit": "N"})]
 Margin = Annotated[

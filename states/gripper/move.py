@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from engine.skills.gripper import FingerSpeed, GripperMove, Width
-from engine.state import ActivationRecord, Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 

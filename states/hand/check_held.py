@@ -7,9 +7,9 @@ from typing import ClassVar
 from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.hand import ReadHand
+from engine.skills.part_label import PartLabel, part_label
 from engine.state import Context, Outcome, State
 from states.hand.hand_parameter_types import HandName, hand_address
-from states.part_label import PartLabel, part_label
 
 
 class CheckHeld(State, frozen=True, kw_only=True):

@@ -8,10 +8,9 @@ from typing import Any, ClassVar
 from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.hand import HandClose, HandResult
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.skills.part_label import PartLabel, part_label
+from engine.state import Context, Outcome, State, goal_cause
 from states.hand.hand_parameter_types import ClosingTime, HandName, Percent, hand_address
-from states.part_label import PartLabel, part_label
 
 
 class Close(State, frozen=True, kw_only=True):

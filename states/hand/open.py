@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import ClassVar
 
 from engine.skills.hand import HandOpen
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.skills.part_label import PartLabel
+from engine.state import Context, Outcome, State, goal_cause
 from states.hand.hand_parameter_types import ClosingTime, HandName, hand_address
-from states.part_label import PartLabel
 
 
 class Open(State, frozen=True, kw_only=True):

@@ -9,8 +9,7 @@ from msgspec import Meta
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import offset_along, rotate_vector
 from engine.skills.motion import CartLinTask, ForwardKinematics
-from engine.state import Context
-from states.goal_failure import goal_cause, is_path_blocked
+from engine.state import Context, goal_cause, is_path_blocked
 from states.manipulation.step_sequence import SequenceEnd
 from states.motion.line_duration import line_duration_s
 from states.motion.motion_target import NO_OFFSET, PoseTarget, pose_label

@@ -18,14 +18,19 @@ from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import TouchingPair
 from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
-from states.gripper.grasp import Force, Grasp
-from states.hand.close import Close
+from states.gripper.grasp import Force
 from states.hand.hand_parameter_types import Percent
-from states.magnet.on import On
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
-from states.manipulation.tool_states import ToolKind, check_held_state, release_state, tool_resource
+from states.manipulation.tool_states import (
+    ToolName,
+    check_held_state,
+    hold_state,
+    release_state,
+    require_tool,
+    tool_resource,
+)
 from states.motion.motion_target import NO_OFFSET, PoseTarget, RobotName, resolve_pose
 from states.motion.set_load import SetLoad
 from states.scene.attach import Attach
@@ -66,7 +71,7 @@ class PickPart(State, frozen=True, kw_only=True):
 
     robot: RobotName
     part: PartName
-    tool: ToolKind = "gripper"
+    tool: ToolName = "gripper"
     grasp: Annotated[
         GraspTarget,
         Meta(description="Pose of the tool centre point at the part: `{xyz, xyzw, frame}`, frame `part` or another"),
@@ -89,6 +94,7 @@ class PickPart(State, frozen=True, kw_only=True):
     patience_s: BlockedPathTimeout = 60.0
 
     def __post_init__(self) -> None:
+        require_tool(self.tool)
         if self.tool == "gripper" and self.width_m is None:
             raise ValueError("a gripper needs `width_m`, the width of the part between its fingers")
         if self.approach is not None and not any(self.approach):
@@ -160,13 +166,8 @@ class PickPart(State, frozen=True, kw_only=True):
         return await run_steps(ctx, [*steps, load] if self.mass_kg else steps)
 
     def _closing(self) -> State:
-        match self.tool:
-            case "gripper":
-                return Grasp(gripper=self.robot, part=self.part, width_m=self.width_m or 0.0, force_n=self.force_n)
-            case "magnet":
-                return On(magnet=self.robot, part=self.part)
-            case "hand":
-                return Close(hand=self.robot, part=self.part, percent=self.percent)
+        settings = {"width_m": self.width_m or 0.0, "force_n": self.force_n, "percent": self.percent}
+        return hold_state(self.robot, self.tool, self.part, settings)
 
     async def _lift(self, ctx: Context, approach: Approach, grasp: Pose) -> SequenceEnd | None:
         held = SequenceStep(check_held_state(self.robot, self.tool, self.part), {"lost": "missed"})

@@ -18,7 +18,7 @@ from states.frames import frame_in_world, part_in_world
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
-from states.manipulation.tool_states import ToolKind, check_held_state, release_state, tool_resource
+from states.manipulation.tool_states import ToolName, check_held_state, release_state, require_tool, tool_resource
 from states.motion.motion_target import NO_OFFSET, RobotName, ShownPoseTarget, resolve_pose
 from states.motion.set_load import SetLoad
 from states.scene.detach import Detach
@@ -48,7 +48,7 @@ class PlacePart(State, frozen=True, kw_only=True):
     target_of: Annotated[
         Literal["tool", "part"], Meta(description="What ends at `target`: the tool centre point or the part")
     ] = "tool"
-    tool: ToolKind = "gripper"
+    tool: ToolName = "gripper"
     approach: ApproachDirection = None
     approach_m: LineLength = 0.1
     speed: Speed = 0.3
@@ -57,6 +57,7 @@ class PlacePart(State, frozen=True, kw_only=True):
     patience_s: BlockedPathTimeout = 60.0
 
     def __post_init__(self) -> None:
+        require_tool(self.tool)
         if self.approach is not None and not any(self.approach):
             raise ValueError("`approach` must not be a zero vector")
 

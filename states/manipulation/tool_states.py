@@ -1,50 +1,66 @@
-"""States to release and check a part, by kind of tool."""
+"""States to hold, release and check a part, by the kind of the tool."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated
 
+import msgspec
 from msgspec import Meta
 
+from engine.cell import ToolKind, tool_kinds
+from engine.registry import installed_state
 from engine.state import State
-from states.gripper.check_held import CheckHeld as GripperCheckHeld
-from states.gripper.open import Open as GripperOpen
-from states.hand.check_held import CheckHeld as HandCheckHeld
-from states.hand.open import Open as HandOpen
-from states.magnet.check_held import CheckHeld as MagnetCheckHeld
-from states.magnet.off import Off as MagnetOff
+from engine.suggestions import did_you_mean
 
-ToolKind = Annotated[
-    Literal["gripper", "magnet", "hand"],
+ToolName = Annotated[
+    str,
     Meta(
-        description="Kind of tool: gripper with two fingers, magnet, or hand with one motor",
+        min_length=1,
+        description="Kind of the tool at the flange of the arm, such as `gripper`",
         extra_json_schema={"cell_name": "tool", "of": "robot"},
     ),
 ]
 
 
-def tool_resource(robot: str, tool: ToolKind) -> str:
+def require_tool(tool: str) -> None:
+    """Raise ValueError where there is no such kind of tool; any is accepted while no models are installed."""
+    kinds = tool_kinds()
+    if kinds and tool not in kinds:
+        raise ValueError(f"there is no kind of tool `{tool}`: {did_you_mean(tool, kinds)}")
+
+
+def tool_resource(robot: str, tool: ToolName) -> str:
     """Return the bus namespace, and resource, of the tool of an arm."""
     return f"{robot}/{tool}"
 
 
-def release_state(robot: str, tool: ToolKind, part: str) -> State:
-    """Return the state that opens the tool or switches it off; its failure outcome is `failed`."""
-    match tool:
-        case "gripper":
-            return GripperOpen(gripper=robot, part=part)
-        case "magnet":
-            return MagnetOff(magnet=robot, part=part)
-        case "hand":
-            return HandOpen(hand=robot, part=part)
+def hold_state(robot: str, tool: ToolName, part: str, settings: Mapping[str, object]) -> State:
+    """Return the state that makes the tool hold a part: `held`, `missed` or `failed`.
+
+    Args:
+        robot: The arm.
+        tool: The kind of its tool.
+        part: The part.
+        settings: Values for the parameters that some kinds have; a kind takes those that it has.
+    """
+    kind = tool_kinds()[tool]
+    return _state(kind.hold, kind, robot, part, settings)
 
 
-def check_held_state(robot: str, tool: ToolKind, part: str) -> State:
+def release_state(robot: str, tool: ToolName, part: str) -> State:
+    """Return the state that makes the tool release its part; its failure outcome is `failed`."""
+    kind = tool_kinds()[tool]
+    return _state(kind.release, kind, robot, part, {})
+
+
+def check_held_state(robot: str, tool: ToolName, part: str) -> State:
     """Return the state that checks whether the tool holds its part: `held` or `lost`."""
-    match tool:
-        case "gripper":
-            return GripperCheckHeld(gripper=robot, part=part)
-        case "magnet":
-            return MagnetCheckHeld(magnet=robot, part=part)
-        case "hand":
-            return HandCheckHeld(hand=robot, part=part)
+    kind = tool_kinds()[tool]
+    return _state(kind.check, kind, robot, part, {})
+
+
+def _state(name: str, kind: ToolKind, robot: str, part: str, settings: Mapping[str, object]) -> State:
+    state = installed_state(name)
+    own = {key: value for key, value in settings.items() if key in state.__struct_fields__}
+    return msgspec.convert({kind.name: robot, "part": part, **own}, state)

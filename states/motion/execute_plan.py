@@ -7,8 +7,7 @@ from typing import Any, ClassVar
 
 from engine.skills import planning
 from engine.skills.planning import BlockedPathTimeout, KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.planned_motion_result import inner_cause_text, is_blocked_timeout
 from states.motion.planned_motion_target import WatchPath

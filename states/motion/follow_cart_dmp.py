@@ -8,8 +8,7 @@ from msgspec import Meta
 
 from engine.skills.dmp import CartDMP
 from engine.skills.motion import CartTrapVel
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import NO_OFFSET, Offset, PoseTarget, RobotName, resolve_pose
 from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
 

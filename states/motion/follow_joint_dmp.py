@@ -8,8 +8,7 @@ from msgspec import Meta
 
 from engine.skills.dmp import JointDMP
 from engine.skills.motion import JointTrapVel
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import JointTarget, RobotName, resolve_joints
 from states.motion.primitive import ApproachSpeed, JointDmpEntry, TimeScale, resolve_joint_dmp
 

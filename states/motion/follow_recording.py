@@ -11,8 +11,7 @@ from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.skills.dmp import JointDMP, LearnJointDmp
 from engine.skills.motion import JointTrapVel
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, RecordingEntry, TimeScale
 

@@ -8,8 +8,7 @@ from typing import Annotated, Any, ClassVar
 from msgspec import Meta
 
 from engine.skills.guiding import DampingShare, GuideArm, GuideDuration, SamplePeriod
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
 
 

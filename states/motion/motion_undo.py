@@ -8,8 +8,7 @@ from typing import Any
 from engine.errors import StateError
 from engine.skill import Action
 from engine.skills.motion import CartMotionResult, JointMotionResult, JointTrapVel
-from engine.state import ActivationRecord, Context
-from states.goal_failure import goal_cause
+from engine.state import ActivationRecord, Context, goal_cause
 from states.goal_history import accepted_goals
 
 _UNKNOWN = "the start configuration of its motion was not recorded"

@@ -8,8 +8,7 @@ from msgspec import Meta
 
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import JointTrapVel, Speed
-from engine.state import ActivationRecord, Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.motion.motion_target import JointTarget, RobotName, joints_label, resolve_joints
 from states.motion.motion_undo import motion_undo_problem, move_joints_back
 from states.motion.static_target import static_joint_target

@@ -10,8 +10,7 @@ from engine.errors import StateError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import CartLinTask, CartMotionResult, ForwardKinematics
-from engine.state import ActivationRecord, Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.motion.line_duration import SHORTEST_S, line_duration_s
 from states.motion.motion_target import (
     NO_OFFSET,

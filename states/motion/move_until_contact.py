@@ -13,8 +13,7 @@ from engine.messages import Vector3
 from engine.skills import contact
 from engine.skills.axes import Axes
 from engine.skills.contact import ApproachSpeed, ContactForce, MaxDistance
-from engine.state import Context, Outcome, State
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
 
 

@@ -9,8 +9,7 @@ from engine.skills import planning
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
-from engine.state import Context, Outcome, State, nothing_to_undo
-from states.goal_failure import goal_cause
+from engine.state import Context, Outcome, State, goal_cause, nothing_to_undo
 from states.motion.motion_target import NO_OFFSET, Offset, RobotName
 from states.motion.planned_motion_result import inner_cause_text
 from states.motion.planned_motion_target import GoalJoints, GoalPose, Seed, require_one, resolve_target, target_label

@@ -14,9 +14,8 @@ from engine.messages.primitives import CartOffsets, ForceReference
 from engine.skills.dmp import CartAdmitDMP, Compliance
 from engine.skills.entries import ReadEntry, WriteEntry
 from engine.skills.motion import CartTrapVel
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, goal_cause
 from engine.store import decode_entry
-from states.goal_failure import goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 
 from engine.errors import RobotError
-from robots.port import HandSample, MagnetSample, Motion
+from robots.magnet.magnet_port import MagnetSample
+from robots.port import HandSample, Motion
 from tests.robots.fake_port import FakeMotion
 
 SWITCH_S = 0.2

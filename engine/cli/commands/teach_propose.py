@@ -18,7 +18,7 @@ from engine.document.cell import load_cell
 from engine.errors import SkillFailed, StoreError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.skills.entries import EntryList, ListEntries
-from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, Role, StepKind, TaughtStep, ToolName
+from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, Role, StepKind, TaughtStep
 from engine.suggestions import did_you_mean
 from engine.teaching.proposal_service import propose_offline
 
@@ -38,9 +38,7 @@ def propose(
     arm: Annotated[
         str, typer.Option(help="Arm; by default the only arm, or the one whose name begins the names of the entries.")
     ] = "",
-    tool: Annotated[
-        ToolName | None, typer.Option(help="Tool of the arm; by default the tool that the arm reports.")
-    ] = None,
+    tool: Annotated[str | None, typer.Option(help="Tool of the arm; by default the tool that the arm reports.")] = None,
     part: Annotated[str | None, typer.Option(help="Part to grasp; by default the nearest part.")] = None,
     width: Annotated[float | None, typer.Option(help="Width of the grasped part in metres.", min=0.0, max=1.0)] = None,
     approach: Annotated[

@@ -1,1 +1,1 @@
-"""The drives of tools: fingers, tendons and magnets, each with one motion at a time."""
+"""The drives of tools: fingers and tendons, each with one motion at a time."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.control.motion_event import AnyMotionEvent
-from robots.control.tool_drives.grip_task import GripTask
+from robots.control.tool_drives.grip_task import TaskDrive
 
 # For fingers with 0.2 kg behind them that is 20 N at 1 mm, well damped.
 _STIFFNESS_PER_S2 = 100_000.0
@@ -49,7 +49,7 @@ class FingerCommand:
     force_n: float
 
 
-class FingerServo:
+class FingerServo(TaskDrive):
     """Computes the force per finger towards a set point of the opening that moves at the commanded speed.
 
     Widths are openings between the pads in metres; each finger moves half of it. Positive force opens.
@@ -61,11 +61,11 @@ class FingerServo:
     """
 
     def __init__(self, opening: GripperLimits, *, min_force_n: float = 0.0, finger_kg: float = 0.2) -> None:
+        super().__init__()
         self._opening = opening
         self._min_force_n = min_force_n
         self._stiffness_n_m = _STIFFNESS_PER_S2 * finger_kg
         self._damping_ns_m = _DAMPING_PER_S * finger_kg
-        self._task = GripTask()
         self._start_m = 0.0
         self._set_m = self._target_m = opening.max_width_m
         self._speed_m_s = opening.max_speed_m_s
@@ -89,11 +89,6 @@ class FingerServo:
         self._set_m, self._target_m = command.set_m, command.target_m
         self._speed_m_s, self._limit_n = command.speed_m_s, command.force_n
 
-    @property
-    def number(self) -> int:
-        """Number of the active motion, 0 for none."""
-        return self._task.number
-
     def progress(self, width_m: float) -> float:
         """Completed share of the path to the commanded opening; 1 without a motion."""
         if not self._task.number or self._start_m == self._target_m:
@@ -111,22 +106,6 @@ class FingerServo:
         self._set_m = min(self._set_m, now_m) if target < now_m else max(self._set_m, now_m)
         self._target_m, self._speed_m_s, self._start_m = target, speed, now_m
         self._task.start(number, patience_s=abs(target - now_m) / speed + _PATIENCE_S)
-
-    def hold(self, number: int, *, request: int = 0) -> None:
-        """Stop the fingers and keep the motion."""
-        self._task.hold(number, request=request)
-
-    def resume(self, number: int, *, request: int = 0) -> None:
-        """Resume the motion of the fingers."""
-        self._task.resume(number, request=request)
-
-    def cancel(self, number: int) -> None:
-        """Stop the fingers where they are and end as CANCELED."""
-        self._task.cancel(number)
-
-    def stop(self, cause: str = "") -> None:
-        """Cancel the active motion; a holding force is kept. With a `cause` the motion fails."""
-        self._task.stop(cause)
 
     def step(self, step_s: float, *, width_m: float, velocity_m_s: float) -> tuple[AnyMotionEvent, ...]:
         """Set `force_n` for each finger and return the events; both measurements refer to the opening."""

@@ -139,3 +139,34 @@ class GripTask:
         self._task = None
         report = MotionReport(end=end, reason=reason, at_rest=at_rest)
         return (MotionFinished(motion=task.number, progress=share, report=report),)
+
+
+class TaskDrive:
+    """Base of the drives of tools: the motion that they execute is a `GripTask`.
+
+    What a drive does at rest and while held is its own: fingers keep their force, a switch its field.
+    """
+
+    def __init__(self) -> None:
+        self._task = GripTask()
+
+    @property
+    def number(self) -> int:
+        """Number of the active motion, 0 for none."""
+        return self._task.number
+
+    def hold(self, number: int, *, request: int = 0) -> None:
+        """Stop and keep the motion."""
+        self._task.hold(number, request=request)
+
+    def resume(self, number: int, *, request: int = 0) -> None:
+        """Resume the motion."""
+        self._task.resume(number, request=request)
+
+    def cancel(self, number: int) -> None:
+        """Stop where it is and end as CANCELED."""
+        self._task.cancel(number)
+
+    def stop(self, cause: str = "") -> None:
+        """Cancel the active motion; a held object stays held. With a `cause` the motion fails."""
+        self._task.stop(cause)

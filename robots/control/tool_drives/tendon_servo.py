@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from robots.control.motion_event import AnyMotionEvent
-from robots.control.tool_drives.grip_task import GripTask
+from robots.control.tool_drives.grip_task import TaskDrive
 
 # The tendon stretches by this share of its travel under the motor's full force.
 _GIVE_SHARE = 0.25
@@ -26,18 +26,18 @@ class TendonCommand:
     speed_m_s: float
 
 
-class TendonServo:
+class TendonServo(TaskDrive):
     """Pulls a tendon towards a wound-up length that changes at the commanded speed; it can only pull.
 
     Blocked fingers keep the tendon from following: the motor stalls at its maximum force.
     """
 
     def __init__(self, *, travel_m: float, max_speed_m_s: float, max_force_n: float) -> None:
+        super().__init__()
         self._travel_m = travel_m
         self._max_speed_m_s = self._speed_m_s = max_speed_m_s
         self._max_force_n = max_force_n
         self._stiffness_n_m = max_force_n / (_GIVE_SHARE * travel_m)
-        self._task = GripTask()
         self._start_m = self._target_m = self._wound_m = 0.0
         self.force_n = 0.0
 
@@ -51,11 +51,6 @@ class TendonServo:
         """Adopt the command of another servo; drops the active motion."""
         self._task.forget()
         self._wound_m, self._target_m, self._speed_m_s = command.wound_m, command.target_m, command.speed_m_s
-
-    @property
-    def number(self) -> int:
-        """Number of the active motion, 0 for none."""
-        return self._task.number
 
     @property
     def closed_share(self) -> float:
@@ -77,22 +72,6 @@ class TendonServo:
         # A motion of zero length works at any speed.
         self._speed_m_s = min(self._max_speed_m_s, way / time_s) or self._max_speed_m_s
         self._task.start(number, patience_s=way / self._speed_m_s + _PATIENCE_S)
-
-    def hold(self, number: int, *, request: int = 0) -> None:
-        """Stop the motor and keep the motion."""
-        self._task.hold(number, request=request)
-
-    def resume(self, number: int, *, request: int = 0) -> None:
-        """Resume the motor."""
-        self._task.resume(number, request=request)
-
-    def cancel(self, number: int) -> None:
-        """Stop the motor where it is and end as CANCELED."""
-        self._task.cancel(number)
-
-    def stop(self, cause: str = "") -> None:
-        """Cancel the active motion; a held object stays held. With a `cause` the motion fails."""
-        self._task.stop(cause)
 
     def step(self, step_s: float, *, pulled_m: float, velocity_m_s: float) -> tuple[AnyMotionEvent, ...]:
         """Set `force_n`, the pull; `pulled_m` is the tendon length released by the fingers, at `velocity_m_s`."""

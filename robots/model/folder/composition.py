@@ -12,8 +12,7 @@ from engine.document import DataPath
 from engine.errors import CellError
 from robots.model.folder.calibration import apply_calibration, load_calibration
 from robots.model.folder.folder_document import FileReference, RobotDocument, ToolDocument
-from robots.model.folder.mechanism import mechanism_of
-from robots.model.folder.model_folder import ModelFolder, names_in
+from robots.model.folder.model_folder import ModelFolder
 from robots.model.joint_map import JointMap
 from robots.model.robot_model import JointLimits, RobotModel
 from robots.model.tool_model import ToolModel
@@ -121,9 +120,8 @@ def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tu
     """Add the tool's links and joints to `robot`; return the tool and the link of its centre point."""
     document = tool.document
     tree = tool.urdf()
-    joints, links = names_in(document.mechanism)
-    tool.require_joints(tree, [(("mechanism",), name) for name in joints])
-    tool.require_links(tree, [(("mechanism",), name) for name in links])
+    tool.require_joints(tree, [(("mechanism",), name) for name in document.mechanism.joint_names()])
+    tool.require_links(tree, [(("mechanism",), name) for name in document.mechanism.link_names()])
     if document.mass_kg is not None:
         scale_mass(tree, document.mass_kg)
     centre, mass = document.tcp, mass_of(tree)
@@ -150,7 +148,7 @@ def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tu
         links=tuple(links_of(tree)),
         joints=moving,
         mass_kg=mass,
-        mechanism=mechanism_of(document.mechanism, name=document.tool, prefix=prefix),
+        mechanism=document.mechanism.with_prefix(prefix),
         licence=document.licence.name,
         licence_file=tool.locate(document.licence),
     )

@@ -11,10 +11,8 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document import StrictModel
-from robots.model.tool_model import Triple
+from robots.model.mechanism import Mechanism, Positive, Text, Triple
 
-Text = Annotated[str, Meta(min_length=1)]
-Positive = Annotated[float, Meta(gt=0.0, description="A number above 0")]
 Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
 
 
@@ -125,93 +123,8 @@ class ToolCentrePoint(MountPose, frozen=True, kw_only=True):
     link: Text | None = None
 
 
-class PadSpec(StrictModel, frozen=True, kw_only=True):
-    """A finger pad as a box: centre in the link's frame, full edge lengths."""
-
-    link: Text
-    xyz: Triple = (0.0, 0.0, 0.0)
-    size_m: tuple[Positive, Positive, Positive]
-
-
-class ParallelGripperSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="parallel"):
-    """Two sliding fingers; each moves half of the opening, the second mimics the first."""
-
-    hand_link: Text
-    finger_joints: tuple[Text, Text]
-    finger_links: tuple[Text, Text]
-    pads: tuple[PadSpec, PadSpec]
-    max_width_m: Positive
-    max_speed_m_s: Positive
-    max_force_n: Positive
-    armature_kg: Positive = 0.2
-
-
-class LinkageGripperSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="linkage"):
-    """Two fingers on a linkage turned by `driver`; `followers` turn by a factor of it."""
-
-    driver: Text
-    followers: dict[str, float]
-    finger_links: tuple[Text, Text]
-    pads: tuple[PadSpec, PadSpec]
-    open_rad: float
-    closed_rad: float
-    max_width_m: Positive
-    max_speed_m_s: Positive
-    min_force_n: Positive
-    max_force_n: Positive
-    armature_kg_m2: Positive
-
-
-class MagnetSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="magnet"):
-    """A switchable magnet with a flat pole face."""
-
-    face: PadSpec
-    max_force_n: Positive
-    reach_m: Positive
-    max_payload_kg: Positive
-    switch_s: Positive = 0.2
-
-
-class TendonJoint(StrictModel, frozen=True, kw_only=True):
-    """Pulley radius, spring and damper of one joint of a soft hand."""
-
-    name: Text
-    radius_m: float = 0.0
-    stiffness_nm_rad: Positive
-    damping_nms_rad: Positive
-
-
-class SynergyHandSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="synergy"):
-    """One tendon over all flexion joints; `passive` joints have springs only."""
-
-    palm_link: Text
-    fingers: tuple[tuple[str, ...], ...]
-    flexion: tuple[TendonJoint, ...]
-    passive: tuple[TendonJoint, ...] = ()
-    travel_m: Positive
-    travel_speed_m_s: Positive
-    max_force_n: Positive
-
-
-class ClawSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="claw"):
-    """Two fingers coupled by gears and turned by a hobby servo."""
-
-    driver: Text
-    followers: dict[str, float]
-    finger_links: tuple[Text, Text]
-    pads: tuple[PadSpec, PadSpec]
-    open_rad: float
-    closed_rad: float
-    servo_open_rad: float
-    servo_closed_rad: float
-    max_width_m: Positive
-    max_speed_rad_s: Positive
-    max_effort_nm: Positive
-    armature_kg_m2: Positive
-
-
 class ToolDocument(StrictModel, frozen=True, kw_only=True):
-    """A `tool.yaml`: one tool.
+    """A `tool.yaml`: one tool; which mechanisms there are is added where it is read.
 
     `mount` is the pose of its root link in the flange (z out of the flange). On the arm its links and joints
     have the prefix `prefix`, by default the tool's name and `_`; the names in this
@@ -227,6 +140,6 @@ class ToolDocument(StrictModel, frozen=True, kw_only=True):
     mount: MountPose = MountPose()
     tcp: ToolCentrePoint = ToolCentrePoint()
     mass_kg: Positive | None = None
-    mechanism: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec
+    mechanism: Mechanism
     collisions: CollisionPairs = CollisionPairs()
     licence: Licence

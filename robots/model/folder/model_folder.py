@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar, Union, cast
+
+import msgspec
 
 from engine.document import DataPath, DocumentSource, decode_document, load_source
 from engine.errors import CellError, DocumentError
 from engine.suggestions import did_you_mean
 from robots.model.folder.folder_document import (
-    ClawSpec,
     CollisionPairs,
     FileReference,
-    LinkageGripperSpec,
-    MagnetSpec,
-    ParallelGripperSpec,
     RobotDocument,
-    SynergyHandSpec,
     ToolDocument,
     UrdfSource,
 )
@@ -32,6 +30,7 @@ from robots.model.urdf.urdf_tree import (
     root_of,
     take_collisions,
 )
+from robots.tool_kinds import load_mechanisms
 
 Document = TypeVar("Document", RobotDocument, ToolDocument)
 
@@ -138,7 +137,9 @@ def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
 def load_tool(folder: Path) -> ModelFolder[ToolDocument]:
     """Read the `tool.yaml` of a folder; raises DocumentError with its position if it is invalid."""
     source = _read(folder, TOOL_FILE)
-    return ModelFolder(folder=folder, document=decode_document(source, ToolDocument), source=source)
+    return ModelFolder(
+        folder=folder, document=decode_document(source, _tool_document(load_mechanisms())), source=source
+    )
 
 
 def _read(folder: Path, name: str) -> DocumentSource:
@@ -153,24 +154,11 @@ def _read(folder: Path, name: str) -> DocumentSource:
     return load_source(folder / name)
 
 
-def names_in(
-    mechanism: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec,
-) -> tuple[list[str], list[str]]:
-    """Return the joints and links named in a mechanism."""
-    match mechanism:
-        case ParallelGripperSpec():
-            return list(mechanism.finger_joints), [
-                mechanism.hand_link,
-                *mechanism.finger_links,
-                *(pad.link for pad in mechanism.pads),
-            ]
-        case LinkageGripperSpec() | ClawSpec():
-            return [mechanism.driver, *mechanism.followers], [
-                *mechanism.finger_links,
-                *(pad.link for pad in mechanism.pads),
-            ]
-        case MagnetSpec():
-            return [], [mechanism.face.link]
-        case SynergyHandSpec():
-            joints = [joint.name for joint in (*mechanism.flexion, *mechanism.passive)]
-            return joints, [mechanism.palm_link, *(link for finger in mechanism.fingers for link in finger)]
+@cache
+def _tool_document(mechanisms: tuple[object, ...]) -> type[ToolDocument]:
+    """Return the model of `tool.yaml` with the mechanisms that it may have."""
+    union: Any = Union[mechanisms]  # noqa: UP007 - known at run time only
+    made = msgspec.defstruct(
+        ToolDocument.__name__, [("mechanism", union)], bases=(ToolDocument,), frozen=True, kw_only=True
+    )
+    return cast("type[ToolDocument]", made)

@@ -8,34 +8,12 @@ from robots.port import Array
 from robots.sim.commands.arm_commands import ArmCommand, SimCommand
 
 
-class CloseFingers(SimCommand, frozen=True, kw_only=True, tag="close_to"):
-    """Move the fingers of `arm` towards an opening, pressing with at most `force_n`."""
+class MoveTool(SimCommand, frozen=True, kw_only=True, tag="move_tool"):
+    """Start a motion of the tool of `arm`; its kind says what the numbers of `goal` are."""
 
     arm: str
     motion: int
-    width_m: float
-    speed_m_s: float
-    force_n: float
-
-
-class CloseHand(SimCommand, frozen=True, kw_only=True, tag="close_hand"):
-    """Close the hand of `arm` to a share, 0 open to 1, in `time_s`."""
-
-    arm: str
-    motion: int
-    share: float
-    time_s: float
-
-
-class SwitchMagnet(SimCommand, frozen=True, kw_only=True, tag="switch_magnet"):
-    """Switch the magnet of `arm`."""
-
-    arm: str
-    motion: int
-    on: bool
-
-
-ToolCommand = CloseFingers | CloseHand | SwitchMagnet
+    goal: tuple[float, ...]
 
 
 class HoldMotion(SimCommand, frozen=True, kw_only=True, tag="hold"):
@@ -90,7 +68,7 @@ class ShutDownWorld(SimCommand, frozen=True, kw_only=True, tag="shutdown"):
 
 AnyCommand = (
     ArmCommand
-    | ToolCommand
+    | MoveTool
     | HoldMotion
     | ResumeMotion
     | CancelMotion

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, cast
 
 from robots.control.motion_event import AnyMotionEvent
-from robots.sim.commands.world_commands import ToolCommand
+from robots.sim.physics.cell_model import ArmIndices
+from robots.sim.physics.contacts import ContactReader
+from robots.sim.physics.physics import Physics
+from robots.tool_kinds import kind_of_mechanism, load_simulation
 
 
 class ToolDrive(Protocol):
@@ -41,8 +44,8 @@ class ToolMechanics(Protocol):
         """The drive that executes its motions."""
         ...
 
-    def begin(self, command: ToolCommand) -> None:
-        """Start the motion of a command for this kind of tool; others are ignored."""
+    def begin(self, motion: int, goal: tuple[float, ...]) -> None:
+        """Start a motion towards a goal, as `MoveTool` has it."""
         ...
 
     def step(self, step_s: float) -> tuple[AnyMotionEvent, ...]:
@@ -60,3 +63,20 @@ class ToolMechanics(Protocol):
     def take_over(self, command: tuple[float, ...]) -> None:
         """Adopt the command of an earlier instance of this tool."""
         ...
+
+
+class MechanicsMaker(Protocol):
+    """How a kind of tool moves in the loop."""
+
+    def mechanics(self, arm: ArmIndices, physics: Physics, contacts: ContactReader) -> ToolMechanics:
+        """Return the mechanics of the tool on an arm; the tool keeps its state in `physics`."""
+        ...
+
+
+def new_mechanics(arm: ArmIndices, physics: Physics, contacts: ContactReader) -> ToolMechanics | None:
+    """Return the mechanics of an arm's tool, None for a bare flange."""
+    tool = arm.model.tool
+    if tool is None:
+        return None
+    maker = cast("MechanicsMaker", load_simulation(kind_of_mechanism(tool.kind).name))
+    return maker.mechanics(arm, physics, contacts)

@@ -13,20 +13,17 @@ from robots.sim.commands.arm_commands import CommandToArm
 from robots.sim.commands.world_commands import (
     AnyCommand,
     CancelMotion,
-    CloseFingers,
-    CloseHand,
     HoldMotion,
     MovePersonHand,
+    MoveTool,
     PushSimBody,
     ResetFreeParts,
     RestoreWorld,
     ResumeMotion,
     ShutDownWorld,
     StopAll,
-    SwitchMagnet,
 )
-from robots.sim.grip.mechanics import ToolDrive, ToolMechanics
-from robots.sim.grip.mechanics_factory import new_mechanics
+from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.external_pushes import ExternalPushes
@@ -73,7 +70,7 @@ class Simulation:
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, ToolMechanics] = {name: tool for name, tool in tools.items() if tool is not None}
         arms = _arm_summaries(cell)
-        self._tool_names = {arm.name: f"{arm.name}/{arm.tool.device}" for arm in arms if arm.tool is not None}
+        self._tool_names = {arm.name: f"{arm.name}/{arm.tool.kind}" for arm in arms if arm.tool is not None}
         self._arm_dof = np.concatenate([np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms)])
         self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
         self.summary = _summary(cell, arms, image_size=self.image_layout.size)
@@ -114,8 +111,8 @@ class Simulation:
         match command:
             case CommandToArm():
                 self._arms[command.arm].take(command)
-            case CloseFingers() | CloseHand() | SwitchMagnet():
-                self._tools[command.arm].begin(command)
+            case MoveTool():
+                self._tools[command.arm].begin(command.motion, command.goal)
             case HoldMotion():
                 for device in self._devices():
                     device.hold(command.motion, request=command.request)

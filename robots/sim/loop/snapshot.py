@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from engine.messages import Quaternion, Vector3
-from robots.port import ArmSample, Array, GripperSample, HandSample, MagnetSample
+from robots.port import ArmSample, Array
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.people.person_report import PersonSample, person_sample, report_size
 
@@ -58,9 +58,8 @@ class SnapshotLayout:
     """Where each quantity lies in the array; both sides derive it from the summary.
 
     A tool has motion number, progress, three measurements, and the numbers of the touched bodies (-1 for
-    none), one per contact of its summary. The measurements of a gripper are width, velocity, force; of a
-    hand closed share, pull and nothing; of a magnet on (1 or 0), pull and nothing. Frames have
-    x y z and quaternion w x y z as in MuJoCo.
+    none), one per contact of its summary. Its kind says what the measurements are. Frames have x y z and
+    quaternion w x y z as in MuJoCo.
     """
 
     def __init__(self, summary: CellSummary) -> None:
@@ -88,6 +87,15 @@ class SnapshotLayout:
     def new_array(self) -> Array:
         """Return an array of the right size, zero."""
         return np.zeros(self.size)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToolReading:
+    """The measurement of a tool: three numbers as its kind says, and the names of the touched bodies, "" for none."""
+
+    time_s: float
+    values: tuple[float, float, float]
+    contacts: tuple[str, ...]
 
 
 class SimSnapshot:
@@ -122,23 +130,11 @@ class SimSnapshot:
         fields = self._layout.arms[name]
         return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
 
-    def gripper(self, name: str) -> GripperSample:
-        """Return the measurement of the gripper on an arm."""
-        (width, velocity, force), contacts = self._tool(name)
-        left, right = contacts
-        return GripperSample(
-            time_s=self.time_s, width_m=width, velocity_m_s=velocity, force_n=force, contacts=(left, right)
-        )
-
-    def hand(self, name: str) -> HandSample:
-        """Return the measurement of the hand on an arm."""
-        (closed, pull, _), contacts = self._tool(name)
-        return HandSample(time_s=self.time_s, closed_share=closed, force_n=pull, contacts=contacts)
-
-    def magnet(self, name: str) -> MagnetSample:
-        """Return the measurement of the magnet on an arm."""
-        (on, pull, _), (contact,) = self._tool(name)
-        return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
+    def tool(self, name: str) -> ToolReading:
+        """Return the measurement of the tool on an arm."""
+        _, _, a, b, c, *touched = self._values[self._layout.arms[name].tool].tolist()
+        contacts = tuple(self._body(body) for body in touched)
+        return ToolReading(time_s=self.time_s, values=(a, b, c), contacts=contacts)
 
     def person(self, name: str) -> PersonSample:
         """Motion and contacts of one person."""
@@ -156,10 +152,6 @@ class SimSnapshot:
         wxyz = self._values[self._layout.quaternions].reshape(-1, 4)
         xyzw = np.roll(wxyz, -1, axis=1).tolist()
         return tuple((x, y, z) for x, y, z in xyz), tuple((x, y, z, w) for x, y, z, w in xyzw)
-
-    def _tool(self, name: str) -> tuple[tuple[float, float, float], tuple[str, ...]]:
-        _, _, a, b, c, *touched = self._values[self._layout.arms[name].tool].tolist()
-        return (a, b, c), tuple(self._body(body) for body in touched)
 
     def _body(self, number: float) -> str:
         return self._layout.summary.bodies[int(number)] if number >= 0 else ""

@@ -13,7 +13,7 @@ from typing import Any
 from robots.model.robot_model import RobotModel
 from robots.model.urdf.description import resolve_uri
 from robots.sim.physics.physics import mujoco
-from robots.sim.physics.tool_spec import add_motor, finish_tool
+from robots.sim.physics.tool_body import add_motor, tool_body
 
 
 def arm_spec(model: RobotModel) -> Any:
@@ -27,7 +27,7 @@ def arm_spec(model: RobotModel) -> Any:
         spec.joint(name).armature = armature
         add_motor(spec, name, effort)
     if model.tool is not None:
-        finish_tool(spec, model.tool)
+        tool_body(model.tool).finish(spec, model.tool)
     for a, b in model.allowed_collisions:
         spec.add_exclude(bodyname1=a, bodyname2=b)
     return spec

@@ -16,7 +16,7 @@ from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
-from robots.sim.physics.tool_indices import ToolIndices, tool_indices
+from robots.sim.physics.tool_body import ToolIndices, tool_body
 
 Indices = NDArray[np.intp]
 
@@ -212,7 +212,7 @@ def _arm_indices(model: Any, name: str, robot: RobotModel, *, ferrous: tuple[str
         dof=_ints(model.joint(j).dofadr[0] for j in joints),
         motor=_ints(model.actuator(j).id for j in joints),
         bodies=frozenset(i for i in range(model.nbody) if str(model.body(i).name).startswith(prefix)),
-        tool=tool_indices(model, name, robot.tool, ferrous=ferrous) if robot.tool is not None else None,
+        tool=tool_body(robot.tool).indices(model, name, robot.tool, ferrous=ferrous) if robot.tool else None,
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import AsyncExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Self, cast
 
 from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
@@ -16,7 +16,7 @@ from engine.errors import RobotError, SkillFailed
 from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
 from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResult, ResetParts, ResetPartsResult
-from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
+from robots.port import ArmPort, GripperPort, HandPort
 from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.commands.world_commands import PushSimBody, StopAll
 from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
@@ -126,15 +126,15 @@ class SimWorld:
 
     def gripper(self, name: str) -> GripperPort:
         """Return the port of the gripper on one arm."""
-        return self._tools.gripper(name)
+        return cast("GripperPort", self._tools.port(name, "gripper"))
 
     def hand(self, name: str) -> HandPort:
         """Return the port of the hand on one arm."""
-        return self._tools.hand(name)
+        return cast("HandPort", self._tools.port(name, "hand"))
 
-    def magnet(self, name: str) -> MagnetPort:
-        """Return the port of the magnet on one arm."""
-        return self._tools.magnet(name)
+    def tool(self, name: str, kind: str) -> object:
+        """Return the port of the tool of a kind on one arm; raises CellError where there is none."""
+        return self._tools.port(name, kind)
 
     def outputs(self, name: str) -> SimOutputPort | None:
         """Return the digital outputs of one arm's controller, None where it has none."""

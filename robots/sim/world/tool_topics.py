@@ -1,21 +1,26 @@
-"""The topic of an arm's tool: `<arm>/gripper/state`, `<arm>/hand/state` or `<arm>/magnet/state`."""
+"""The topic of an arm's tool: `<arm>/<kind of tool>/state`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar, cast
 
 from engine.bus import SkillBus, Topic
-from engine.messages import GripperState, HandState, MagnetState, Message
-from robots.port.hand_grasp_check import hand_state
-from robots.port.magnet_grasp_check import magnet_state
+from engine.messages import Message
+from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.host.world_host import WorldHost
-from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
+from robots.sim.loop.snapshot import ArmSummary, SimSnapshot, ToolReading
+from robots.tool_kinds import load_simulation, tool_kind
 
 State = TypeVar("State", bound=Message)
 
-# Both pads press at least this hard on the same part before it counts as held.
-_HELD_N = 1.0
+
+class StatePublisher(Protocol):
+    """How a kind of tool reports its measurements on the bus."""
+
+    def state(self, reading: ToolReading, tool: ToolSummary, *, parts: Collection[str]) -> Message:
+        """Return the state of a tool, of the type that its kind declares; `parts` are the free parts of the world."""
+        ...
 
 
 class ToolTopic(Protocol):
@@ -54,32 +59,9 @@ def tool_topic(bus: SkillBus, host: WorldHost, arm: ArmSummary, *, parts: Collec
     tool, name = arm.tool, arm.name
     if tool is None:
         return None
-    address = f"{name}/{tool.device}/state"
-    match tool.device:
-        case "gripper":
-            return StateTopic(
-                bus.topic(address, GripperState), host, lambda snapshot: _gripper_state(snapshot, name, parts)
-            )
-        case "hand":
-            return StateTopic(
-                bus.topic(address, HandState),
-                host,
-                lambda snapshot: hand_state(snapshot.hand(name), max_force_n=tool.max_force_n),
-            )
-        case "magnet":
-            return StateTopic(
-                bus.topic(address, MagnetState),
-                host,
-                lambda snapshot: magnet_state(snapshot.magnet(name), max_force_n=tool.max_force_n),
-            )
+    publisher = cast("StatePublisher", load_simulation(tool.kind))
 
+    def state(snapshot: SimSnapshot) -> Message:
+        return publisher.state(snapshot.tool(name), tool, parts=parts)
 
-def _gripper_state(snapshot: SimSnapshot, arm: str, parts: Collection[str]) -> GripperState:
-    sample = snapshot.gripper(arm)
-    left, right = sample.contacts
-    return GripperState(
-        time_s=sample.time_s,
-        width_m=sample.width_m,
-        force_n=sample.force_n,
-        held=left == right and left in parts and sample.force_n >= _HELD_N,
-    )
+    return StateTopic(bus.topic(f"{name}/{tool.kind}/state", tool_kind(tool.kind).measured), host, state)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import get_args
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from engine.cell import tool_kinds
 from engine.check import check_behavior
 from engine.document.loader import parse_behavior
 from engine.errors import SkillFailed
@@ -141,7 +141,7 @@ def test_what_is_not_known_is_said() -> None:
     ]
 
 
-@pytest.mark.parametrize("tool", get_args(ToolName))
+@pytest.mark.parametrize("tool", tool_kinds())
 def test_every_tool_grasps_and_lets_go_in_its_own_words(tool: ToolName) -> None:
     """A hand closes, a magnet is switched on."""
     assert problems(made(step("y", PICK), CLOSE, step("z", BIN), OPEN, CLOSE, OPEN, tool=tool)) == []
@@ -177,7 +177,7 @@ def some_step(draw: st.DrawFn) -> ObservedStep:
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(some_step(), min_size=1, max_size=9),
-    st.sampled_from(get_args(ToolName)),
+    st.sampled_from(sorted(tool_kinds())),
     st.floats(0.001, 1.0),
     st.floats(0.001, 0.5),
 )

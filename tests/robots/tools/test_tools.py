@@ -7,10 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
+from robots.magnet.magnet_model import MagnetModel
+from robots.model import ClawModel, GripperModel, LinkageModel, Mechanism, PadBox, SynergyModel
 from robots.model.mechanics.pinocchio_model import pin, rest_configuration, whole_model
 from robots.model.registry import robot_model
 from robots.model.robot_model import RobotModel
-from robots.model.tool_model import ClawModel, GripperModel, LinkageModel, MagnetModel, Mechanism, PadBox, SynergyModel
 from robots.port import Array
 
 
@@ -53,12 +54,12 @@ def test_the_2f85_opens_as_wide_as_its_data_sheet_says_and_closes() -> None:
     assert isinstance(gripper, LinkageModel)
 
     def opening(angle: float) -> float:
-        joints = {gripper.driver: angle} | {name: factor * angle for name, factor in gripper.followers}
+        joints = {gripper.driver: angle} | {name: factor * angle for name, factor in gripper.followers.items()}
         return pads_of(model, gripper.pads, joints)[1]
 
     assert opening(gripper.open_rad) == pytest.approx(gripper.max_width_m, abs=0.0015)
     assert 0.0 <= opening(gripper.closed_rad) < 0.002
-    assert set(dict(gripper.followers)) | {gripper.driver} == set(model.tool.joints if model.tool is not None else ())
+    assert set(gripper.followers) | {gripper.driver} == set(model.tool.joints if model.tool is not None else ())
 
 
 def test_the_tool_centre_of_the_2f85_lies_between_its_pads_171_mm_out_of_the_flange() -> None:
@@ -66,7 +67,7 @@ def test_the_tool_centre_of_the_2f85_lies_between_its_pads_171_mm_out_of_the_fla
     assert isinstance(gripper, LinkageModel)
     centre = in_flange(model, model.tool_link, {})[:3, 3]
     assert np.allclose(centre, (0.0, 0.0, 0.171), atol=1e-9)
-    joints = {gripper.driver: 0.8} | {name: factor * 0.8 for name, factor in gripper.followers}
+    joints = {gripper.driver: 0.8} | {name: factor * 0.8 for name, factor in gripper.followers.items()}
     middle, _ = pads_of(model, gripper.pads, joints)
     assert abs(centre[2] - middle[2]) < gripper.pads[0].size_m[2] / 2
     assert np.allclose(middle[:2], 0.0, atol=1e-6)
@@ -85,7 +86,7 @@ def test_the_claw_opens_for_the_tube_and_closes_to_less_than_its_diameter() -> N
     tube_m = 0.01
 
     def opening(angle: float) -> float:
-        return pads_of(model, claw.pads, {claw.driver: angle, **{n: f * angle for n, f in claw.followers}})[1]
+        return pads_of(model, claw.pads, {claw.driver: angle, **{n: f * angle for n, f in claw.followers.items()}})[1]
 
     assert opening(claw.closed_rad) < tube_m < 3 * tube_m < opening(claw.open_rad)
     assert opening(claw.open_rad) == pytest.approx(claw.max_width_m, abs=0.001)

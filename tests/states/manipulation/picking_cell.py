@@ -7,11 +7,10 @@ from typing import Any
 import msgspec
 
 from engine.event import Cause
-from engine.messages import GripperState, HandState, MagnetState, PartPoses, Pose
+from engine.messages import GripperState, HandState, PartPoses, Pose
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult
 from engine.skills.hand import HandResult
-from engine.skills.magnet import MagnetResult
 from engine.skills.motion import (
     CartLinTask,
     CartMotionResult,
@@ -21,6 +20,7 @@ from engine.skills.motion import (
 )
 from engine.skills.planning import FreeMotionResult
 from engine.skills.planning_scene import CollisionReport, PlanningSceneState, TouchingPair
+from robots.magnet.magnet_skills import MagnetResult, MagnetState
 from tests.states.fake_context import FakeContext
 
 DOWN = (1.0, 0.0, 0.0, 0.0)

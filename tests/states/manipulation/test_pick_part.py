@@ -12,11 +12,11 @@ from engine.messages import GripperState, PartPoses, Pose
 from engine.skills.arm_control import SetLoad
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GripperGrasp
-from engine.skills.magnet import MagnetResult
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, InverseKinematicsSolutions
 from engine.skills.planning import MotionTarget, MoveFree
 from engine.skills.planning_scene import AttachPart
 from engine.state import Outcome
+from robots.magnet.magnet_skills import MagnetResult
 from states.manipulation.pick_part import GraspTarget, PickPart
 from tests.states.fake_context import FakeContext, broken_off
 from tests.states.manipulation.picking_cell import (

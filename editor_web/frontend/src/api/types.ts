@@ -1428,7 +1428,7 @@ export interface ProposalBody {
   readonly words: readonly string[]
   readonly remarks: readonly string[]
   readonly arm: string
-  readonly tool: "gripper" | "hand" | "magnet"
+  readonly tool: string
   readonly arms: readonly string[]
   readonly parts: readonly string[]
   readonly findings: readonly FindingView[]
@@ -1439,7 +1439,7 @@ export interface ProposalBody {
 export interface ProposalOptions {
   readonly name?: string
   readonly arm?: string
-  readonly tool?: "gripper" | "hand" | "magnet" | null
+  readonly tool?: string | null
   readonly speed?: number
   readonly line_speed_m_s?: number
   readonly approach_m?: number

@@ -1,0 +1,4 @@
+"""A kind of tool in one folder: the switchable magnet, from its mechanism to its states and what simulates it.
+
+Only the table of tool kinds (`robots/tool_kinds.py`) names it. `magnet_kind.py` is where to begin.
+"""

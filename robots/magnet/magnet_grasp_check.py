@@ -1,0 +1,33 @@
+"""Checks from switch state and pull whether a magnet holds something, or states why not."""
+
+from __future__ import annotations
+
+from robots.magnet.magnet_port import MagnetSample
+from robots.magnet.magnet_skills import MagnetState
+
+# An object pulled with less than this share of the magnet's force touches by an edge or is not ferrous.
+_HOLDS_SHARE = 0.05
+
+
+def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
+    """Return why nothing is held; empty if something is."""
+    if not sample.on:
+        return "the magnet is switched off"
+    if not sample.contact:
+        return "the magnet is on and touches nothing"
+    if sample.pull_n < _HOLDS_SHARE * max_force_n:
+        touched = "something" if sample.contact == "?" else sample.contact
+        return f"the magnet touches {touched} and pulls at it with {sample.pull_n:.1f} N of {max_force_n:.0f} N"
+    return ""
+
+
+def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
+    """Return the state of a magnet in a measurement, with its grasp re-evaluated."""
+    held = not check_magnet_grasp(sample, max_force_n=max_force_n)
+    return MagnetState(
+        time_s=sample.time_s,
+        on=sample.on,
+        pull_n=sample.pull_n,
+        held=held,
+        part=sample.contact if held else "",
+    )

@@ -1,0 +1,20 @@
+"""The kind of tool `magnet`, as the table of tool kinds lists it."""
+
+from __future__ import annotations
+
+from engine.cell import ToolKind
+from robots.magnet.check_magnet import CheckHeld
+from robots.magnet.magnet_skills import MagnetState
+from robots.magnet.switch_off import Off
+from robots.magnet.switch_on import On
+
+MAGNET = ToolKind(
+    name="magnet",
+    measured=MagnetState,
+    hold=On.state_name,
+    release=Off.state_name,
+    check=CheckHeld.state_name,
+    mechanisms={"magnet": "robots.magnet.magnet_model:MagnetModel"},
+    simulation="robots.magnet.magnet_simulation:MAGNET_SIMULATION",
+    states=(CheckHeld, Off, On),
+)

@@ -1,0 +1,20 @@
+"""The kind of tool `gripper`, as the table of tool kinds lists it."""
+
+from __future__ import annotations
+
+from engine.cell import ToolKind
+from engine.messages import GripperState
+
+GRIPPER = ToolKind(
+    name="gripper",
+    measured=GripperState,
+    hold="gripper.Grasp",
+    release="gripper.Open",
+    check="gripper.CheckHeld",
+    mechanisms={
+        "parallel": "robots.model.finger_mechanisms:GripperModel",
+        "linkage": "robots.model.finger_mechanisms:LinkageModel",
+        "claw": "robots.model.finger_mechanisms:ClawModel",
+    },
+    simulation="robots.standard_tools.gripper_simulation:GRIPPER_SIMULATION",
+)

@@ -1,0 +1,16 @@
+"""The kind of tool `hand`, as the table of tool kinds lists it."""
+
+from __future__ import annotations
+
+from engine.cell import ToolKind
+from engine.messages import HandState
+
+HAND = ToolKind(
+    name="hand",
+    measured=HandState,
+    hold="hand.Close",
+    release="hand.Open",
+    check="hand.CheckHeld",
+    mechanisms={"synergy": "robots.model.hand_mechanism:SynergyModel"},
+    simulation="robots.standard_tools.hand_simulation:HAND_SIMULATION",
+)
