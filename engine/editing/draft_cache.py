@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from engine.editing.apply import EditResult, apply_edits, apply_edits_to_draft
+from engine.editing.apply import EditedText, apply_edits, apply_edits_to_draft
 from engine.editing.diagnostics import (
     DocumentAnalysis,
     analyze_graph,
@@ -40,11 +40,12 @@ class _CachedDraft:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EditAnswer:
-    """What an edit makes of a text, the graph of the result, and its difference from a graph that the asker has."""
+class EditAnswer(EditedText, DocumentAnalysis):
+    """A text after edits with its graph and findings, and the difference from the graph that the asker has.
 
-    result: EditResult
-    analysis: DocumentAnalysis
+    It crosses to the page without the graph where there is a difference.
+    """
+
     difference: GraphDifference | None = None
 
 
@@ -98,14 +99,14 @@ class DraftCache:
         else:
             done = apply_edits(text, edits, file=str(file), context=context)
         if done.draft is None or done.outline is None:
-            return EditAnswer(result=done, analysis=self.draw(text, file=file, context=context, check=check))
+            return _answer(done, self.draw(text, file=file, context=context, check=check))
         before = sheet.graph if sheet is not None else None
         analysis, now = self._analyzed(done.draft, done.outline, file, context, before, check=check)
         difference = None
         base = text_hash(text)
         if before is not None and before.root is not None and now.root is not None and graph == base:
             difference = graph_difference(base, before.nodes, now.nodes)
-        return EditAnswer(result=done, analysis=analysis, difference=difference)
+        return _answer(done, analysis, difference)
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
@@ -142,3 +143,10 @@ class DraftCache:
 
     def _too_much(self) -> bool:
         return len(self._cache) > self._kept or self.kept_entries > MAX_ENTRIES
+
+
+def _answer(done: EditedText, analysis: DocumentAnalysis, difference: GraphDifference | None = None) -> EditAnswer:
+    # The fields as they are: a copy of a large graph would take longer than the edit.
+    return EditAnswer(
+        **vars(analysis), text=done.text, changed=done.changed, refused=done.refused, difference=difference
+    )

@@ -239,8 +239,9 @@ class ResumableState(RunStatePart):
     def node_exited(self, event: NodeExited) -> None:
         """Close the node; its container takes the exit with its next transition."""
         path = event.path
-        what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
-        self._add_tree_event(path, what, event.time_s)
+        if self._trees:
+            what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
+            self._add_tree_event(path, what, event.time_s)
         self._commit_writes(path)
         node = self._open.pop(path, None)
         outcome = event.outcome or None
@@ -371,6 +372,8 @@ class ResumableState(RunStatePart):
     def _forget_inside(self, path: str) -> None:
         """Drop the state inside a node that was exited."""
         self._scopes.pop(path, None)
+        if path not in self.state.containers and not isinstance(self._work(path), ForEach):
+            return  # nothing was entered inside, nor a round begun
         inside = (f"{path}/", f"{path}#")
         for table in (self._open, self._left, self._scopes):
             for inner in [key for key in table if key.startswith(inside)]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from engine.editing import ProjectContext, apply_edits, read_edits
+import msgspec
+
+from engine.editing import AnyEdit, ProjectContext, apply_edits
 from engine.registry import load_states
 from tests.engine.check.data_states import CATALOGUE as DATA_STATES
 from tests.engine.fake_states import CATALOGUE
@@ -19,6 +22,14 @@ NOWHERE = Path("no-such-project")
 def context(folder: Path = NOWHERE) -> ProjectContext:
     """What is known around a document in a folder."""
     return ProjectContext(STATES, folder, folder)
+
+
+def read_edits(raw: Sequence[object]) -> tuple[list[AnyEdit], str | None]:
+    """Edits from plain data, as the server reads them; without any, why it would take none of them."""
+    try:
+        return msgspec.convert(raw, list[AnyEdit]), None
+    except msgspec.ValidationError as error:
+        return [], str(error)
 
 
 def edited(text: str, *edits: dict[str, Any], file: str = "x.yaml", folder: Path = NOWHERE) -> str:
@@ -39,8 +50,7 @@ def changed(text: str, *edits: dict[str, Any]) -> tuple[str, ...]:
 def refusal(text: str, *edits: dict[str, Any]) -> str:
     """The words in which edits are refused; the text stays as it was."""
     made, wrong = read_edits(edits)
-    if wrong is not None:
-        return wrong.message
+    assert wrong is None
     done = apply_edits(dedent(text), made, file="x.yaml", context=context())
     assert done.refused is not None
     assert done.text == dedent(text)
