@@ -24,7 +24,7 @@ class Supervision(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     demand_operator: bool = False
     start_paused: bool = False
     loss_policy: LossPolicy = "hold"
-    loss_timeout_s: Annotated[float, Meta(ge=0)] = 5.0
+    loss_timeout_s: Annotated[float, Meta(ge=0.0)] = 5.0
 
 
 class RunOptions(Supervision, frozen=True, kw_only=True, forbid_unknown_fields=False):
