@@ -13,8 +13,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from engine.document.loader import parse_behavior
-from engine.editing import Draft, ProjectContext, analyze_text, apply_edits, read_edits
+from engine.editing import AnyEdit, Draft, ProjectContext, analyze_text, apply_edits
 from engine.editing.document_graph import draw_graph
 from engine.editing.outline import Outline
 from engine.registry import load_states
@@ -111,7 +113,7 @@ def main() -> None:
     print(f"  {'draw':23} {drawn:7.1f} ms")
     print(f"  {'draw and check':23} {checked:7.1f} ms")
     for name, raw in edits.items():
-        made, _ = read_edits(raw)
+        made = msgspec.convert(raw, list[AnyEdit])
         spent = milliseconds(lambda made=made: apply_edits(text, made, file="x.yaml", context=context))
         print(f"  {name:23} {spent:7.1f} ms")
     files = sorted((ROOT / "behaviors").rglob("*.yaml"))

@@ -143,7 +143,7 @@ class HostileInputProbe:
         self._drafts.draw(text, file=self._file, context=self._knowledge)
         edit = SetParameter(path="root/take", name="value", value="${a + a}")
         done = self._drafts.edit(text, [edit], file=self._file, context=self._knowledge)
-        self._drafts.examine(done.result.text, file=self._file, context=self._knowledge)
+        self._drafts.examine(done.text, file=self._file, context=self._knowledge)
 
     async def _run(self, plan: Plan) -> RunResult:
         with _timed_callbacks(self.running):

@@ -61,6 +61,7 @@ _UNIONS = {
     "TeachingFrame": teaching_messages.ToPage,
     "TeachingMessage": teaching_messages.FromPage,
 }
+_NAMED = {" | ".join(each.__name__ for each in get_args(union)): name for name, union in _UNIONS.items()}
 _SIMPLE = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
 # The parameters of a generic class, as msgspec appends them to its name.
 _PARAMETERS = re.compile(r"_.*_$")
@@ -117,7 +118,8 @@ def _type(schema: Schema) -> str:
         return json.dumps(schema["const"])
     if "anyOf" in schema:
         parts = list(dict.fromkeys(_type(part) for part in schema["anyOf"]))
-        return "unknown" if "unknown" in parts else " | ".join(parts)
+        whole = " | ".join(parts)
+        return "unknown" if "unknown" in parts else _NAMED.get(whole, whole)
     if schema.get("type") == "array":
         return _array(schema)
     if schema.get("type") == "object":

@@ -9,15 +9,20 @@ from __future__ import annotations
 import msgspec
 
 
-class Cause(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One link of the cause chain of a failure; `because` is the next link towards the root cause.
-
-    `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first.
-    """
+class CauseLink(msgspec.Struct, frozen=True, kw_only=True):
+    """One link of the cause chain of a failure; those of a whole chain are in order, root cause first."""
 
     message: str
     where: str = ""
     kind: str = ""
+
+
+class Cause(CauseLink, frozen=True, kw_only=True, omit_defaults=True):
+    """One link with the rest of its chain; `because` is the next link towards the root cause.
+
+    `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first.
+    """
+
     because: Cause | None = None
     nodes: tuple[str, ...] = ()
 

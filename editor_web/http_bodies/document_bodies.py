@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Annotated, Any
+from dataclasses import dataclass
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
@@ -11,11 +11,10 @@ from msgspec import Meta
 from editor_web.http_bodies.common_bodies import ErrorBody, RequestBody
 from engine.document import MAX_BYTES
 from engine.editing import (
+    AnyEdit,
     BehaviorReferenceView,
     ContainerView,
     DocumentAnalysis,
-    EditRefusal,
-    GraphDifference,
     MergeConflict,
     StateView,
     StoredDocument,
@@ -35,19 +34,6 @@ class DocumentBody(DocumentAnalysis):
     id: str
     text: str
     saved_at: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class EditResultBody(DocumentAnalysis):
-    """The text after the edits, and the nodes that they created or changed; the unchanged text if refused.
-
-    With a `difference` there is no `graph`.
-    """
-
-    text: str
-    changed: tuple[str, ...]
-    refused: EditRefusal | None
-    difference: GraphDifference | None = None
 
 
 class CopyResultBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -81,13 +67,13 @@ class DraftBody(TextBody, frozen=True, kw_only=True):
 
 
 class EditsBody(DraftBody, frozen=True, kw_only=True):
-    """A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`.
+    """A text and the edits to apply, all or none.
 
     `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server
     knows that graph too.
     """
 
-    edits: Annotated[list[dict[str, object]], Meta(max_length=500)]
+    edits: Annotated[tuple[AnyEdit, ...], Meta(max_length=500)]
     graph: Hash | None = None
 
 
@@ -171,9 +157,4 @@ class CatalogueBody(msgspec.Struct, frozen=True, kw_only=True):
 
 def document_body(stored: StoredDocument, analysis: DocumentAnalysis) -> DocumentBody:
     """Return a document with its analysis."""
-    return DocumentBody(**fields_of(analysis), id=stored.id, text=stored.text, saved_at=stored.saved_at_s)
-
-
-def fields_of(analysis: DocumentAnalysis) -> dict[str, Any]:
-    """Return the fields of an analysis, not copied."""
-    return {each.name: getattr(analysis, each.name) for each in fields(analysis)}
+    return DocumentBody(**vars(analysis), id=stored.id, text=stored.text, saved_at=stored.saved_at_s)

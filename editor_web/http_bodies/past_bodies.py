@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import msgspec
-from msgspec.structs import asdict
+from msgspec.structs import asdict, replace
 
-from engine.archive import PastRun
+from engine.archive import ArchivedRun, PastRun
 from engine.library import BehaviorView
 
 
@@ -29,10 +29,21 @@ class PastRunsBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OpenRunBody(msgspec.Struct, frozen=True, kw_only=True):
-    """An open past run or recording, with the behavior as of the start of the run."""
+    """An open past run or recording, with the behavior as of the start of the run.
+
+    It is shown as it stands: a run without an end is `interrupted`.
+    """
 
     run: PastRunBody
     behavior: BehaviorView
+
+
+def open_run_body(archived: ArchivedRun, *, recording: str) -> OpenRunBody:
+    """Return an open run."""
+    run = archived.summary
+    if run.status == "running":
+        run = replace(run, status="interrupted")
+    return OpenRunBody(run=past_run_body(run, recording=recording), behavior=archived.behavior)
 
 
 def past_run_body(run: PastRun, *, recording: str, here: bool = False) -> PastRunBody:

@@ -1,4 +1,4 @@
-"""The live stream: one hub reduces the engine's events, each client gets a snapshot and then deltas.
+"""The live stream: one hub reads the state of the session's runs, each client gets a snapshot and then deltas.
 
 Node states are last-value-wins and coalesced per client; log lines are a bounded ring buffer with a count of dropped
 lines; a client requests a new snapshot if `after` does not match its state. The engine's side only sets dirty marks
@@ -14,17 +14,12 @@ from collections import deque
 from collections.abc import Callable
 
 from editor_web.live.document_watch import DocumentWatch
-from editor_web.live.event_log import LogLine
 from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot
-from editor_web.live.live_run import LOG_LINES, LiveRun, LiveRunChange
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
-from engine.event import Event
 from engine.project import Session
 from engine.runtime.control import ControlView
-from engine.runtime.history import NodeLive
-
-KEPT_RUNS = 50
+from engine.runtime.history import LOG_LINES, LiveRun, LiveRunChange, LogLine, NodeLive
 
 
 class LiveClient:
@@ -58,7 +53,7 @@ class LiveClient:
         if self._watched is None or live.run_id != self._watched.run_id:
             return
         if live is not self._watched:
-            # The page watched the run before the hub knew it.
+            # The page watched the run before the session knew it.
             self.watch(live.run_id)
             return
         self._nodes.update(change.nodes)
@@ -77,13 +72,6 @@ class LiveClient:
         """Mark documents that have changed on disk."""
         self._documents |= changed
         self.dirty.set()
-
-    def refresh(self, live: LiveRun) -> None:
-        """Mark a run that was rebuilt completely."""
-        self._runs[live.run_id] = None
-        self.dirty.set()
-        if self._watched is not None and live.run_id == self._watched.run_id:
-            self.watch(live.run_id)
 
     def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | None:
         """Return the pending changes as one frame and clear them; None if there are none."""
@@ -143,7 +131,7 @@ class LiveClient:
 
 
 class LiveHub:
-    """Reduces every run's events once and notifies all clients.
+    """Tells all clients what has changed in the runs of the session.
 
     Args:
         backend: The engine.
@@ -154,7 +142,6 @@ class LiveHub:
         self.backend = backend
         self.epoch = secrets.token_hex(8)
         self._wall_s = wall_s
-        self._runs: dict[str, LiveRun] = {}
         self._seen_at_s: dict[str, float] = {}
         self._clients: set[LiveClient] = set()
         self._unsubscribe: Callable[[], None] | None = None
@@ -169,11 +156,11 @@ class LiveHub:
         return tuple(self._clients)
 
     def open(self) -> None:
-        """Subscribe to the engine's events."""
-        self._unsubscribe = self.backend.subscribe(self._on_event)
+        """Subscribe to the changes of all runs."""
+        self._unsubscribe = self.backend.subscribe(self._on_change)
 
     def close(self) -> None:
-        """Unsubscribe from the engine's events."""
+        """Unsubscribe from the changes of the runs."""
         if self._unsubscribe is not None:
             self._unsubscribe()
             self._unsubscribe = None
@@ -189,15 +176,11 @@ class LiveHub:
         self._clients.discard(client)
 
     def live_run(self, run_id: str) -> LiveRun:
-        """Return the reduced run, rebuilt from the journal if it is not cached."""
-        if run_id not in self._runs:
-            live = LiveRun(run_id, history=lambda: self._recorded(run_id))
-            for event in self._recorded(run_id):
-                live.apply(event)
-            if live.state.seq == 0:
-                return live
-            self._keep(live)
-        return self._runs[run_id]
+        """Return a run; a page may request one that no longer exists, which is empty."""
+        try:
+            return self.backend.live(run_id)
+        except FlexcellError:
+            return LiveRun(run_id)
 
     def now_s(self, live: LiveRun | None) -> float:
         """Return the current run time, extrapolated with wall time since the last event while the clock ticks."""
@@ -219,20 +202,12 @@ class LiveHub:
 
     def is_settled(self, run_id: str) -> bool:
         """Tell whether the backend's status of a run agrees with the run's events."""
-        live = self._runs.get(run_id)
-        return live is None or not live.state.ended or self.backend.run(run_id).status not in ("running", "stopping")
+        return not self.live_run(run_id).state.ended or self.backend.run(run_id).status not in ("running", "stopping")
 
-    def _on_event(self, run_id: str, event: Event) -> None:
-        # A run that was active before the hub opened is rebuilt first, with or without this event.
-        live = self.live_run(run_id)
-        if live.state.seq == 0:
-            self._keep(live)
-        change = live.apply(event)
-        self._seen_at_s[run_id] = self._wall_s()
-        if change is None:
-            for client in self._clients:
-                client.refresh(live)
-            return
+    def _on_change(self, live: LiveRun, change: LiveRunChange) -> None:
+        self._seen_at_s[live.run_id] = self._wall_s()
+        if live.state.ended:
+            del self._seen_at_s[live.run_id]
         for client in self._clients:
             client.note(live, change)
 
@@ -243,21 +218,6 @@ class LiveHub:
     def _on_documents(self, changed: dict[str, str | None]) -> None:
         for client in self._clients:
             client.note_documents(changed)
-
-    def _recorded(self, run_id: str) -> list[Event]:
-        try:
-            return self.backend.events(run_id)
-        except FlexcellError:
-            # A page may request a run that no longer exists; it gets an empty one.
-            return []
-
-    def _keep(self, live: LiveRun) -> None:
-        self._runs[live.run_id] = live
-        ended = [run_id for run_id, kept in self._runs.items() if kept.state.ended]
-        for run_id in ended[: max(0, len(self._runs) - KEPT_RUNS)]:
-            if run_id != live.run_id:
-                del self._runs[run_id]
-                self._seen_at_s.pop(run_id, None)
 
 
 def _ticking(live: LiveRun | None) -> bool:

@@ -5,11 +5,9 @@ from __future__ import annotations
 import msgspec
 
 from editor_web.cell_view import LayerGroup
-from editor_web.live.event_log import LogLine
 from editor_web.live.robot_status import RobotLive
-from engine.project import RunView
 from engine.runtime.control import ControlView
-from engine.runtime.history import NodeLive
+from engine.runtime.history import LogLine, NodeLive, RunView
 
 PROTOCOL_VERSION = 2
 

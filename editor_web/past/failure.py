@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import msgspec
 
-from editor_web.live.event_log import LogLine, log_line
+from editor_web.past.state_history import RunStateHistory
 from engine.cause_chain import links_from_root
 from engine.errors import FlexcellError
-from engine.event import Cause, Event
-from engine.runtime.history import NodeStep, RunReducer
+from engine.event import Cause, CauseLink, Event
+from engine.runtime.history import LogLine, NodeStep, log_line
 
 AROUND = 20
 _AROUND_KINDS = frozenset(
@@ -18,28 +18,11 @@ _AROUND_KINDS = frozenset(
 )
 
 
-class FailureLink(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of the cause chain, root cause first; `hint` tells how to fix it, may be empty."""
-
-    message: str
-    where: str
-    kind: str
-    hint: str
-
-
-class FailureStep(msgspec.Struct, frozen=True, kw_only=True):
-    """How a node between the root and the origin ended, after event `seq`."""
-
-    path: str
-    seq: int
-    time_s: float
-    text: str
-
-
 class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     """A failed run: the failure originated at event `seq`, at node `path` (empty if in no node).
 
-    `steps` are the nodes from the root to the origin, `around` the requests, answers and writes of the origin.
+    `hint` tells what to do, `links` are the causes without it. `steps` tell how the nodes from the root to the origin
+    ended, `around` are the requests, answers and writes of the origin.
     """
 
     seq: int
@@ -47,25 +30,19 @@ class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     path: str
     text: str
     hint: str
-    links: tuple[FailureLink, ...]
-    steps: tuple[FailureStep, ...]
+    links: tuple[CauseLink, ...]
+    steps: tuple[LogLine, ...]
     around: tuple[LogLine, ...]
 
 
-def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None:
-    """Return the failure of a run; None if it did not fail or has not ended."""
-    if not is_failed:
-        return None
-    reducer = RunReducer(history=lambda: events)
-    steps: dict[int, NodeStep] = {}
-    for event in events:
-        change = reducer.apply(event)
-        if change is not None and change.step is not None:
-            steps[event.seq] = change.step
-    end = reducer.state.end
+def failure_of(history: RunStateHistory) -> RunFailure | None:
+    """Return the failure of a run that failed; None if it has not ended."""
+    end = history.now.end
     if end is None:
         return None
-    links = tuple(map(_link, links_from_root(end.cause)))
+    events, steps = history.events(1, history.last_seq), history.steps
+    told = tuple(map(_link_and_hint, links_from_root(end.cause)))
+    links = tuple(link for link, _ in told)
     origin = _origin(events, steps, end, end.cause)
     path = _path(origin)
     first = links[0] if links else None
@@ -74,7 +51,7 @@ def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None
         time_s=origin.time_s,
         path=path,
         text=first.message if first is not None else log_line(end).text,
-        hint=next((link.hint for link in links if link.hint), ""),
+        hint=next((hint for _, hint in told if hint), ""),
         links=links,
         steps=tuple(_steps(events, steps, path, origin.seq)),
         around=_around(events, steps, path, origin.seq),
@@ -124,7 +101,7 @@ def _path(event: Event) -> str:
     return str(getattr(event, "path", ""))
 
 
-def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, since_seq: int) -> Iterator[FailureStep]:
+def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, since_seq: int) -> Iterator[LogLine]:
     """Yield how the containers around the origin ended after it, outermost first."""
     ends: dict[str, Event] = {}
     for event in events:
@@ -135,8 +112,7 @@ def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, si
     for depth in range(1, len(parts) + 1):
         node = "/".join(parts[:depth])
         if node in ends:
-            event = ends[node]
-            yield FailureStep(path=node, seq=event.seq, time_s=event.time_s, text=log_line(event).text)
+            yield log_line(ends[node])
 
 
 def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, seq: int) -> tuple[LogLine, ...]:
@@ -151,9 +127,9 @@ def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, s
     return tuple(lines[-AROUND:])
 
 
-def _link(cause: Cause) -> FailureLink:
+def _link_and_hint(cause: Cause) -> tuple[CauseLink, str]:
     message, hint = _split_hint(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
-    return FailureLink(message=message, where=cause.where, kind=cause.kind, hint=hint)
+    return CauseLink(message=message, where=cause.where, kind=cause.kind), hint
 
 
 def _family(kind: type[FlexcellError]) -> frozenset[str]:

@@ -7,8 +7,8 @@ from typing import get_args
 
 import msgspec
 
-from editor_web.live.event_log import log_line
 from engine.event import AnyEvent, Event, GoalSent
+from engine.runtime.history import log_line
 
 MAX_MARKERS = 4000
 """Maximum number of markers in one response; goals are dropped first."""

@@ -67,8 +67,7 @@ class OpenRun:
     def failure(self, *, is_failed: bool) -> RunFailure | None:
         """Return its failure; None if it did not fail."""
         with self.lock:
-            moments = self.course.moments
-            return failure_of(moments.events(1, moments.last_seq), is_failed=is_failed)
+            return failure_of(self.course.moments) if is_failed else None
 
 
 class OpenRunCache:

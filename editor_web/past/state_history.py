@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from editor_web.live.event_log import LogLine, log_line
-from editor_web.live.live_run import LOG_LINES
 from engine.event import Event
-from engine.runtime.history import NodeLive, RunReducer, RunState, RunStateChange
+from engine.runtime.history import (
+    LOG_LINES,
+    LogLine,
+    NodeLive,
+    NodeStep,
+    RunReducer,
+    RunState,
+    RunStateChange,
+    log_line,
+)
 
 CHECKPOINT_INTERVAL = 512
 """Initial number of events between two checkpoints."""
@@ -34,6 +41,7 @@ class RunStateHistory:
     def __init__(self, run_id: str) -> None:
         self._events: list[Event] = []
         self._times_s: list[float] = []
+        self._steps: dict[int, NodeStep] = {}
         self._every = CHECKPOINT_INTERVAL
         self._latest = RunReducer(run_id, history=lambda: self._events)
         self._checkpoints: list[RunReducer] = [self._latest.copy()]
@@ -42,6 +50,11 @@ class RunStateHistory:
     def now(self) -> RunState:
         """The run after its last event."""
         return self._latest.state
+
+    @property
+    def steps(self) -> Mapping[int, NodeStep]:
+        """What the events did to nodes, by their numbers."""
+        return self._steps
 
     @property
     def last_seq(self) -> int:
@@ -55,6 +68,8 @@ class RunStateHistory:
             return None
         self._events.append(event)
         self._times_s.append(event.time_s)
+        if change.step is not None:
+            self._steps[event.seq] = change.step
         if len(self._events) % self._every == 0:
             self._keep()
         return change

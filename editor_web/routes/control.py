@@ -24,7 +24,7 @@ from editor_web.routes.breakpoints import to_breakpoints
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.errors import ControlError, FlexcellError
-from engine.journal import RunRecord
+from engine.project import InterruptedRun
 from engine.runtime.control import Control, ControlView
 
 router = WireRouter(
@@ -148,7 +148,7 @@ async def change(
 
 
 @interrupted_router.get("")
-async def list_interrupted(services: ServicesOf) -> tuple[RunRecord, ...]:
+async def list_interrupted(services: ServicesOf) -> tuple[InterruptedRun, ...]:
     """List the interrupted runs of the journal, oldest first."""
     return services.backend.interrupted()
 

@@ -15,7 +15,6 @@ from editor_web.http_bodies.document_bodies import (
     CopyResultBody,
     DocumentBody,
     DraftBody,
-    EditResultBody,
     EditsBody,
     NewDocumentBody,
     NewIdBody,
@@ -27,18 +26,17 @@ from editor_web.http_bodies.document_bodies import (
     VersionBody,
     VersionTextBody,
     document_body,
-    fields_of,
 )
 from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.editing import (
     DocumentAnalysis,
     DocumentDiff,
+    EditAnswer,
     KeyFlow,
     StoredDocument,
     compare_texts,
     copy_nodes,
-    read_edits,
 )
 from engine.library import FindingView
 
@@ -91,18 +89,9 @@ def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[s
 
 
 @router.post("/{document_id:path}/edits")
-def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditResultBody:
+def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditAnswer:
     """Apply edits to a text, all or none; nothing is saved. A graph that the server knows comes as a difference."""
-    edits, refusal = read_edits(body.edits)
-    answer = services.documents.edit(document_id, body.text, edits, check=body.check, graph=body.graph)
-    done = answer.result
-    return EditResultBody(
-        **fields_of(answer.analysis),
-        text=done.text,
-        changed=done.changed,
-        refused=refusal or done.refused,
-        difference=answer.difference,
-    )
+    return services.documents.edit(document_id, body.text, body.edits, check=body.check, graph=body.graph)
 
 
 @router.post("/{document_id:path}/data_flow")

@@ -10,8 +10,7 @@ from typing import Annotated
 from fastapi import HTTPException, Query, Request, Response
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunsBody, past_run_body
-from editor_web.live.live_run import LOG_LINES
+from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunsBody, open_run_body, past_run_body
 from editor_web.past import OpenRun, OpenRunCache, PastRunState, RunFailure, Timeline
 from editor_web.past.run_search import RUN_KINDS, PastRunQuery, RunKind, search_runs
 from editor_web.past.userdata_values import PastUserdata
@@ -19,6 +18,7 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.archive import ArchivedRun, RecordingFile
 from engine.errors import FlexcellError, RecordingError
+from engine.runtime.history import LOG_LINES
 
 _PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
 
@@ -211,4 +211,4 @@ def _opened_body(opened: OpenRun, *, recording: str) -> OpenRunBody:
     archived: ArchivedRun | None = opened.archived
     if archived is None:
         raise HTTPException(404, "no such run")
-    return OpenRunBody(run=past_run_body(archived.summary, recording=recording), behavior=archived.behavior)
+    return open_run_body(archived, recording=recording)

@@ -15,8 +15,8 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import FlexcellError
 from engine.event import AnyEvent
-from engine.project import RunView
 from engine.runtime import RunOptions
+from engine.runtime.history import RunView
 
 router = WireRouter(prefix="/api/v1/runs", tags=["runs"])
 KEPT_KEYS = 200
@@ -49,14 +49,13 @@ async def start_run(
     if idempotency_key is not None and idempotency_key in started:
         return json_response(StartResultBody(run=started[idempotency_key]))
     seed = secrets.randbelow(2**31) if body.seed is None else body.seed
-    watched = body.supervision
     run_id = await services.backend.start(
         body.behavior,
         parameters=body.parameters,
         seed=seed,
         inputs=body.inputs,
-        supervision=RunOptions(**{name: value for name, value in asdict(watched).items() if name != "breakpoints"}),
-        breakpoints=watched.breakpoints,
+        supervision=RunOptions(**asdict(body.supervision)),
+        breakpoints=body.breakpoints,
         begin=body.begin,
     )
     if idempotency_key is not None:

@@ -6,32 +6,21 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-import msgspec
-
 from engine.cause_chain import describe_cause
 from engine.errors import JournalError
 from engine.event import RunEnded
 from engine.journal import JournalSnapshot, RunRecord, journal_path, open_snapshot
+from engine.runtime.history.run_view import RunView
 
 
-class PastRun(msgspec.Struct, frozen=True, kw_only=True):
+class PastRun(RunView, frozen=True, kw_only=True):
     """A run in its journal; `status` is running, finished, stopped or errored.
 
-    `behavior` is the name of the behavior. A run with status `running` has no end in the journal: it is active
-    in another process, or its process died.
+    A run with status `running` has no end in the journal: it is active in another process, or its process died.
+    `document` is the semantic hash of the behavior, `events` the number of events.
     """
 
-    id: str
-    behavior: str
     document: str
-    """The semantic hash of the behavior."""
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-    """Duration on the run's clock."""
     events: int
 
     @property

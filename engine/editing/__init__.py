@@ -3,7 +3,7 @@
 `apply_edits` is a function of text and edits; `DocumentRepository` opens, saves, merges and keeps versions.
 """
 
-from engine.editing.apply import EditRefusal, EditResult, apply_edits, copy_nodes, read_edits
+from engine.editing.apply import EditRefusal, EditResult, apply_edits, copy_nodes
 from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView, container_views, state_views
 from engine.editing.cell_references import cell_reference
 from engine.editing.data_flow import KeyFlow
@@ -12,6 +12,7 @@ from engine.editing.document_diff import DocumentDiff, compare_texts
 from engine.editing.document_graph import DocumentInfo, DocumentNode
 from engine.editing.document_repository import DocumentConflict, DocumentRepository, NoSuchDocument, StoredDocument
 from engine.editing.draft import Draft, EditRefused
+from engine.editing.draft_cache import EditAnswer
 from engine.editing.edit import AnyEdit
 from engine.editing.graph_difference import GraphDifference
 from engine.editing.project_context import ProjectContext
@@ -33,6 +34,7 @@ __all__ = [
     "DocumentRepository",
     "DocumentVersion",
     "Draft",
+    "EditAnswer",
     "EditRefusal",
     "EditRefused",
     "EditResult",
@@ -55,7 +57,6 @@ __all__ = [
     "copy_nodes",
     "merge_texts",
     "move_with_references",
-    "read_edits",
     "referrers",
     "state_views",
     "text_hash",

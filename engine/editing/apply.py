@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
-import msgspec
-
-from engine.document.text.decoding import explain_validation_error
 from engine.editing import edit, grouping, ungrouping
 from engine.editing import field_edits as fields
 from engine.editing import node_edits as nodes
@@ -52,32 +49,20 @@ class EditRefusal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EditResult:
-    """A text after edits, with the paths of the nodes created or changed; unchanged if an edit was rejected.
-
-    `draft` is the text as read, where edits were made, and `outline` its nodes.
-    """
+class EditedText:
+    """A text after edits, with the paths of the nodes created or changed; unchanged if an edit was refused."""
 
     text: str
-    draft: Draft | None = None
-    outline: Outline | None = None
     changed: tuple[str, ...] = ()
     refused: EditRefusal | None = None
 
 
-def read_edits(raw: Sequence[object]) -> tuple[list[edit.AnyEdit], EditRefusal | None]:
-    """Return edits decoded from plain data, or the problem of the first invalid one."""
-    made: list[edit.AnyEdit] = []
-    for index, each in enumerate(raw):
-        try:
-            made.append(cast("edit.AnyEdit", msgspec.convert(each, cast("Any", edit.AnyEdit))))
-        except msgspec.ValidationError as error:
-            return [], EditRefusal(
-                message=f"this is not an edit: {explain_validation_error(str(error))}",
-                hint="see the list of edits",
-                index=index,
-            )
-    return made, None
+@dataclass(frozen=True, kw_only=True)
+class EditResult(EditedText):
+    """A text after edits; `draft` is the text as read, where edits were made, and `outline` its nodes."""
+
+    draft: Draft | None = None
+    outline: Outline | None = None
 
 
 def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, context: ProjectContext) -> EditResult:

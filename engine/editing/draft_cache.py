@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from engine.editing.apply import EditResult, apply_edits, apply_edits_to_draft
+from engine.editing.apply import EditedText, apply_edits, apply_edits_to_draft
 from engine.editing.diagnostics import (
     DocumentAnalysis,
     analyze_unreadable_text,
@@ -40,11 +40,9 @@ class _CachedDraft:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EditAnswer:
-    """What an edit makes of a text, and the graph of the result; its difference from that of the asker instead."""
+class EditAnswer(EditedText, DocumentAnalysis):
+    """A text after edits with its findings, and its graph, or the difference from the graph that the asker has."""
 
-    result: EditResult
-    analysis: DocumentAnalysis
     difference: GraphDifference | None = None
 
 
@@ -98,13 +96,11 @@ class DraftCache:
         except DocumentError:
             done = apply_edits(text, edits, file=str(file), context=context)
         if done.draft is None or done.outline is None:
-            return EditAnswer(result=done, analysis=self.draw(text, file=file, context=context, check=check))
+            return _answer(done, self.draw(text, file=file, context=context, check=check))
         analysis, now = self._analyzed(done.draft, done.outline, file, context, near, check=check)
         if graph is not None and before is not None and before.nodes and now.nodes and graph == text_hash(text):
-            return EditAnswer(
-                result=done, analysis=analysis, difference=graph_difference(graph, before.nodes, now.nodes)
-            )
-        return EditAnswer(result=done, analysis=replace(analysis, graph=now.whole()))
+            return _answer(done, analysis, graph_difference(graph, before.nodes, now.nodes))
+        return _answer(done, replace(analysis, graph=now.whole()))
 
     def examine(self, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
         """Build the graph and the findings of a text."""
@@ -161,3 +157,10 @@ class DraftCache:
 
     def _too_much(self) -> bool:
         return len(self._cache) > self._kept or self.kept_entries > MAX_ENTRIES
+
+
+def _answer(done: EditedText, analysis: DocumentAnalysis, difference: GraphDifference | None = None) -> EditAnswer:
+    # The fields as they are: a copy of a large graph would take longer than the edit.
+    return EditAnswer(
+        **vars(analysis), text=done.text, changed=done.changed, refused=done.refused, difference=difference
+    )

@@ -7,19 +7,19 @@ from engine.project.project import Project
 from engine.project.run_request import RunPosition, RunRequest
 from engine.project.session import Session
 from engine.project.session_operators import RunOperator
-from engine.project.session_run import RunView
+from engine.project.session_run import InterruptedRun
 
 __all__ = [
     "BusInspector",
     "CellRunner",
     "CompletedRun",
     "GoalInfo",
+    "InterruptedRun",
     "ParameterInfo",
     "Project",
     "RunOperator",
     "RunPosition",
     "RunRequest",
-    "RunView",
     "Session",
     "SkillInfo",
     "TopicInfo",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
+
+import msgspec
 
 from engine.archive import Archive
 from engine.bus.json_bus import JsonBus, LocalJsonBus
@@ -19,7 +20,7 @@ from engine.document.substitutes import Substitutes
 from engine.editing import DocumentRepository
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
-from engine.journal import Journal, RunRecord, list_runs
+from engine.journal import Journal, list_runs
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
 from engine.project.cell_runner import CellRunner, PreparedRun
@@ -28,18 +29,20 @@ from engine.project.run_request import RunPosition, RunRequest, require_names, r
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
 from engine.project.session_recordings import SessionRecordings
-from engine.project.session_run import RunView, SessionRun
+from engine.project.session_run import InterruptedRun, SessionRun, interrupted_run
 from engine.project.session_stops import SessionStops
 from engine.recording import RecordedDocuments
 from engine.recording.recorded_run import read_run, version_snapshot
 from engine.runtime.control import Breakpoint, Control, load_breakpoints, save_breakpoints
 from engine.runtime.history.hot_change import ChangeReport
+from engine.runtime.history.live_run import LiveRun, LiveRunChange
+from engine.runtime.history.run_view import RunView
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.runtime.run_options import RunOptions
 from engine.suggestions import did_you_mean
 
-EventCallback = Callable[[str, Event], None]
+RunCallback = Callable[[LiveRun, LiveRunChange], None]
 _KEPT_RUNS = 200
 
 
@@ -64,7 +67,7 @@ class Session:
         self._recordings = recordings
         self._runner = CellRunner(cell, journal, recorder=recordings)
         self._runs: dict[str, SessionRun] = {}
-        self._callbacks: tuple[EventCallback, ...] = ()
+        self._callbacks: tuple[RunCallback, ...] = ()
         self._operators = OperatorRoster()
         self._stops = SessionStops(cell, self._runs)
 
@@ -149,7 +152,7 @@ class Session:
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         watched = supervision or RunOptions()
         if breakpoints:
-            watched = replace(watched, breakpoints=load_breakpoints(behavior.file))
+            watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
         start = None
         if begin is not None:
             start = start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
@@ -171,9 +174,9 @@ class Session:
         prepared = await self._runner.start(request)
         return self._add(behavior_id, prepared)
 
-    def interrupted(self) -> tuple[RunRecord, ...]:
+    def interrupted(self) -> tuple[InterruptedRun, ...]:
         """Return the runs of the journal whose process died, oldest first."""
-        return tuple(record for record in list_runs(self._journal.path) if record.interrupted)
+        return tuple(interrupted_run(each) for each in list_runs(self._journal.path) if each.interrupted)
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
         """Resume an interrupted run of this project and cell after every STOP has ended, and return its id.
@@ -308,15 +311,18 @@ class Session:
             await asyncio.wait({started.task})
         return self.run(run_id)
 
-    def subscribe(self, callback: EventCallback) -> Callable[[], None]:
-        """Call `callback` with (run id, event) for every event of every run; returns a function that unsubscribes."""
+    def subscribe(self, callback: RunCallback) -> Callable[[], None]:
+        """Call `callback` with the run and what changed, for every event of a run; returns what unsubscribes."""
         self._callbacks = (*self._callbacks, callback)
         return lambda: self._unsubscribe(callback)
 
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
         """Return the events of a run with `seq` > `after`, in order."""
-        events = self._known(run_id).events
-        return events[after:]  # `seq` counts from 1 without gaps
+        return self.live(run_id).events[after:]  # `seq` counts from 1 without gaps
+
+    def live(self, run_id: str) -> LiveRun:
+        """Return the state of a run, which is kept up to date; raises FlexcellError if there is no such run."""
+        return self._known(run_id).live
 
     def userdata(self, run_id: str) -> UserdataHistory:
         """Return an empty userdata history of a run, to be filled from its events; raises FlexcellError."""
@@ -357,16 +363,18 @@ class Session:
         """Prepare a recording before its run exists, whose clock starts then; None if it is not recorded."""
         return await self._recordings.prepare(behavior, cell=self.cell) if self._recordings is not None else None
 
-    def _publish(self, run_id: str, event: Event) -> None:
-        self._runs[run_id].events.append(event)
+    def _publish(self, live: LiveRun, event: Event) -> None:
+        change = live.apply(event)
+        if change is None:
+            return
         for callback in self._callbacks:
-            callback(run_id, event)
+            callback(live, change)
 
     def _add(self, behavior_id: str, prepared: PreparedRun, *, events: Iterable[Event] = ()) -> str:
         run = prepared.run
         started = SessionRun(behavior_id, prepared, self.cell.bus.clock.now_s(), events=events)
         self._runs[run.id] = started
-        run.watch(lambda event: self._publish(run.id, event))
+        run.watch(lambda event: self._publish(started.live, event))
         started.task = asyncio.create_task(started.execute(), name=f"session run {run.id}")
         self._forget_oldest()
         return run.id
@@ -374,7 +382,7 @@ class Session:
     def _cell_file(self) -> str | None:
         return str(self.cell.document.file.resolve()) if self.cell.document is not None else None
 
-    def _unsubscribe(self, callback: EventCallback) -> None:
+    def _unsubscribe(self, callback: RunCallback) -> None:
         self._callbacks = tuple(known for known in self._callbacks if known is not callback)
 
     def _known(self, run_id: str) -> SessionRun:

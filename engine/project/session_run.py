@@ -1,4 +1,4 @@
-"""A run of a session: its task, its events and its result."""
+"""A run of a session: its task, its state and its result."""
 
 from __future__ import annotations
 
@@ -10,25 +10,20 @@ import msgspec
 
 from engine.cause_chain import describe_cause
 from engine.event import Event
+from engine.journal import RunRecord
 from engine.project.cell_runner import PreparedRun
+from engine.runtime.history.live_run import LiveRun
+from engine.runtime.history.run_view import RunView
 from engine.runtime.run import RunResult
 
 
-class RunView(msgspec.Struct, frozen=True, kw_only=True):
-    """One run, active or ended; `status` is running, stopping, finished, stopped or errored.
-
-    `waits` is asks, paused or locked while it waits for a person.
-    """
+class InterruptedRun(msgspec.Struct, frozen=True, kw_only=True):
+    """A run of the journal whose process died after event `last_seq`; it can be resumed."""
 
     id: str
     behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-    waits: str = ""
+    started_unix_s: float
+    last_seq: int
 
 
 class SessionRun:
@@ -49,7 +44,7 @@ class SessionRun:
         self._prepared = prepared
         self.started_s = started_s
         self.started_at_s = time.time()
-        self.events: list[Event] = list(events)
+        self.live = LiveRun(prepared.run.id, events)
         self.stopping = False
         self.result: RunResult | None = None
         self.task: asyncio.Task[None] | None = None
@@ -78,3 +73,10 @@ class SessionRun:
             duration_s=result.duration_s if result else now_s - self.started_s,
             waits=self.run.control.view().waits if result is None and not self.run.ended else "",
         )
+
+
+def interrupted_run(record: RunRecord) -> InterruptedRun:
+    """Return what a person has to know of an interrupted run; the journal knows more."""
+    return InterruptedRun(
+        id=record.id, behavior=record.behavior, started_unix_s=record.started_unix_s, last_seq=record.last_seq
+    )

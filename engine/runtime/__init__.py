@@ -9,6 +9,7 @@ _HOMES = {
     "Run": "engine.runtime.run",
     "RunOptions": "engine.runtime.run_options",
     "RunResult": "engine.runtime.run",
+    "Supervision": "engine.runtime.run_options",
     "decode_nonfinite": "engine.runtime.record.nonfinite",
 }
 

@@ -2,11 +2,12 @@
 
 from engine.runtime.record.nonfinite import decode_nonfinite
 from engine.runtime.run import Run, RunResult
-from engine.runtime.run_options import RunOptions
+from engine.runtime.run_options import RunOptions, Supervision
 
 __all__ = [
     "Run",
     "RunOptions",
     "RunResult",
+    "Supervision",
     "decode_nonfinite",
 ]

@@ -32,16 +32,17 @@ from engine.event import (
     StopRequested,
     TransitionTaken,
 )
-from engine.journal import RunRecord
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
 from engine.project.run_request import RunPosition
-from engine.project.session import Session
+from engine.project.session import RunCallback, Session
 from engine.project.session_operators import RunOperator
-from engine.project.session_run import RunView
+from engine.project.session_run import InterruptedRun
 from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport
+from engine.runtime.history.live_run import LiveRun
+from engine.runtime.history.run_view import RunView
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.run_options import RunOptions
 from engine.skills.goal_end import GoalEnd
@@ -97,11 +98,11 @@ class FakeBackend(Session):
         self.recorded: dict[str, tuple[Path, ...]] = {}
         self._behaviors = {b.id: b for b in behaviors}
         self._played: dict[str, RunView] = {}
-        self._events: dict[str, list[Event]] = {}
+        self._lives: dict[str, LiveRun] = {}
         self._began_s: dict[str, float] = {}
         self._visits: dict[tuple[str, str], int] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
-        self._watchers: list[Callable[[str, Event], None]] = []
+        self._watchers: list[RunCallback] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
         self.known_bus: JsonBus = TopicBus(self._topics)
         self.known_inspector: BusInspector | None = None
@@ -158,7 +159,7 @@ class FakeBackend(Session):
         self._check(behavior, parameters)
         run_id = f"run-{len(self._played) + 1:03d}"
         self._played[run_id] = _begun(run_id, behavior_id)
-        self._events[run_id] = []
+        self._lives[run_id] = LiveRun(run_id)
         self._began_s[run_id] = time.monotonic()
         self._tasks[run_id] = asyncio.create_task(self._play(run_id, behavior, dict(parameters), seed), name=run_id)
         return run_id
@@ -171,13 +172,16 @@ class FakeBackend(Session):
         self._emit(run_id, StopRequested, reason=reason)
         self._tasks[run_id].cancel()
 
-    def subscribe(self, callback: Callable[[str, Event], None]) -> Callable[[], None]:
+    def subscribe(self, callback: RunCallback) -> Callable[[], None]:
         self._watchers.append(callback)
         return lambda: self._watchers.remove(callback)
 
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
+        return [e for e in self.live(run_id).events if e.seq > after]
+
+    def live(self, run_id: str) -> LiveRun:
         self.run(run_id)
-        return [e for e in self._events[run_id] if e.seq > after]
+        return self._lives[run_id]
 
     def userdata(self, run_id: str) -> UserdataHistory:
         raise FlexcellError("this fake keeps no userdata", where=run_id)
@@ -229,7 +233,7 @@ class FakeBackend(Session):
             raise ControlError("a run is active", hint="stop it first, then connect the cell")
         self.lost_reason = ""
 
-    def interrupted(self) -> tuple[RunRecord, ...]:
+    def interrupted(self) -> tuple[InterruptedRun, ...]:
         return ()
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
@@ -257,7 +261,7 @@ class FakeBackend(Session):
     def emit(self, run_id: str, kind: type[Event], /, **fields: object) -> None:
         """Append one event to a run from outside."""
         self._played.setdefault(run_id, _begun(run_id, TRANSFER.id))
-        self._events.setdefault(run_id, [])
+        self._lives.setdefault(run_id, LiveRun(run_id))
         self._began_s.setdefault(run_id, time.monotonic())
         self._emit(run_id, kind, **fields)
 
@@ -265,7 +269,7 @@ class FakeBackend(Session):
         """Take a run that was emitted from outside as finished."""
         self._played[run_id] = replace(self._played[run_id], status="finished", outcome=outcome, success=True)
 
-    def subscribers(self) -> tuple[Callable[[str, Event], None], ...]:
+    def subscribers(self) -> tuple[RunCallback, ...]:
         """Who is told of events."""
         return tuple(self._watchers)
 
@@ -288,11 +292,12 @@ class FakeBackend(Session):
                 raise FlexcellError(f"{value} is above the maximum {highest}", where=parameter.name)
 
     def _emit(self, run_id: str, kind: type[Event], /, **fields: object) -> None:
-        events = self._events[run_id]
-        event = kind(seq=len(events) + 1, time_s=time.monotonic() - self._began_s[run_id], **fields)
-        events.append(event)
+        live = self._lives[run_id]
+        event = kind(seq=len(live.events) + 1, time_s=time.monotonic() - self._began_s[run_id], **fields)
+        change = live.apply(event)
+        assert change is not None
         for callback in list(self._watchers):
-            callback(run_id, event)
+            callback(live, change)
 
     async def _play(self, run_id: str, behavior: BehaviorView, parameters: dict[str, object], seed: int) -> None:
         assert behavior.graph is not None

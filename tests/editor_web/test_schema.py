@@ -26,7 +26,6 @@ def test_every_field_has_a_type() -> None:
         "readonly before: unknown",
         "readonly changes: Dict<unknown>",
         "readonly default: unknown",
-        "readonly edits: readonly Dict<unknown>[]",
         "readonly every: unknown",
         "readonly feedback: unknown",
         "readonly guard: Dict<unknown> | null",

@@ -22,12 +22,6 @@ LEAST_FIELDS = 3
 MOST_SHARED = 0.75
 SOURCES = TYPES.parent.parent
 NOT_MIRRORS: Mapping[str, str] = {
-    "CauseLine": "one link of a chain, root cause first; `Cause` nests the chain from the other end",
-    "EditResultBody": "an edited text with its analysis; the draft inside `EditResult` is not for others",
-    "FailureLink": "one link of a chain with the hint of its kind of error",
-    "FailureStep": "how a node ended, not a value that was written",
-    "StartBody": "a run to start; the description of a recording also has what a run was started with",
-    "SupervisionBody": "`breakpoints` says whether those of the file hold; the options of a run list them",
     "TagsBody": "a change of tags; a row of the store has the key of the entry too",
     "TaughtReference": "names an entry or a capture; a row of the store has the key of the entry too",
     "TimelineMarker": "a mark on the timeline for many kinds of events",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -43,6 +44,16 @@ EXCEPTIONS = {
 }
 """What else looks at the class of such an event, and why."""
 
+REDUCERS = {
+    "editor_web/past/state_history.py": "a run at any instant; keeps copies",
+    "engine/cli/output/progress_printer.py": "a run in a terminal",
+    "engine/coverage/coverage_counter.py": "many runs, each read once",
+    "engine/runtime/history/live_run.py": "the runs of a session",
+    "engine/runtime/history/resumable_state.py": "a run that is resumed",
+    "engine/runtime/history/run_reducer.py": "copies, and the instant to which a resume returns",
+}
+"""Who reduces the events of a run; every other view reads the state of one of these."""
+
 
 def _matched(tree: ast.Module) -> Iterator[str]:
     """Yield the names of classes in `isinstance`, in `match` and in comparisons of `type(…)`."""
@@ -62,6 +73,11 @@ def _matched(tree: ast.Module) -> Iterator[str]:
                 pass
 
 
+def _code(path: Path) -> str:
+    """The text without the definition of the reducer itself."""
+    return path.read_text(encoding="utf-8").replace("class RunReducer(", "")
+
+
 def _interpreters() -> dict[str, set[str]]:
     """Return the node events that each file tells apart."""
     found: dict[str, set[str]] = {}
@@ -74,6 +90,17 @@ def _interpreters() -> dict[str, set[str]]:
             if names:
                 found[path.relative_to(ROOT).as_posix()] = names
     return found
+
+
+def test_the_events_of_a_run_are_reduced_where_its_state_is_kept() -> None:
+    """A view that reduced them again would cost every event twice."""
+    makers = [
+        path.relative_to(ROOT).as_posix()
+        for package in PACKAGES
+        for path in sorted((ROOT / package).rglob("*.py"))
+        if "node_modules" not in path.parts and re.search(r"\bRunReducer\(", _code(path))
+    ]
+    assert sorted(makers) == sorted(REDUCERS)
 
 
 def test_only_the_reducer_and_the_words_distinguish_node_events() -> None:
@@ -103,7 +130,7 @@ def test_every_way_to_distinguish_them_is_found(text: str, names: set[str]) -> N
 @pytest.mark.parametrize(
     "path",
     [
-        "editor_web/live/event_log.py",
+        "engine/runtime/history/event_log.py",
         "engine/cli/terminal/operator_console.py",
         "engine/cli/output/progress_printer.py",
         "engine/cli/commands/runs.py",

@@ -6,6 +6,10 @@ A run itself needs its checkpoints only, so each name is imported with its first
 from engine.lazy_face import lazy_face
 
 _HOMES = {
+    "LOG_LINES": "engine.runtime.history.live_run",
+    "LiveRun": "engine.runtime.history.live_run",
+    "LiveRunChange": "engine.runtime.history.live_run",
+    "LogLine": "engine.runtime.history.event_log",
     "NodeLive": "engine.runtime.history.run_state",
     "NodeStep": "engine.runtime.history.run_state",
     "ResumeDecisionRequired": "engine.runtime.history.resume",
@@ -13,9 +17,11 @@ _HOMES = {
     "RunReducer": "engine.runtime.history.run_reducer",
     "RunState": "engine.runtime.history.run_state",
     "RunStateChange": "engine.runtime.history.run_state",
+    "RunView": "engine.runtime.history.run_view",
     "ScopeView": "engine.runtime.history.userdata_history",
     "UserdataHistory": "engine.runtime.history.userdata_history",
     "event_text": "engine.runtime.history.event_texts",
+    "log_line": "engine.runtime.history.event_log",
 }
 
 __all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`

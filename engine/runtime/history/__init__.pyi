@@ -1,12 +1,19 @@
 # The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
+from engine.runtime.history.event_log import LogLine, log_line
 from engine.runtime.history.event_texts import event_text
+from engine.runtime.history.live_run import LOG_LINES, LiveRun, LiveRunChange
 from engine.runtime.history.resume import ResumeDecisionRequired, ResumeQuestion
 from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.history.run_state import NodeLive, NodeStep, RunState, RunStateChange
+from engine.runtime.history.run_view import RunView
 from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
 
 __all__ = [
+    "LOG_LINES",
+    "LiveRun",
+    "LiveRunChange",
+    "LogLine",
     "NodeLive",
     "NodeStep",
     "ResumeDecisionRequired",
@@ -14,7 +21,9 @@ __all__ = [
     "RunReducer",
     "RunState",
     "RunStateChange",
+    "RunView",
     "ScopeView",
     "UserdataHistory",
     "event_text",
+    "log_line",
 ]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from engine.event import Cause, NodeExited
 from engine.runtime.nodes.diagnosis import Diagnosis
@@ -11,8 +12,7 @@ from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.record.tree_event import TreeEvent
 
 
-@dataclass
-class ActiveNodeState:
+class ActiveNodeState(msgspec.Struct):
     """Course of a node that was entered and not exited, or that waits for its next attempt."""
 
     visit: int
@@ -20,11 +20,11 @@ class ActiveNodeState:
     since_s: float
     attempt: int = 1
     current: str | None = None
-    diagnosis: Diagnosis = field(default_factory=Diagnosis)
-    preempted: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    failed_clean_ups: dict[str, Cause] = field(default_factory=dict[str, Cause])
+    diagnosis: Diagnosis = msgspec.field(default_factory=Diagnosis)
+    preempted: dict[str, tuple[str, ...]] = {}
+    failed_clean_ups: dict[str, Cause] = {}
     round: int = 0
-    done: list[TreeEvent] = field(default_factory=list[TreeEvent])
+    done: list[TreeEvent] = []
 
     def has_preempted(self, name: str) -> bool:
         """Return whether a condition has preempted this branch of it."""
@@ -42,8 +42,7 @@ class ActiveNodeState:
         self.failed_clean_ups.pop(name, None)
 
 
-@dataclass(frozen=True)
-class PendingExit:
+class PendingExit(msgspec.Struct, frozen=True):
     """A node that has exited while its container has not proceeded."""
 
     visit: int

@@ -6,7 +6,8 @@ It needs the plan: initial userdata is in the document, not in the events.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+
+import msgspec
 
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES
 from engine.errors import DocumentError
@@ -63,6 +64,7 @@ class ResumableState(RunStatePart):
         self.visits: dict[str, int] = {}
         """The number of the last visit of each entered node; parts of trees, which are only ticked, have none."""
         self._plan = plan
+        self._trees = frozenset(path for path, node in plan.nodes.items() if node.work.kind == "tree")
         self._open: dict[str, ActiveNodeState] = {}
         self._left: dict[str, PendingExit] = {}
         self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
@@ -237,8 +239,9 @@ class ResumableState(RunStatePart):
     def node_exited(self, event: NodeExited) -> None:
         """Close the node; its container takes the exit with its next transition."""
         path = event.path
-        what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
-        self._add_tree_event(path, what, event.time_s)
+        if self._trees:
+            what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
+            self._add_tree_event(path, what, event.time_s)
         self._commit_writes(path)
         node = self._open.pop(path, None)
         outcome = event.outcome or None
@@ -309,7 +312,7 @@ class ResumableState(RunStatePart):
     def gate_passed(self, event: GatePassed) -> None:
         """Release the exit of a node."""
         if event.point == "after" and event.path in self._left:
-            self._left[event.path] = replace(self._left[event.path], passed=True)
+            self._left[event.path] = msgspec.structs.replace(self._left[event.path], passed=True)
 
     def behavior_changed(self, event: BehaviorChanged) -> None:
         """Drop what the new version restarts or removes."""
@@ -351,13 +354,14 @@ class ResumableState(RunStatePart):
 
     def _add_tree_event(self, path: str, what: str, at_s: float) -> None:
         """Add what happened to a tree node or leaf to the tree around it."""
+        if not self._trees:
+            return
         above = path
         while above := above.rpartition("/")[0]:
             node = self._open.get(above)
             if node is None:
                 continue
-            work = self._work(above)
-            if work is not None and work.kind == "tree":
+            if above in self._trees:
                 node.done.append(TreeEvent(path, what, at_s))
             return
 
@@ -368,6 +372,8 @@ class ResumableState(RunStatePart):
     def _forget_inside(self, path: str) -> None:
         """Drop the state inside a node that was exited."""
         self._scopes.pop(path, None)
+        if path not in self.state.containers and not isinstance(self._work(path), ForEach):
+            return  # nothing was entered inside, nor a round begun
         inside = (f"{path}/", f"{path}#")
         for table in (self._open, self._left, self._scopes):
             for inner in [key for key in table if key.startswith(inside)]:

@@ -45,10 +45,10 @@ class RunStatePart:
                 self.node_entered(event)
             case NodeExited():
                 self.node_exited(event)
-            case UserdataWritten() | UserdataAppended():
-                self.value_written(event)
             case TransitionTaken():
                 self.transition_taken(event)
+            case UserdataWritten() | UserdataAppended():
+                self.value_written(event)
             case StatusChanged():
                 self.status_changed(event)
             case GoalSent():

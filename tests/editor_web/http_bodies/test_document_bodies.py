@@ -7,8 +7,9 @@ from pathlib import Path
 import msgspec
 
 from benchmarks.large_document import large_document
-from editor_web.http_bodies.document_bodies import DocumentBody, EditResultBody
+from editor_web.http_bodies.document_bodies import DocumentBody
 from engine.editing import DocumentAnalysis
+from engine.editing.draft_cache import EditAnswer
 from tests.editor_web.editing_client import EditingClient
 
 ID = "behaviors/large.yaml"
@@ -25,7 +26,7 @@ async def test_answers_of_documents_have_the_fields_of_their_structs(tmp_path: P
         assert msgspec.json.decode(drawn.content, type=DocumentAnalysis).checked is check
         for some in (edits[:1], edits):
             edited = await client.post(f"{at}/edits", {"text": text, "edits": some, "check": check})
-            done = msgspec.json.decode(edited.content, type=EditResultBody)
+            done = msgspec.json.decode(edited.content, type=EditAnswer)
             assert (done.refused is None) == (len(some) == 1)
     opened = msgspec.json.decode((await client.get(at)).content, type=DocumentBody)
     assert opened.text == made["text"]

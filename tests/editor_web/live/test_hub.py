@@ -10,9 +10,9 @@ from websockets.exceptions import ConnectionClosedError
 
 from editor_web.live.hub import LiveClient, LiveHub
 from editor_web.live.live_frames import LiveDelta, LiveSnapshot
-from editor_web.live.live_run import LOG_LINES
 from editor_web.sockets import page_socket as sockets
 from engine.event import MessageLogged, NodeEntered, NodeExited, RunEnded, RunStarted
+from engine.runtime.history.live_run import LOG_LINES
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import TRANSFER

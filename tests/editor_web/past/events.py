@@ -29,6 +29,8 @@ from engine.event import (
 )
 
 PATHS = ("root", "root/a", "root/b", "root/b/x", "root/b/y", "root/b/y/deep", "root/c")
+FOLLOWED = {"root": ("a", "b"), "root/b": ("x", "y"), "root/b/y": ("deep", "good")}
+"""The child that a container proceeds from, and the sibling or outcome that it proceeds to."""
 RARE = ("retry", "lock", "preempt", "undo", "undone", "back", "change", "gate", "resume")
 STEPS = st.lists(
     st.tuples(
@@ -72,8 +74,9 @@ def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
                     StatusChanged(seq=seq, time_s=time_s, path=path, status=("running", "success")[int(pause_s)])
                 )
             case "follow":
+                source, target = FOLLOWED.get(path, ("a", "good"))
                 events.append(
-                    TransitionTaken(seq=seq, time_s=time_s, path=path, source="a", outcome="done", target="b")
+                    TransitionTaken(seq=seq, time_s=time_s, path=path, source=source, outcome="done", target=target)
                 )
             case "goal":
                 events.append(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from editor_web.past.failure import RunFailure, failure_of
+from editor_web.past.state_history import RunStateHistory
 from engine.event import Event
 from tests.engine.run_document import run_document
 
@@ -37,10 +40,18 @@ root:
 """
 
 
+def history(events: Iterable[Event]) -> RunStateHistory:
+    """The course of a run with these events."""
+    found = RunStateHistory("r")
+    for event in events:
+        found.follow(event)
+    return found
+
+
 def failure(text: str) -> tuple[RunFailure, tuple[Event, ...]]:
     """How a behavior fails."""
     events = run_document(text).events
-    found = failure_of(events, is_failed=True)
+    found = failure_of(history(events))
     assert found is not None
     return found, events
 
@@ -80,15 +91,14 @@ def test_what_an_error_of_ours_suggests_is_reported_apart() -> None:
               begin: {state: test.Give, with: {outcome: d}, transitions: {a: good, b: bad, c: bad}}
         """
     ).events
-    found = failure_of(events, is_failed=True)
+    found = failure_of(history(events))
     assert found is not None
     assert found.hint
     assert f"({found.hint})" not in found.text
 
 
-def test_a_run_that_did_not_fail_has_none() -> None:
-    """Nor has one that is not over."""
+def test_a_run_that_is_not_over_has_none() -> None:
+    """However much of it has failed."""
     events = run_document(BY_OUTCOME).events
-    assert failure_of(events, is_failed=False) is None
-    assert failure_of(events[:-1], is_failed=True) is None
-    assert failure_of((), is_failed=True) is None
+    assert failure_of(history(events[:-1])) is None
+    assert failure_of(history(())) is None

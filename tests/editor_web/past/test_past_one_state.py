@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from editor_web.live.live_run import LiveRun
 from editor_web.past.state_history import RunStateHistory
 from engine.event import Event, NodeEntered, NodeExited, RunResumed, RunStarted
+from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.resume import read_history
 from engine.runtime.history.run_state import IDLE, NodeLive
 from tests.editor_web.past.events import PATHS, STEPS, made_up
@@ -37,12 +37,13 @@ PLAN = plan_of(
 
 @settings(deadline=None, max_examples=100)
 @example(steps=[("enter", "root", 0.0), ("resume", "root", 0.5), ("exit", "root", 0.0)], ended=False)
+@example(steps=[("enter", "root/b", 0.0), ("follow", "root/b", 0.0)], ended=False)
 @given(steps=STEPS, ended=st.booleans())
 def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float]], ended: bool) -> None:
     """Nodes, what is active, which exits wait for their container, and what the operator has set."""
     assert set(PATHS) <= set(PLAN.nodes)
     events = made_up(steps, ended=ended)
-    live, past = LiveRun("r", history=lambda: events), RunStateHistory("r")
+    live, past = LiveRun("r"), RunStateHistory("r")
     for event in events:
         live.apply(event)
         past.follow(event)
@@ -80,7 +81,7 @@ def test_what_a_resume_takes_back_is_not_shown_any_more() -> None:
         RunResumed(seq=6, time_s=3.0, after_seq=3, epoch=2, rerun=("root/a",)),
         entered(7, "root/a", visit=2),
     ]
-    live, past = LiveRun("r", history=lambda: events), RunStateHistory("r")
+    live, past = LiveRun("r"), RunStateHistory("r")
     changed = [live.apply(event) for event in events]
     for event in events:
         past.follow(event)

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from editor_web.live.live_run import LiveRun
 from editor_web.past import state_history as subject
 from editor_web.past.state_history import RunStateHistory
 from editor_web.past.timeline import RunHistory
 from editor_web.past.userdata_values import UserdataCheckpoints
 from editor_web.telemetry.page_subscriptions import userdata_scope
 from engine.event import Event, MessageLogged
+from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.userdata_history import UserdataHistory
 from tests.editor_web.past.events import STEPS, made_up
 from tests.engine.run_document import plan_of, run_document
@@ -36,7 +36,7 @@ root:
 
 def lived(events: list[Event], seq: int) -> LiveRun:
     """What the live view had folded after an event."""
-    live = LiveRun("r", history=lambda: events)
+    live = LiveRun("r")
     for event in events[:seq]:
         live.apply(event)
     return live

@@ -19,6 +19,7 @@ from engine.event import Event, GateReached, NodeEntered, OperatorChanged, RunSt
 from engine.journal import Journal
 from engine.project.session import Session
 from engine.registry import load_states
+from engine.runtime.history.live_run import LiveRun, LiveRunChange
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served
@@ -74,7 +75,7 @@ class Site:
         """Wait until a run has had so many events of a kind."""
         enough = asyncio.Event()
 
-        def look(run_id: str, event: Event) -> None:
+        def look(live: LiveRun, change: LiveRunChange) -> None:
             if sum(isinstance(known, kind) for known in self.session.events(run)) >= count:
                 enough.set()
 

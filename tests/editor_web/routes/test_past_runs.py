@@ -9,9 +9,9 @@ from typing import Any
 import httpx
 import pytest
 
-from editor_web.live.live_run import LiveRun
 from engine.clock import run_virtual
 from engine.recording import part_file
+from engine.runtime.history.live_run import LiveRun
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_behaviors import TRANSFER
 from tests.editor_web.limits import GUARD_S

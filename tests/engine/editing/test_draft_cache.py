@@ -12,7 +12,7 @@ from benchmarks.large_document import large_document
 from engine.document import parse_behavior
 from engine.document.loader import survey_behavior
 from engine.document.nodes.node_spec import NodeSpec
-from engine.editing import DocumentAnalysis, Draft, ProjectContext, analyze_text, apply_edits, read_edits
+from engine.editing import DocumentAnalysis, Draft, ProjectContext, analyze_text, apply_edits
 from engine.editing.apply import apply_edits_to_draft
 from engine.editing.diagnostics import text_hash
 from engine.editing.draft_cache import DraftCache
@@ -20,6 +20,7 @@ from engine.editing.draft_source import keep_nodes, syntax_source
 from engine.editing.outline import Outline
 from engine.registry import load_states
 from engine.state import Context, Outcome, State
+from tests.engine.editing.edit_fixtures import analysis_of, read_edits
 
 TEXT = large_document(60)
 NODE = "root/area_0/step_0/wait_3"
@@ -70,13 +71,13 @@ def test_edits_one_after_the_other_are_what_they_are_without_a_cache(tmp_path: P
     text = TEXT
     for at in (file, file, file, tmp_path / "y.yaml"):
         answer = drafts.edit(text, edits, file=at, context=context)
-        done, drawn = answer.result, answer.analysis
+        done = drawn = answer
         alone = apply_edits(text, edits, file=str(at), context=context)
         assert (done.text, done.changed, done.refused) == (alone.text, alone.changed, None)
         assert drafts.examine(done.text, file=at, context=context) == analyze_text(done.text, file=at, context=context)
         assert not drawn.checked
         text = done.text
-    again = drafts.edit(TEXT, edits, file=file, context=context).result
+    again = drafts.edit(TEXT, edits, file=file, context=context)
     assert again.text == apply_edits(TEXT, edits, file=str(file), context=context).text
 
 
@@ -87,7 +88,7 @@ def test_a_refused_edit_leaves_the_text_as_it_was(tmp_path: Path, context: Proje
         [{"edit": "remove_nodes", "paths": [NODE]}, {"edit": "remove_nodes", "paths": ["root/nowhere"]}]
     )
     answer = drafts.edit(TEXT, removed, file=file, context=context)
-    done, drawn = answer.result, answer.analysis
+    done = drawn = answer
     assert (done.text, done.refused is None) == (TEXT, False)
     assert drawn.graph == analyze_text(TEXT, file=file, context=context).graph
 
@@ -112,8 +113,8 @@ def test_a_text_that_cannot_be_read_says_so_in_every_way(text: str, tmp_path: Pa
     assert drafts.draw(text, file=file, context=context) == expected
     assert drafts.examine(text, file=file, context=context).findings == expected.findings
     answer = drafts.edit(text, edits, file=file, context=context)
-    done, drawn = answer.result, answer.analysis
-    assert (done.text, drawn) == (text, expected)
+    done = drawn = answer
+    assert (done.text, drawn.findings, drawn.graph) == (text, expected.findings, None)
     assert done.refused is not None
 
 
@@ -145,9 +146,9 @@ def test_a_node_that_did_not_change_is_judged_anew_where_what_it_uses_did(tmp_pa
         parameters = {"time": {"type": "integer", "default": default}}
         edits, _ = read_edits([{"edit": "set_document", "changes": {"parameters": parameters}}])
         answer = drafts.edit(text, edits, file=file, context=contexts[0], check=True)
-        text = answer.result.text
-        assert answer.analysis == analyze_text(text, file=file, context=contexts[0])
-        codes.append([each.code for each in answer.analysis.findings])
+        text = answer.text
+        assert analysis_of(answer) == analyze_text(text, file=file, context=contexts[0])
+        codes.append([each.code for each in answer.findings])
     assert codes == [[], ["bad-parameter"], []]
 
 
@@ -179,7 +180,6 @@ def test_a_step_back_and_typed_text_are_what_they_are_without_a_cache(tmp_path: 
     base = text_hash(TEXT)
     renamed = drafts.edit(TEXT, edits, file=file, context=context, check=True, graph=base)
     again = drafts.edit(TEXT, edits, file=file, context=context, check=True, graph=base)
-    assert again.analysis == renamed.analysis
-    assert again.difference == renamed.difference
-    typed = renamed.result.text.replace("state: flow.Decide", "state: flow.Nothing", 1)
+    assert again == renamed
+    typed = renamed.text.replace("state: flow.Decide", "state: flow.Nothing", 1)
     assert drafts.examine(typed, file=file, context=context) == analyze_text(typed, file=file, context=context)

@@ -14,12 +14,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from benchmarks.edits import edits_of, subjects
-from engine.editing import Draft, analyze_text, read_edits
+from engine.editing import Draft, analyze_text
 from engine.editing.draft_cache import DraftCache
 from engine.editing.graph_difference import GraphDifference, shifted
 from engine.editing.outline import Outline
 from tests.engine.check.random_behaviors import behaviors
-from tests.engine.editing.edit_fixtures import context
+from tests.engine.editing.edit_fixtures import analysis_of, context, read_edits
 from tests.engine.editing.layouts import Layout, Plain, chances
 from tests.engine.editing.random_edits import any_edits
 
@@ -75,16 +75,16 @@ def test_any_edit_is_answered_with_what_a_look_from_scratch_says(
         edits, problem = read_edits([draw.draw(any_edits(list(Outline(Draft(text, file="x.yaml").data).refs)))])
         assume(problem is None)
         answer = drafts.edit(text, edits, file=FILE, context=known, check=True, graph=base)
-        expected = analyze_text(answer.result.text, file=FILE, context=known)
-        if answer.result.refused is not None:
-            assert answer.analysis == expected
+        expected = analyze_text(answer.text, file=FILE, context=known)
+        if answer.refused is not None:
+            assert analysis_of(answer) == expected
         else:
             assert answer.difference is not None
-            assert answer.analysis == replace(expected, graph=None)
+            assert analysis_of(answer) == replace(expected, graph=None)
             assert answer.difference.base == base
             graph = applied(graph, answer.difference)
             assert graph == _plain(expected.graph)
-        text, base = answer.result.text, answer.analysis.hash
+        text, base = answer.text, answer.hash
 
 
 @pytest.mark.parametrize("subject", subjects(60), ids=lambda each: each.name)
@@ -98,14 +98,14 @@ def test_edits_one_after_the_other_send_little(subject: Any) -> None:
         for number in range(2):
             edits, _ = read_edits([make(number)])
             answer = drafts.edit(text, edits, file=FILE, context=known, check=True, graph=base)
-            assert answer.result.refused is None, (name, answer.result.refused)
-            expected = analyze_text(answer.result.text, file=FILE, context=known)
-            assert answer.analysis == replace(expected, graph=None)
+            assert answer.refused is None, (name, answer.refused)
+            expected = analyze_text(answer.text, file=FILE, context=known)
+            assert analysis_of(answer) == replace(expected, graph=None)
             assert answer.difference is not None
             assert len(answer.difference.nodes) <= 2
             graph = applied(graph, answer.difference)
             assert graph == _plain(expected.graph)
-            text, base = answer.result.text, answer.analysis.hash
+            text, base = answer.text, answer.hash
 
 
 def test_a_graph_that_the_server_does_not_know_is_answered_whole() -> None:
@@ -113,6 +113,6 @@ def test_a_graph_that_the_server_does_not_know_is_answered_whole() -> None:
     drafts, known = DraftCache(), context(FILE.parent)
     edits, _ = read_edits([{"edit": "rename_node", "path": "root/s3", "name": "other"}])
     first = drafts.edit(text, edits, file=FILE, context=known, graph=None)
-    assert (first.difference, first.analysis.graph is None) == (None, False)
+    assert (first.difference, first.graph is None) == (None, False)
     drafts.draw(text, file=FILE, context=known)
     assert drafts.edit(text, edits, file=FILE, context=known, graph="0" * 64).difference is None

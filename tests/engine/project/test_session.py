@@ -95,7 +95,7 @@ async def test_a_run_is_reported_from_start_to_end_and_journaled(project: Path) 
     async with _session(project) as session:
         run = await session.start("behaviors/quick.yaml", parameters={"pause": 0.02}, seed=1)
         told: list[str] = []
-        unsubscribe = session.subscribe(lambda run_id, event: told.append(run_id))
+        unsubscribe = session.subscribe(lambda live, change: told.append(live.run_id))
         view = await session.wait(run)
         unsubscribe()
         numbers = [event.seq for event in session.events(run, after=2)]

@@ -71,7 +71,7 @@ async def _quick(session: Session) -> str:
 async def _endless(session: Session) -> str:
     """Start a run that does not end, and wait until it has begun."""
     begun = asyncio.Event()
-    unsubscribe = session.subscribe(lambda run, event: begun.set())
+    unsubscribe = session.subscribe(lambda live, change: begun.set())
     run = await session.start(ENDLESS, parameters={}, seed=1)
     await begun.wait()
     unsubscribe()

@@ -5,9 +5,9 @@ import type {
   BehaviorSummary,
   BreakpointsBody,
   HotChangeResultBody,
+  InterruptedRun,
   ControlView,
   ErrorBody,
-  RunRecord,
   ResumeQuestion,
   ResumeBody,
   SessionBody,
@@ -122,7 +122,7 @@ export const api = {
   keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
   keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
     sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
-  interrupted: () => call<readonly RunRecord[]>('/interrupted'),
+  interrupted: () => call<readonly InterruptedRun[]>('/interrupted'),
   resumeInterrupted: (run: string, body: ResumeBody) =>
     post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
   stopCell: (reason: string) => post<void>('/cell/stop', { reason }),

@@ -291,7 +291,7 @@ export interface CatalogueBody {
   readonly names: Dict<readonly string[]>
 }
 
-/** One link of the cause chain of a failure; `because` is the next link towards the root cause. `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first. */
+/** One link with the rest of its chain; `because` is the next link towards the root cause. `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first. */
 export interface Cause {
   readonly message: string
   readonly where?: string
@@ -300,8 +300,8 @@ export interface Cause {
   readonly nodes?: readonly string[]
 }
 
-/** One link of a cause chain; the first link is the root cause. */
-export interface CauseLine {
+/** One link of the cause chain of a failure; those of a whole chain are in order, root cause first. */
+export interface CauseLink {
   readonly message: string
   readonly where: string
   readonly kind: string
@@ -529,15 +529,8 @@ export interface DuplicateNodes {
   readonly paths: readonly string[]
 }
 
-/** Why no edit was applied; `index` is the edit that failed. */
-export interface EditRefusal {
-  readonly message: string
-  readonly hint: string
-  readonly index: number
-}
-
-/** The text after the edits, and the nodes that they created or changed; the unchanged text if refused. With a `difference` there is no `graph`. */
-export interface EditResultBody {
+/** A text after edits with its graph and findings, and the difference from the graph that the asker has. It crosses to the page without the graph where there is a difference. */
+export interface EditAnswer {
   readonly hash: string
   readonly graph: DocumentNode | null
   readonly document: DocumentInfo | null
@@ -549,11 +542,18 @@ export interface EditResultBody {
   readonly difference: GraphDifference | null
 }
 
-/** A text and the edits to apply, all or none; the edits are those of `engine.editing.edit`. `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server knows that graph too. */
+/** Why no edit was applied; `index` is the edit that failed. */
+export interface EditRefusal {
+  readonly message: string
+  readonly hint: string
+  readonly index: number
+}
+
+/** A text and the edits to apply, all or none. `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server knows that graph too. */
 export interface EditsBody {
   readonly text: string
   readonly check?: boolean
-  readonly edits: readonly Dict<unknown>[]
+  readonly edits: readonly Edit[]
   readonly graph?: string | null
 }
 
@@ -613,22 +613,6 @@ export interface EventsBody {
   readonly last: number
 }
 
-/** One link of the cause chain, root cause first; `hint` tells how to fix it, may be empty. */
-export interface FailureLink {
-  readonly message: string
-  readonly where: string
-  readonly kind: string
-  readonly hint: string
-}
-
-/** How a node between the root and the origin ended, after event `seq`. */
-export interface FailureStep {
-  readonly path: string
-  readonly seq: number
-  readonly time_s: number
-  readonly text: string
-}
-
 /** A fault of the fault file was applied to a request. */
 export interface FaultInjected {
   readonly event: "fault"
@@ -661,7 +645,7 @@ export interface FindingView {
 /** Edits that would resolve a finding; `title` describes them completely. A fix is `sure` if it only corrects an evident typo, or removes something without effect: it may be applied automatically. For all others a person must choose. */
 export interface Fix {
   readonly title: string
-  readonly edits: readonly (AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect)[]
+  readonly edits: readonly Edit[]
   readonly sure: boolean
 }
 
@@ -902,6 +886,14 @@ export interface IdleFrame {
   readonly k: "ping"
 }
 
+/** A run of the journal whose process died after event `last_seq`; it can be resumed. */
+export interface InterruptedRun {
+  readonly id: string
+  readonly behavior: string
+  readonly started_unix_s: number
+  readonly last_seq: number
+}
+
 /** The arm that this page jogs, empty for none, and what limits its motion, as text. */
 export interface JogStatus {
   readonly k: "jogging"
@@ -1039,7 +1031,7 @@ export interface LogLine {
   readonly level: string
   readonly path: string
   readonly text: string
-  readonly causes: readonly CauseLine[]
+  readonly causes: readonly CauseLink[]
 }
 
 /** A single-use login token, for `/login?t=<token>`. */
@@ -1213,7 +1205,7 @@ export interface NodeRetried {
   readonly cause: Cause | null
 }
 
-/** An open past run or recording, with the behavior as of the start of the run. */
+/** An open past run or recording, with the behavior as of the start of the run. It is shown as it stands: a run without an end is `interrupted`. */
 export interface OpenRunBody {
   readonly run: PastRunBody
   readonly behavior: BehaviorView
@@ -1283,13 +1275,14 @@ export interface ParameterView {
 export interface PastRunBody {
   readonly id: string
   readonly behavior: string
-  readonly document: string
   readonly status: string
   readonly outcome: string | null
   readonly success: boolean
   readonly cause: string
   readonly started_at_s: number
   readonly duration_s: number
+  readonly waits: string
+  readonly document: string
   readonly events: number
   readonly failed: boolean
   readonly recording: string
@@ -1534,15 +1527,15 @@ export interface RunEnded {
   readonly cause?: Cause | null
 }
 
-/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `steps` are the nodes from the root to the origin, `around` the requests, answers and writes of the origin. */
+/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `hint` tells what to do, `links` are the causes without it. `steps` tell how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
 export interface RunFailure {
   readonly seq: number
   readonly time_s: number
   readonly path: string
   readonly text: string
   readonly hint: string
-  readonly links: readonly FailureLink[]
-  readonly steps: readonly FailureStep[]
+  readonly links: readonly CauseLink[]
+  readonly steps: readonly LogLine[]
   readonly around: readonly LogLine[]
 }
 
@@ -1551,20 +1544,6 @@ export interface RunPosition {
   readonly run: string
   readonly seq: number
   readonly path?: string | null
-}
-
-/** The record of one run in the journal. `status` is running, or the status of `RunEnded`: finished, stopped, errored. A run that is still `running` but driven by no process was interrupted and can be resumed. `epoch` counts the engines that have driven it. */
-export interface RunRecord {
-  readonly id: string
-  readonly behavior: string
-  readonly document: string
-  readonly status: string
-  readonly epoch: number
-  readonly started_unix_s: number
-  readonly last_seq: number
-  readonly driver: number | null
-  readonly verified: boolean
-  readonly damage: string
 }
 
 /** The run was resumed after its engine died; nodes in `rerun` are entered again, others got an outcome. */
@@ -1603,7 +1582,7 @@ export interface RunSteppedBack {
   readonly cause?: Cause | null
 }
 
-/** One run, active or ended; `status` is running, stopping, finished, stopped or errored. `waits` is asks, paused or locked while it waits for a person. */
+/** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run. `waits` is asks, paused or locked while it waits for a person. */
 export interface RunView {
   readonly id: string
   readonly behavior: string
@@ -1760,13 +1739,14 @@ export interface SkillInfo {
   readonly answer: string
 }
 
-/** A request to start a run; without a seed the server chooses one. */
+/** A request to start a run; without a seed the server chooses one. With `breakpoints`, those in the file of the behavior hold. */
 export interface StartBody {
   readonly behavior: string
   readonly parameters?: Dict<unknown>
   readonly inputs?: Dict<unknown>
   readonly seed?: number | null
-  readonly supervision?: SupervisionBody
+  readonly supervision?: Supervision
+  readonly breakpoints?: boolean
   readonly begin?: RunPosition | null
 }
 
@@ -1851,11 +1831,10 @@ export interface StopStatus {
   readonly devices: readonly DeviceStop[]
 }
 
-/** Supervision options of a run; `flexcell run --help` explains the same options. */
-export interface SupervisionBody {
+/** How operators watch over a run; `flexcell run --help` explains the same options. `autonomy` applies while an operator is attached or demanded: outcomes that require less pass without confirmation. With `demand_operator` it applies although no operator is attached. `loss_policy` applies when the last operator has been lost for `loss_timeout_s`. */
+export interface Supervision {
   readonly autonomy?: "full" | "high" | "low" | "off"
   readonly demand_operator?: boolean
-  readonly breakpoints?: boolean
   readonly start_paused?: boolean
   readonly loss_policy?: "continue" | "hold" | "stop"
   readonly loss_timeout_s?: number

@@ -1,8 +1,8 @@
 /** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
-import { useEffect, useMemo, useState } from 'react'
+import { useEffect, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
 import { hasCellView } from '../api/session'
-import type { OpenRunBody, RunView, SessionBody } from '../api/types'
+import type { OpenRunBody, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
@@ -47,15 +47,13 @@ export function PastPage(props: PastPageProps) {
 }
 
 function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageProps & { opened: OpenRunBody }) {
-  const { behavior } = opened
+  const { run, behavior } = opened
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
-  const run = useMemo(() => lineOf(opened), [opened])
-  const runId = opened.run.id
   const isOpen = useTimeline((s) => s.opened !== undefined)
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
 
-  useEffect(() => openSubject(isRecording ? recordingSubject(id, runId) : runSubject(id, true)), [id, isRecording, runId])
+  useEffect(() => openSubject(isRecording ? recordingSubject(id, run.id) : runSubject(id, true)), [id, isRecording, run.id])
 
   // What stands in the page asks for the timeline of what is opened.
   if (!isOpen) return null
@@ -83,17 +81,17 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
       {node && <Selection node={node} />}
     </div>
   )
-  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show }, opened.run.failed)
+  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show }, run.failed)
   return (
     <div className="behavior-page">
       <header className="page-head">
         <div className="page-head-text">
-          <h1>{behavior.name || opened.run.behavior}</h1>
+          <h1>{behavior.name || run.behavior}</h1>
           <p className="quiet">
             {isRecording ? `Recording ${id}` : 'Past run'} of {wallTime(run.started_at_s)}, {duration(run.duration_s)}, read-only
           </p>
         </div>
-        <StatusBadge status={run.status === 'running' ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+        <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
         {run.cause && (
           <span className="page-cause" title={run.cause}>
             {run.cause}
@@ -112,10 +110,4 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
       )}
     </div>
   )
-}
-
-/** The run as a line of the list of runs; what has no end is not under way here. */
-function lineOf({ run, behavior }: OpenRunBody): RunView {
-  const { id, status, outcome, success, cause, started_at_s, duration_s } = run
-  return { id, behavior: behavior.id, status: status === 'running' ? 'interrupted' : status, outcome, success, cause, started_at_s, duration_s, waits: '' }
 }

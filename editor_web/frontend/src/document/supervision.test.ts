@@ -8,8 +8,8 @@ it('makes the page the operator where something may ask', () => {
 })
 
 it('lets a run begin only when its operator is there', () => {
-  expect(supervisionOf({ ...SUPERVISION, operates: true }, false).start_paused).toBe(true)
-  expect(supervisionOf(SUPERVISION, false).start_paused).toBe(false)
+  expect(supervisionOf({ ...SUPERVISION, operates: true }, false).supervision?.start_paused).toBe(true)
+  expect(supervisionOf(SUPERVISION, false).supervision?.start_paused).toBe(false)
 })
 
 it('asks for breakpoints only where there are any', () => {

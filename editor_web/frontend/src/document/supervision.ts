@@ -1,5 +1,5 @@
 /** How a run is to be watched over from its start. Pure. */
-import type { SupervisionBody } from '../api/types'
+import type { StartBody } from '../api/types'
 import type { Level } from './commands'
 
 export type LossPolicy = 'hold' | 'continue' | 'stop'
@@ -34,13 +34,15 @@ export function withAutonomy(supervision: Supervision, autonomy: Level): Supervi
  * The request. Breakpoints are asked for only where there are any. A run that this page operates begins paused,
  * and goes on once the page is its operator.
  */
-export function supervisionOf(given: Supervision, hasBreakpoints: boolean): SupervisionBody {
+export function supervisionOf(given: Supervision, hasBreakpoints: boolean): Pick<StartBody, 'supervision' | 'breakpoints'> {
   return {
-    autonomy: given.autonomy,
-    demand_operator: given.demandsOperator,
-    start_paused: given.startsPaused || given.operates,
+    supervision: {
+      autonomy: given.autonomy,
+      demand_operator: given.demandsOperator,
+      start_paused: given.startsPaused || given.operates,
+      loss_policy: given.lossPolicy,
+      loss_timeout_s: given.lossTimeoutS,
+    },
     breakpoints: given.usesBreakpoints && hasBreakpoints,
-    loss_policy: given.lossPolicy,
-    loss_timeout_s: given.lossTimeoutS,
   }
 }

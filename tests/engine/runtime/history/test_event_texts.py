@@ -9,7 +9,6 @@ import msgspec
 import pytest
 from rich.console import Console
 
-from editor_web.live.live_run import LiveRun
 from engine.cli.output.progress_printer import ProgressPrinter
 from engine.event import (
     AnyEvent,
@@ -24,6 +23,7 @@ from engine.event import (
     StopRequested,
 )
 from engine.runtime.history.event_texts import EVENT_TEXTS, event_text
+from engine.runtime.history.live_run import LiveRun
 
 EVENTS: list[type[Event]] = list(get_args(AnyEvent))
 _SAMPLES: dict[str, object] = {

@@ -1,7 +1,7 @@
 /** Edits that are on their way to the server while something else happens to the document. */
 import { beforeEach, expect, test, vi } from 'vitest'
 import { documents } from '../../api/documents'
-import type { EditResultBody } from '../../api/types'
+import type { EditAnswer } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { newHistory, presentOf } from '../../document/editing/history'
 import { node } from '../../document/editing/testNodes'
@@ -18,8 +18,8 @@ vi.mock('../../api/client', async (original) => ({
 const EDIT: readonly Edit[] = [{ edit: 'duplicate', paths: ['root/a'] }]
 const UNDO = { id: 'undo', words: 'Undo', needs: 'undo' } as Command
 
-function answer(text: string): EditResultBody {
-  return { text, graph: node('root', []), findings: [], checked: false, document: null, changed: [], refused: null } as unknown as EditResultBody
+function answer(text: string): EditAnswer {
+  return { text, graph: node('root', []), findings: [], checked: false, document: null, changed: [], refused: null } as unknown as EditAnswer
 }
 
 /** A server that answers when it is told to: with the text it was sent and a `+`. */

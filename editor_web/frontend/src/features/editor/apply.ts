@@ -1,7 +1,7 @@
 /** Changing the document: edits by the server, typing, undo and redo; one after the other, none lost. */
 import { wordsOf, ServerError } from '../../api/client'
 import { documents } from '../../api/documents'
-import type { EditResultBody } from '../../api/types'
+import type { EditAnswer } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { sameFindings } from '../../document/editing/findings'
 import { shiftedFindings, withDifference } from '../../document/editing/graphDifference'
@@ -42,7 +42,7 @@ export function inTurn<T>(work: () => Promise<T>): Promise<T> {
 export async function perform(
   label: string,
   edits: readonly Edit[] | (() => readonly Edit[]),
-): Promise<EditResultBody | undefined> {
+): Promise<EditAnswer | undefined> {
   const { id } = editor()
   const shown = typeof edits !== 'function' && areOfLayout(edits) ? edits : undefined
   if (shown) setEditor({ unwritten: [...editor().unwritten, shown] })
@@ -57,7 +57,7 @@ async function performNow(
   label: string,
   edits: readonly Edit[] | (() => readonly Edit[]),
   done: () => void,
-): Promise<EditResultBody | undefined> {
+): Promise<EditAnswer | undefined> {
   try {
     // What was typed, or came from the disk, while the server was asked is edited in its turn.
     while (editor().id === id) {
@@ -90,7 +90,7 @@ async function performNow(
 }
 
 /** The draft after an edit; undefined where the answer is the difference from another graph. */
-function draftAfter(answer: EditResultBody, before: Draft, isLayout: boolean): Draft | undefined {
+function draftAfter(answer: EditAnswer, before: Draft, isLayout: boolean): Draft | undefined {
   const { difference } = answer
   if (!difference) return draftFrom(answer, answer.text, before)
   const graph = before.root && before.hash === difference.base ? withDifference(before.root, difference) : undefined
@@ -106,7 +106,7 @@ export function performOn(
   path: string,
   label: string,
   edits: (now: EditNode) => readonly Edit[],
-): Promise<EditResultBody | undefined> {
+): Promise<EditAnswer | undefined> {
   return perform(label, () => {
     const now = nodeOf(rootOf(editor()), path)
     return now ? edits(now) : []

@@ -3,7 +3,7 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditResultBody } from '../../api/types'
+import type { ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditAnswer } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { nodeOf } from '../../document/editing/model'
 import { draftFrom } from './apply'
@@ -37,7 +37,7 @@ const WATCH = part('root/watch', { kind: 'sequence', state: null, children: [LOO
 const ROOT = part('root', { kind: 'machine', state: null, outcomes: ['good', 'bad'], children: [SET, BOTH, WATCH], initial: 'set' })
 
 /** The document with other rules, as the server answers after an edit. */
-function answered(root: DocumentNode): EditResultBody {
+function answered(root: DocumentNode): EditAnswer {
   return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null, difference: null }
 }
 

@@ -52,7 +52,7 @@ export function useStart(behavior: BehaviorView, onStarted: () => void) {
         parameters: parametersOf(fields, values),
         inputs: data,
         seed: seedOf(seed),
-        supervision: supervisionOf(supervision, hasBreakpoints),
+        ...supervisionOf(supervision, hasBreakpoints),
       }
       const { run } = await api.start(body, newKey())
       onStarted()

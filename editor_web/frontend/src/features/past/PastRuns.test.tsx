@@ -24,6 +24,7 @@ function past(told: Partial<PastRunBody>): PastRunBody {
     started_at_s: 1000,
     duration_s: 2.5,
     events: 40,
+    waits: '',
     recording: '',
     here: false,
     ...told,

@@ -3,22 +3,16 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { live, run, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { RunRecord } from '../../api/types'
+import type { InterruptedRun } from '../../api/types'
 import { FinishedRuns } from './FinishedRuns'
 import { Interrupted } from './Interrupted'
 import { RunList } from './RunList'
 
-const NAP: RunRecord = {
+const NAP: InterruptedRun = {
   id: 'r7',
   behavior: 'nap',
-  document: 'd1',
-  status: 'running',
-  epoch: 1,
   started_unix_s: 1000,
   last_seq: 12,
-  driver: null,
-  verified: true,
-  damage: '',
 }
 const ADDRESS = 'POST /interrupted/r7/resume'
 const resumed = vi.fn()

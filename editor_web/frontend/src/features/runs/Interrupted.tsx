@@ -4,11 +4,11 @@ import { Alert, Button, Checkbox, Radio } from '@mantine/core'
 import { IconHeartbeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, ServerError } from '../../api/client'
-import type { ErrorBody, RunRecord, ResumeQuestion } from '../../api/types'
+import type { ErrorBody, InterruptedRun, ResumeQuestion } from '../../api/types'
 import { wallTime } from '../../document/time'
 
 export interface InterruptedProps {
-  readonly runs: readonly RunRecord[]
+  readonly runs: readonly InterruptedRun[]
   /** Why nothing can be resumed from this page. */
   readonly obstacle: string | undefined
   readonly onResumed: (run: string) => void
@@ -25,7 +25,7 @@ export function Interrupted({ runs, obstacle, onResumed }: InterruptedProps) {
 }
 
 interface ResumableProps extends Omit<InterruptedProps, 'runs'> {
-  readonly run: RunRecord
+  readonly run: InterruptedRun
 }
 
 function Resumable({ run, obstacle, onResumed }: ResumableProps) {

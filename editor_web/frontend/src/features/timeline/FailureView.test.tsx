@@ -15,12 +15,12 @@ const FAILURE: RunFailure = {
   text: 'root/grasp failed: no contact',
   hint: 'look at the gripper',
   links: [
-    { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed', hint: '' },
-    { message: 'the grasp failed', where: '', kind: 'StateError', hint: '' },
+    { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed' },
+    { message: 'the grasp failed', where: '', kind: 'StateError' },
   ],
   steps: [
-    { path: 'root', seq: 11, time_s: 1.6, text: 'ended with bad' },
-    { path: 'root/grasp', seq: 9, time_s: 1.5, text: 'failed' },
+    { path: 'root', seq: 11, time_s: 1.6, kind: 'exited', level: 'error', text: 'ended with bad', causes: [] },
+    { path: 'root/grasp', seq: 9, time_s: 1.5, kind: 'exited', level: 'error', text: 'failed', causes: [] },
   ],
   around: [{ seq: 8, time_s: 1.4, kind: 'log', level: 'info', path: 'root/grasp', text: 'closes', causes: [] }],
 }

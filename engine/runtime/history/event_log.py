@@ -1,4 +1,4 @@
-"""Lines of the log of the page; `engine.runtime.history.event_texts` says what is in them."""
+"""Lines of the log of a run; `engine.runtime.history.event_texts` says what is in them."""
 
 from __future__ import annotations
 
@@ -7,18 +7,10 @@ from typing import get_args
 import msgspec
 
 from engine.cause_chain import links_from_root
-from engine.event import AnyEvent, Cause, Event
-from engine.runtime.history import event_text
+from engine.event import AnyEvent, CauseLink, Event
+from engine.runtime.history.event_texts import event_text
 
 _KINDS = {kind: str(kind.__struct_config__.tag) for kind in get_args(AnyEvent)}
-
-
-class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of a cause chain; the first link is the root cause."""
-
-    message: str
-    where: str
-    kind: str
 
 
 class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
@@ -30,7 +22,7 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     level: str
     path: str
     text: str
-    causes: tuple[CauseLine, ...] = ()
+    causes: tuple[CauseLink, ...] = ()
 
 
 def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
@@ -43,9 +35,7 @@ def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
         level=said.level,
         path=said.path,
         text=said.text,
-        causes=_lines(said.cause) if said.cause is not None else (),
+        causes=tuple(
+            CauseLink(message=link.message, where=link.where, kind=link.kind) for link in links_from_root(said.cause)
+        ),
     )
-
-
-def _lines(cause: Cause | None) -> tuple[CauseLine, ...]:
-    return tuple(CauseLine(message=c.message, where=c.where, kind=c.kind) for c in links_from_root(cause))

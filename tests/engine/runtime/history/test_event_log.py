@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from editor_web.live.event_log import log_line
 from engine.event import BranchesPreempted
+from engine.runtime.history.event_log import log_line
 
 
 @pytest.mark.parametrize(

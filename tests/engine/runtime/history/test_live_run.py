@@ -7,8 +7,6 @@ from typing import get_args
 import msgspec
 import pytest
 
-from editor_web.live.event_log import CauseLine, log_line
-from editor_web.live.live_run import LOG_LINES, LiveRun
 from engine.event import (
     AnyEvent,
     Cause,
@@ -25,6 +23,8 @@ from engine.event import (
     UndoEnded,
     UndoStarted,
 )
+from engine.runtime.history.event_log import CauseLink, log_line
+from engine.runtime.history.live_run import LOG_LINES, LiveRun
 from engine.runtime.history.run_state import NodeLive, PlanLive
 
 
@@ -153,8 +153,8 @@ def test_a_cause_chain_is_reported_from_the_inside_out() -> None:
     line = log_line(exited(1, "root/a", "failed", cause=cause), duration_s=1.5)
     assert (line.level, line.text) == ("error", "ended with failed after 1.50 s")
     assert line.causes == (
-        CauseLine(message="inner", where="arm", kind="B"),
-        CauseLine(message="outer", where="root/a", kind="A"),
+        CauseLink(message="inner", where="arm", kind="B"),
+        CauseLink(message="outer", where="root/a", kind="A"),
     )
 
 
