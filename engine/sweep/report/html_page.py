@@ -31,9 +31,8 @@ def html_page(summary: SweepSummary, comparison: Comparison | None = None) -> st
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n"
-        + "\n".join(_sections(summary, comparison, title))
-        + "\n</main>\n</body>\n</html>\n"
+        f"<title>{escape(title)}</title>\n<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
+        "</head>\n<body>\n<main>\n" + "\n".join(_sections(summary, comparison, title)) + "\n</main>\n</body>\n</html>\n"
     )
 
 
@@ -122,7 +121,8 @@ def _factors(summary: SweepSummary) -> Iterator[str]:
     ]
     if len(numbers) > 1:
         first, second = numbers[:2]
-        yield f"<figure><figcaption>Runs over the first two</figcaption>{scatter(summary.results, first, second)}</figure>"
+        figure = scatter(summary.results, first, second)
+        yield f"<figure><figcaption>Runs over the first two</figcaption>{figure}</figure>"
 
 
 def _quantiles(each: Quantiles) -> tuple[object, ...]:
