@@ -59,7 +59,7 @@ class Normal(StrictModel, frozen=True, kw_only=True):
 class Factor(StrictModel, frozen=True, kw_only=True):
     """What a factor is varied over: a list of values, each equally likely, or a distribution of numbers.
 
-    `nominal` is its value where nothing is varied: by default the first of the values, or the median. `levels` is the
+    `nominal` is its value where nothing is varied: by default that of the parameter or of the cell. `levels` is the
     number of values that a grid takes of a distribution: the middles of so many equally likely parts.
     """
 

@@ -42,6 +42,19 @@ def varied_cell(cell: Cell, values: Mapping[str, object]) -> Cell:
     return cell_of_source(replace(cell.source, data=data), file=cell.file)
 
 
+def written_value(cell: Cell, path: str) -> object:
+    """Return the value at `PATH.TO.VALUE` of a cell document; None where none is written."""
+    value = cell.source.data
+    for step in path.split("."):
+        if isinstance(value, dict):
+            value = cast("Data", value).get(step)
+        elif isinstance(value, list) and step.isdecimal() and int(step) < len(cast("list[object]", value)):
+            value = cast("list[object]", value)[int(step)]
+        else:
+            return None
+    return value
+
+
 def _displaced(cell: Cell, data: object, address: str, value: object) -> object:
     _, part, axis = address.split(".")
     if part not in cell.document.parts:

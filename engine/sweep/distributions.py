@@ -46,9 +46,7 @@ def share_of(factor: Factor, value: object) -> float | None:
 
 
 def nominal(factor: Factor) -> object:
-    """Return the value that a factor has where nothing is varied: by default its median, or the first of its values."""
-    if factor.nominal is not None:
-        return factor.nominal
+    """Return the value of a factor where no other is known to be nominal: its median, or the first of its values."""
     return factor.values[0] if factor.values is not None else value_at(factor, 0.5)
 
 

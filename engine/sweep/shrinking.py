@@ -15,7 +15,6 @@ import msgspec
 from engine.document.sweep import Factor
 from engine.errors import ControlError
 from engine.sweep.configuration import Configuration
-from engine.sweep.distributions import nominal
 from engine.sweep.trial_result import TrialResult
 
 _BISECTIONS = 6
@@ -39,6 +38,7 @@ class Shrunk:
 def shrink(
     failing: TrialResult,
     factors: Mapping[str, Factor],
+    nominal: Mapping[str, object],
     execute: Execute,
     *,
     same: Callable[[TrialResult, TrialResult], bool] | None = None,
@@ -49,6 +49,7 @@ def shrink(
     Args:
         failing: A run that did not succeed.
         factors: The factors of its sweep; others keep their value.
+        nominal: The nominal value of each.
         execute: Executes a configuration.
         same: Whether a run fails like the first one; by default where it ended with the same outcome or status.
         most_runs: The runs after which the smallest one found so far is returned.
@@ -62,7 +63,7 @@ def shrink(
             where="shrink",
             hint="choose one that fails: `flexcell sweep report` lists them",
         )
-    search = _Search(failing, factors, execute, same or _same_end, most_runs)
+    search = _Search(failing, factors, nominal, execute, same or same_outcome, most_runs)
     search.set_back()
     search.move_back()
     return search.found()
@@ -73,12 +74,14 @@ class _Search:
         self,
         failing: TrialResult,
         factors: Mapping[str, Factor],
+        nominal: Mapping[str, object],
         execute: Execute,
         same: Callable[[TrialResult, TrialResult], bool],
         most_runs: int,
     ) -> None:
         self._first = self._best = failing
         self._factors = factors
+        self._nominal = nominal
         self._execute = execute
         self._same = same
         self._left = most_runs
@@ -93,19 +96,19 @@ class _Search:
         return [
             name
             for name, factor in self._factors.items()
-            if name != "seed" and self._values.get(name) != nominal(factor)
+            if name != "seed" and self._values.get(name) != self._nominal[name]
         ]
 
     def set_back(self) -> None:
         """Set factors back to nominal, all that can be at once and then one by one, until none can."""
-        everything = {name: nominal(self._factors[name]) for name in self._varied()}
+        everything = {name: self._nominal[name] for name in self._varied()}
         if len(everything) > 1 and self._fails(everything):
             return
         progress = True
         while progress:
             progress = False
             for name in self._varied():
-                value = nominal(self._factors[name])
+                value = self._nominal[name]
                 if self._fails({name: value}):
                     progress = True
                 else:
@@ -115,7 +118,7 @@ class _Search:
         """Move numbers towards nominal as far as the run still fails."""
         for name in self._varied():
             factor = self._factors[name]
-            good, bad = nominal(factor), self._values[name]
+            good, bad = self._nominal[name], self._values[name]
             if factor.values is not None or not isinstance(good, int | float) or not isinstance(bad, int | float):
                 continue
             for _ in range(_BISECTIONS):
@@ -131,7 +134,7 @@ class _Search:
 
     def found(self) -> Shrunk:
         """Return the smallest failing configuration."""
-        changed = {name: (nominal(self._factors[name]), self._values[name]) for name in self._varied()}
+        changed = {name: (self._nominal[name], self._values[name]) for name in self._varied()}
         return Shrunk(
             result=self._best,
             changed=changed,
@@ -155,5 +158,11 @@ class _Search:
         return True
 
 
-def _same_end(first: TrialResult, other: TrialResult) -> bool:
+def same_outcome(first: TrialResult, other: TrialResult) -> bool:
+    """Return whether two runs ended with the same outcome or status."""
     return first.label == other.label
+
+
+def same_cause(first: TrialResult, other: TrialResult) -> bool:
+    """Return whether two runs ended alike and from the same root cause; numbers in its message may differ."""
+    return same_outcome(first, other) and first.cause_key == other.cause_key

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
@@ -22,14 +23,14 @@ from engine.document.faults import Faults, load_faults
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue
 from engine.document.substitutes import Substitutes, load_substitutes
-from engine.document.sweep import NO_FILE, Sweep
+from engine.document.sweep import NO_FILE, Factor, Sweep
 from engine.errors import DocumentError
 from engine.project.run_request import require_simulation
 from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan, new_plan
 from engine.suggestions import did_you_mean
-from engine.sweep.cell_variation import varied_cell
+from engine.sweep.cell_variation import varied_cell, written_value
 from engine.sweep.distributions import nominal
 
 _PACKAGE = "flexcell"
@@ -58,6 +59,26 @@ class SweepSubject:
     def hash(self) -> str:
         """The hash of `versions`."""
         return sha256(msgspec.json.encode(dict(self.versions), order="deterministic")).hexdigest()
+
+    @cached_property
+    def nominal(self) -> Mapping[str, object]:
+        """The value of each factor where nothing is varied, by address.
+
+        It is that of the sweep, else the default of the parameter or the value written in the cell, else 0 for a
+        displacement, else the first value or the median of the factor.
+        """
+        return {address: self._nominal(address, factor) for address, factor in self.sweep.document.factors.items()}
+
+    def _nominal(self, address: str, factor: Factor) -> object:
+        kind, _, name = address.partition(".")
+        found: object = factor.nominal
+        if found is None and kind == "parameters":
+            found = self.behavior.parameters[name].default
+        elif found is None and kind == "cell" and self.cell is not None:
+            found = written_value(self.cell, name)
+        elif found is None and kind == "displace":
+            found = 0.0
+        return found if found is not None else nominal(factor)
 
     @classmethod
     def load(cls, sweep: Sweep) -> Self:

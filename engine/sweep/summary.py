@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -14,7 +13,6 @@ from engine.sweep.statistics.effects import FactorEffect, factor_effect, quantil
 from engine.sweep.tally import Verdict
 from engine.sweep.trial_result import TrialResult
 
-_DIGITS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
 _EXAMPLES = 5
 
 
@@ -142,7 +140,7 @@ def _causes(results: Sequence[TrialResult]) -> list[CauseGroup]:
     found: dict[tuple[str, str], list[TrialResult]] = {}
     for result in results:
         if not result.success:
-            found.setdefault((result.reason_at, _DIGITS.sub("#", result.reason)), []).append(result)
+            found.setdefault(result.cause_key, []).append(result)
     return [
         CauseGroup(
             at=at,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Literal
 
@@ -9,6 +10,7 @@ import msgspec
 
 from engine.sweep.configuration import Configuration
 
+_NUMBERS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
 TrialStatus = Literal["finished", "stopped", "errored", "refused", "crashed", "hung"]
 """`refused`: this configuration cannot be executed; `crashed`, `hung`: its process ended or was ended."""
 
@@ -54,6 +56,11 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
     def label(self) -> str:
         """Its outcome, or its status where it has none."""
         return self.outcome or self.status
+
+    @property
+    def cause_key(self) -> tuple[str, str]:
+        """What runs that failed alike have in common: the place and message of the root cause without its numbers."""
+        return self.reason_at, _NUMBERS.sub("#", self.reason)
 
     @property
     def broken(self) -> bool:

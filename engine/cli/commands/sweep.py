@@ -34,12 +34,14 @@ from engine.sweep import (
 )
 from engine.sweep.case_file import case_document
 from engine.sweep.report import markdown, report
+from engine.sweep.shrinking import same_cause, same_outcome
 from engine.sweep.shrinking import shrink as shrink_failure
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
 from engine.sweep.worker_pool import DEFAULT_MEMORY_BYTES
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"
+_SAME = {"outcome": same_outcome, "cause": same_cause}
 
 
 class _RunByDefault(TyperGroup):
@@ -249,6 +251,10 @@ def shrink(
     cell: Cell = None,
     parameter: Parameter = None,
     results: Results = DEFAULT_RESULTS,
+    same: Annotated[
+        Literal["outcome", "cause"],
+        typer.Option(help="What must stay the same: how the run ends, or its root cause too."),
+    ] = "outcome",
     most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = 200,
     record: Annotated[Path | None, typer.Option(help="Record the smallest failing run to this MCAP file.")] = None,
     case: Annotated[
@@ -262,7 +268,9 @@ def shrink(
     )
     subject, failing = _chosen(file, overrides, results, number)
     trials = Trials(subject)
-    found = shrink_failure(failing, subject.sweep.document.factors, trials.run, most_runs=most)
+    found = shrink_failure(
+        failing, subject.sweep.document.factors, subject.nominal, trials.run, same=_SAME[same], most_runs=most
+    )
     sys.stdout.write(f"{found.result.label}: {found.result.cause}\n")
     for address, (nominal, value) in found.changed.items():
         near = f"; with {found.passes[address]} it does not fail so" if address in found.passes else ""

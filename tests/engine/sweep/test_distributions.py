@@ -66,8 +66,9 @@ def test_levels_are_the_middles_of_equally_likely_parts() -> None:
         (Factor(uniform=(0.0, 4.0)), 2.0),
         (Factor(values=("none", "slip.yaml")), "none"),
         (Factor(log_uniform=(0.01, 1.0)), 0.1),
-        (Factor(uniform=(0.0, 4.0), nominal=0.5), 0.5),
     ],
 )
-def test_the_nominal_value_is_given_or_the_first_or_the_median(factor: Factor, value: object) -> None:
+def test_the_nominal_value_of_a_distribution_is_its_median_and_of_a_list_the_first(
+    factor: Factor, value: object
+) -> None:
     assert nominal(factor) == pytest.approx(value) if isinstance(value, float) else nominal(factor) == value

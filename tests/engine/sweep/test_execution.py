@@ -30,6 +30,7 @@ from engine.sweep.results import without_costs
 from tests.engine.sweep.luck_project import LuckProject
 
 OPTIONS = WorkerOptions(workers=2, timeout_s=60.0)
+ONE = WorkerOptions(workers=1, timeout_s=60.0)
 
 
 @pytest.fixture(scope="module")
@@ -105,15 +106,16 @@ def test_parts_give_the_same_table_as_the_whole(project: LuckProject, tmp_path: 
 
 def test_a_decided_sweep_ends_early(project: LuckProject, tmp_path: Path) -> None:
     sweep = project.sweep(runs=500, parameters={"rate": 0.0}, require="success >= 0.5")
-    end = _execute(sweep, tmp_path / "r.db")
+    # One process: of two, the second may execute many runs before the first one has ended its first.
+    end = _execute(sweep, tmp_path / "r.db", options=ONE)
     assert (end.ended_by, end.tally.verdict) == ("decided", "failed")
     assert end.executed < 20
 
 
 def test_a_part_does_not_end_early(project: LuckProject, tmp_path: Path) -> None:
     sweep = project.sweep(runs=12, parameters={"rate": 0.0}, require="success >= 0.9")
-    assert _execute(sweep, tmp_path / "r.db", shard=Shard(index=0, count=1)).executed < 12
-    assert _execute(sweep, tmp_path / "p.db", shard=Shard(index=1, count=2)).executed == 6
+    assert _execute(sweep, tmp_path / "r.db", options=ONE, shard=Shard(index=0, count=1)).executed < 12
+    assert _execute(sweep, tmp_path / "p.db", options=ONE, shard=Shard(index=1, count=2)).executed == 6
 
 
 def test_no_run_begins_after_the_time_of_a_sweep(project: LuckProject, tmp_path: Path) -> None:
