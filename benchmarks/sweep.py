@@ -88,9 +88,7 @@ def costs(behavior: Path, runs: int, folder: Path) -> None:
 
 def truth(sweeps: int) -> None:
     """Print the second table."""
-    print(
-        f"| success rate | wrong in {sweeps} sweeps of {LOOKS} looks | exact interval | runs of a gate at {REQUIRED:.0%} |"
-    )
+    print(f"| rate | wrong in {sweeps} sweeps of {LOOKS} looks | exact interval | runs of a gate at {REQUIRED:.0%} |")
     print("|--:|--:|--:|---|")
     for rate in RATES:
         wrong = sum(_misses(rate, f"{rate} {sweep}", rate_interval) for sweep in range(sweeps))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.engine.cli.command import Said, flexcell
+from tests.engine.cli.command import CommandOutput, flexcell
 from tests.engine.sweep.luck_project import LuckProject
 
 
@@ -17,7 +17,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> LuckProject:
     return LuckProject(tmp_path_factory.mktemp("sweeps"))
 
 
-def _sweep(project: LuckProject, *arguments: str | Path) -> Said:
+def _sweep(project: LuckProject, *arguments: str | Path) -> CommandOutput:
     return flexcell("sweep", *arguments, cwd=project.path)
 
 
