@@ -36,6 +36,7 @@ _HOMES = {
     "SkillBus": "engine.bus",
     "State": "engine.state",
     "open_cell": "engine.project.cell_runner",
+    "run_sweep": "engine.sweep",
     "run_virtual": "engine.clock",
 }
 

@@ -20,6 +20,7 @@ from engine.project.session import Session
 from engine.runtime.run import Run
 from engine.skill import Action, Service, Skill
 from engine.state import Context, Outcome, State
+from engine.sweep import run_sweep
 
 __all__ = [
     "Action",
@@ -46,5 +47,6 @@ __all__ = [
     "SkillBus",
     "State",
     "open_cell",
+    "run_sweep",
     "run_virtual",
 ]

@@ -18,6 +18,7 @@ _IMPORT_PATHS = {
     "runs": "engine.cli.commands.runs:app",
     "check": "engine.cli.commands.check:check",
     "replay": "engine.cli.commands.replay:replay",
+    "sweep": "engine.cli.commands.sweep:app",
     "export": "engine.cli.commands.export:export",
     "serve": "engine.cli.commands.serve:serve",
     "login": "engine.cli.commands.login:login",

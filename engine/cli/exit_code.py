@@ -18,5 +18,7 @@ class ExitCode(IntEnum):
     """The run ended with an error."""
     REPLAY_DIFFERS = 4
     """A replay differs from the recording."""
+    UNDECIDED = 5
+    """A sweep cannot say yet whether what is required of it is reached."""
     INTERRUPTED = 130
     """Stopped by Ctrl-C or a signal; robots at rest, journal closed."""

@@ -8,11 +8,14 @@ formats files as text, HTML, Cobertura XML, lcov or JSON.
 from engine.coverage.coverage_collector import CoverageCollector
 from engine.coverage.coverage_file import BehaviorCoverage, merge, read_coverage, write_coverage
 from engine.coverage.coverage_item import CoverageItem, ItemKind
+from engine.coverage.covered_items import CoverageRuns, CoveredItems
 
 __all__ = [
     "BehaviorCoverage",
     "CoverageCollector",
     "CoverageItem",
+    "CoverageRuns",
+    "CoveredItems",
     "ItemKind",
     "merge",
     "read_coverage",

@@ -194,8 +194,15 @@ def load_cell(path: Path | str) -> Cell:
     Raises:
         DocumentError: the file cannot be read or is not a valid cell; `where` is the position.
     """
-    file = Path(path)
-    source = load_source(file)
+    return cell_of_source(load_source(Path(path)), file=Path(path))
+
+
+def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
+    """Return the cell that parsed data describe; `file` is what its paths are relative to.
+
+    Raises:
+        DocumentError: as `load_cell`.
+    """
     document = decode_document(source, CellDocument, refused=_REFUSED)
     _require_no_secret(document, source)
     _require_sizes(document, source)

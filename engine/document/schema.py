@@ -15,6 +15,7 @@ from engine.document.faults import FaultsDocument
 from engine.document.parameter_spec import any_value
 from engine.document.project_file import ProjectDocument
 from engine.document.substitutes import SubstitutesDocument
+from engine.document.sweep import SweepDocument
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 _MODELS = {
@@ -24,6 +25,7 @@ _MODELS = {
     "faults": FaultsDocument,
     "project": ProjectDocument,
     "substitutes": SubstitutesDocument,
+    "sweep": SweepDocument,
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -214,6 +215,18 @@ class CellRunner:
             autonomy=request.supervision.autonomy,
             demand_operator=request.supervision.demand_operator,
         )
+
+
+async def execute_within(limit_s: float | None, prepared: PreparedRun) -> RunResult:
+    """Execute a run to its end; stop it when it takes longer than this, on its clock."""
+    if limit_s is None:
+        return await prepared.execute()
+    reason = f"timeout: the run took longer than {limit_s:g} s"
+    timer = asyncio.get_running_loop().call_later(limit_s, prepared.run.stop, reason)
+    try:
+        return await prepared.execute()
+    finally:
+        timer.cancel()
 
 
 @asynccontextmanager

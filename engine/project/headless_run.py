@@ -12,7 +12,7 @@ from engine.clock import run_virtual
 from engine.document import Behavior
 from engine.document.cell import load_cell
 from engine.event import Event
-from engine.project.cell_runner import CellSetup, open_cell_runner
+from engine.project.cell_runner import CellSetup, execute_within, open_cell_runner
 from engine.project.run_request import RunRequest, require_simulation
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.runtime.record.recorder import Watcher
@@ -55,13 +55,16 @@ def plan_in_cell(behavior: Behavior, catalogue: Catalogue, setup: CellSetup) -> 
     return plan, setup
 
 
-def run_headless(setup: CellSetup, request: RunRequest, *, watchers: Sequence[Watcher] = ()) -> CompletedRun:
+def run_headless(
+    setup: CellSetup, request: RunRequest, *, watchers: Sequence[Watcher] = (), limit_s: float | None = None
+) -> CompletedRun:
     """Open the cell, run to the end in virtual time, and close the cell.
 
     Args:
         setup: What is opened for the run.
         request: The run.
         watchers: Functions called with every event.
+        limit_s: Seconds on its clock after which it is stopped.
 
     Raises:
         FlexcellError: the run was not started.
@@ -74,7 +77,7 @@ def run_headless(setup: CellSetup, request: RunRequest, *, watchers: Sequence[Wa
             prepared = await runner.start(request)
             for watcher in (events.append, *watchers):
                 prepared.run.watch(watcher)
-            return await prepared.execute()
+            return await execute_within(limit_s, prepared)
 
     result = outside_loop(lambda: run_virtual(main()))
     return CompletedRun(result=result, events=tuple(events))

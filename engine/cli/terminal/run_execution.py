@@ -23,7 +23,7 @@ from engine.errors import FlexcellError
 from engine.event import Event
 from engine.host.garbage_collection import freeze_loaded_objects
 from engine.host.thread_switch_interval import short_switch_interval
-from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun, open_cell_runner
+from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun, execute_within, open_cell_runner
 from engine.runtime.plan import Plan
 from engine.runtime.record.recorder import Watcher
 from engine.runtime.run import Run, RunResult
@@ -140,24 +140,13 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
             # A collection that scanned what is loaded would block the loop while arms move.
             freeze_loaded_objects(collect=not setup.virtual)
             with short_switch_interval(), LoopWatchdog():
-                result = await _execute_within(setup.timeout_s, prepared)
+                result = await execute_within(setup.timeout_s, prepared)
             over.set()
     if prepared.faults is not None and setup.quiet:
         # The progress output shows these lines already.
         for line in prepared.faults.unapplied():
             _print_message(line)
     return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason))
-
-
-async def _execute_within(timeout_s: float | None, prepared: PreparedRun) -> RunResult:
-    if timeout_s is None:
-        return await prepared.execute()
-    loop = asyncio.get_running_loop()
-    timer = loop.call_later(timeout_s, prepared.run.stop, f"timeout: the run took longer than {timeout_s:g} s")
-    try:
-        return await prepared.execute()
-    finally:
-        timer.cancel()
 
 
 async def _stop_run(run: Run, over: asyncio.Event, notice: StopNotice) -> None:

@@ -1,0 +1,363 @@
+"""`flexcell sweep`: how often a behavior succeeds, how it fails, and the smallest case that shows it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+from typer.core import TyperGroup
+
+from engine.cli.exit_code import ExitCode
+from engine.cli.output.output_file import prepare, write
+from engine.cli.output.sweep_output import SweepPrinter, write_github_summary, write_sweep_junit
+from engine.cli.sweep_options import SweepOverrides, read_sweep
+from engine.document.duration import seconds
+from engine.errors import FlexcellError
+from engine.sweep import (
+    Comparison,
+    Shard,
+    SweepEnd,
+    SweepResults,
+    SweepSubject,
+    SweepSummary,
+    TrialResult,
+    Trials,
+    WorkerOptions,
+    compare_with_baseline,
+    configurations,
+    execute_sweep,
+    saved_sweep,
+    summarize,
+)
+from engine.sweep.case_file import case_document
+from engine.sweep.report import markdown, report
+from engine.sweep.shrinking import same_cause, same_outcome
+from engine.sweep.shrinking import shrink as shrink_failure
+from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
+from engine.sweep.worker_pool import DEFAULT_MEMORY_BYTES
+
+_MEBIBYTE = 2**20
+_DEFAULT = "run"
+_SAME = {"outcome": same_outcome, "cause": same_cause}
+
+
+class _RunByDefault(TyperGroup):
+    """`flexcell sweep FILE` is `flexcell sweep run FILE`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        named = next((each for each in args if not each.startswith("-")), None)
+        if named is not None and named not in self.commands:
+            args = [_DEFAULT, *args]
+        return super().parse_args(ctx, args)
+
+
+app = typer.Typer(
+    cls=_RunByDefault,
+    help="Execute a behavior many times with varied factors: how often it succeeds, and how it fails.",
+    no_args_is_help=True,
+)
+
+File = Annotated[Path, typer.Argument(help="A sweep document, or a behavior with --vary.", show_default=False)]
+Results = Annotated[Path, typer.Option(help="File in which results are found and saved.")]
+Cell = Annotated[Path | None, typer.Option(help="Cell of all runs; by default that of the behavior.")]
+Parameter = Annotated[
+    list[str] | None, typer.Option("-p", "--parameter", help="Parameter of all runs, NAME=VALUE; may be repeated.")
+]
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A factor, may be repeated: NAME=0.3..1.0, NAME=1,2,5, NAME=log(0.01..10), NAME=normal(0, 0.004). NAME is "
+        "a parameter, displace.PART.x_m, cell.PATH, inputs.KEY, seed, faults or substitutes."
+    ),
+]
+Runs = Annotated[int | None, typer.Option(help="Runs at most.", min=1)]
+Seed = Annotated[int | None, typer.Option(help="Seed from which factors and seeds of runs are drawn.", min=0)]
+Design = Annotated[
+    Literal["random", "grid", "latin_hypercube", "sobol"] | None, typer.Option(help="How factors are combined.")
+]
+Require = Annotated[str | None, typer.Option(help='Required success rate, for example "success >= 0.98".')]
+Width = Annotated[
+    float | None, typer.Option(help="End when the interval of the success rate is at most so wide.", min=0.0, max=1.0)
+]
+Confidence = Annotated[float | None, typer.Option(help="Confidence of intervals.", min=0.5, max=0.9999)]
+Baseline = Annotated[
+    Path | None, typer.Option(help="Compare with another version that has executed this sweep into this file.")
+]
+Margin = Annotated[
+    float | None,
+    typer.Option(help="With --baseline: how much lower the success rate may be, for example 0.02.", min=0.0, max=1.0),
+]
+Junit = Annotated[Path | None, typer.Option(help="Write the verdict to this file as JUnit XML.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the report as one JSON object on stdout.")]
+
+
+@app.command(_DEFAULT)
+def run(
+    file: File,
+    vary: Vary = None,
+    runs: Runs = None,
+    time: Annotated[str | None, typer.Option(help="Wall time after which no run begins, for example `10 min`.")] = None,
+    width: Width = None,
+    require: Require = None,
+    design: Design = None,
+    seed: Seed = None,
+    cell: Cell = None,
+    parameter: Parameter = None,
+    confidence: Confidence = None,
+    results: Results = DEFAULT_RESULTS,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes that execute runs; by default one for each processor.", min=1, max=256)
+    ] = None,
+    memory: Annotated[int, typer.Option(help="Memory for the data of one process in MiB.", min=256)] = (
+        DEFAULT_MEMORY_BYTES // _MEBIBYTE
+    ),
+    shard: Annotated[str | None, typer.Option(help="Execute only part I of N, I/N; `sweep merge` joins them.")] = None,
+    again: Annotated[
+        bool, typer.Option("--again", help="Execute configurations again whose process crashed or hung.")
+    ] = False,
+    baseline: Baseline = None,
+    margin: Margin = None,
+    report_: Annotated[
+        list[Path] | None,
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+    ] = None,
+    junit: Junit = None,
+    json: Json = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Do not print progress.")] = False,
+) -> None:
+    """Execute the runs of a sweep that have no result yet, and report all its results.
+
+    Exit code 0: what is required is reached, or nothing is. 1: it is not reached. 5: undecided. 2: nothing was
+    executed. 130: interrupted; what had ended is saved, and the same command goes on.
+    """
+    prepare(junit, *(report_ or ()))
+    overrides = SweepOverrides(
+        vary=tuple(vary or ()),
+        runs=runs,
+        time=time,
+        width=width,
+        require=require,
+        design=design,
+        seed=seed,
+        cell=cell,
+        parameters=tuple(parameter or ()),
+        confidence=confidence,
+    )
+    sweep = read_sweep(file, overrides)
+    planned = configurations(sweep)
+    subject = SweepSubject.load(sweep)
+    options = WorkerOptions(
+        workers=workers or available_processors(),
+        timeout_s=seconds(sweep.document.timeout),
+        memory_bytes=memory * _MEBIBYTE,
+    )
+    printer = SweepPrinter(quiet=quiet or json)
+    with SweepResults.open(results) as saved, printer:
+        end = execute_sweep(subject, planned, saved, options, shard=_shard(shard), again=again, show=printer.show)
+    summary, comparison = _compared(end, baseline, margin)
+    _report(summary, comparison, file, report_ or (), junit, json=json)
+    raise typer.Exit(_exit_code(summary, comparison))
+
+
+@app.command("report")
+def report_saved(
+    file: File,
+    vary: Vary = None,
+    runs: Runs = None,
+    require: Require = None,
+    design: Design = None,
+    seed: Seed = None,
+    cell: Cell = None,
+    parameter: Parameter = None,
+    confidence: Confidence = None,
+    results: Results = DEFAULT_RESULTS,
+    baseline: Baseline = None,
+    margin: Margin = None,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+    ] = None,
+    junit: Junit = None,
+    json: Json = False,
+) -> None:
+    """Report the saved results of a sweep, without executing anything; exit codes as those of `sweep run`."""
+    prepare(junit, *(output or ()))
+    overrides = SweepOverrides(
+        vary=tuple(vary or ()),
+        runs=runs,
+        require=require,
+        design=design,
+        seed=seed,
+        cell=cell,
+        parameters=tuple(parameter or ()),
+        confidence=confidence,
+    )
+    sweep = read_sweep(file, overrides)
+    with _existing(results) as saved:
+        end = saved_sweep(SweepSubject.load(sweep), configurations(sweep), saved)
+    summary, comparison = _compared(end, baseline, margin)
+    _report(summary, comparison, file, output or (), junit, json=json)
+    raise typer.Exit(_exit_code(summary, comparison))
+
+
+@app.command("merge")
+def merge(
+    files: Annotated[list[Path], typer.Argument(help="Files of results, for example of shards.", show_default=False)],
+    to: Annotated[Path, typer.Option(help="File to add to; it is created if missing.")] = DEFAULT_RESULTS,
+) -> None:
+    """Add the results of other files, each configuration once; equal configurations must have equal results."""
+    with SweepResults.open(to) as merged:
+        added = merged.merge(files)
+    sys.stderr.write(f"{added} results added to {to}\n")
+
+
+@app.command("rerun")
+def rerun(
+    file: File,
+    number: Annotated[int, typer.Argument(help="The number of the configuration.", min=0, show_default=False)],
+    vary: Vary = None,
+    runs: Runs = None,
+    design: Design = None,
+    seed: Seed = None,
+    cell: Cell = None,
+    parameter: Parameter = None,
+    results: Results = DEFAULT_RESULTS,
+    record: Annotated[Path | None, typer.Option(help="Record the run to this MCAP file.")] = None,
+) -> None:
+    """Execute one configuration again in this process, and say whether it ends as its saved result."""
+    prepare(record)
+    overrides = SweepOverrides(
+        vary=tuple(vary or ()), runs=runs, design=design, seed=seed, cell=cell, parameters=tuple(parameter or ())
+    )
+    subject, saved = _chosen(file, overrides, results, number)
+    result = Trials(subject).run(saved.configuration, record=record)
+    same = (result.label, result.events_sha256) == (saved.label, saved.events_sha256)
+    sys.stdout.write(f"#{number}: {result.label}{f': {result.cause}' if result.cause else ''}\n")
+    sys.stdout.write("the same events as before\n" if same else f"it was {saved.label} before: DIFFERENT\n")
+    raise typer.Exit(ExitCode.SUCCESS if same else ExitCode.REPLAY_DIFFERS)
+
+
+@app.command("shrink")
+def shrink(
+    file: File,
+    number: Annotated[int, typer.Argument(help="The number of a failing configuration.", min=0, show_default=False)],
+    vary: Vary = None,
+    runs: Runs = None,
+    design: Design = None,
+    seed: Seed = None,
+    cell: Cell = None,
+    parameter: Parameter = None,
+    results: Results = DEFAULT_RESULTS,
+    same: Annotated[
+        Literal["outcome", "cause"],
+        typer.Option(help="What must stay the same: how the run ends, or its root cause too."),
+    ] = "outcome",
+    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = 200,
+    record: Annotated[Path | None, typer.Option(help="Record the smallest failing run to this MCAP file.")] = None,
+    case: Annotated[
+        Path | None, typer.Option(help="Write it as a sweep of one run that requires success: a regression test.")
+    ] = None,
+) -> None:
+    """Find the smallest change from nominal with which a run still fails as this one did."""
+    prepare(record, case)
+    overrides = SweepOverrides(
+        vary=tuple(vary or ()), runs=runs, design=design, seed=seed, cell=cell, parameters=tuple(parameter or ())
+    )
+    subject, failing = _chosen(file, overrides, results, number)
+    trials = Trials(subject)
+    found = shrink_failure(
+        failing, subject.sweep.document.factors, subject.nominal, trials.run, same=_SAME[same], most_runs=most
+    )
+    sys.stdout.write(f"{found.result.label}: {found.result.cause}\n")
+    for address, (nominal, value) in found.changed.items():
+        near = f"; with {found.passes[address]} it does not fail so" if address in found.passes else ""
+        sys.stdout.write(f"  {address}: {value} instead of {nominal}{near}\n")
+    if not found.changed:
+        sys.stdout.write(f"  nothing is varied: seed {failing.configuration.seed} alone fails\n")
+    sys.stdout.write(f"found in {found.runs} runs\n")
+    if record is not None:
+        trials.run(found.result.configuration, record=record)
+        sys.stdout.write(f"recorded to {record}\n")
+    if case is not None:
+        write(case, case_document(subject.sweep, found.result, case))
+        sys.stdout.write(f"`flexcell sweep {case}` fails until it is mended\n")
+
+
+def _chosen(file: Path, overrides: SweepOverrides, results: Path, number: int) -> tuple[SweepSubject, TrialResult]:
+    """Return the subject of a sweep and one of its saved results."""
+    sweep = read_sweep(file, overrides)
+    planned = configurations(sweep)
+    subject = SweepSubject.load(sweep)
+    if number >= len(planned):
+        raise FlexcellError(f"the sweep has no configuration {number}", where=file, hint=f"0 to {len(planned) - 1}")
+    with _existing(results) as saved:
+        key = planned[number].key(subject.hash)
+        found = saved.of(subject.hash, [key]).get(key)
+    if found is None:
+        hint = "run the sweep first, with the same options; results of other versions are kept apart"
+        raise FlexcellError(f"configuration {number} has no result in {results}", where=file, hint=hint)
+    return subject, found
+
+
+def _existing(results: Path) -> SweepResults:
+    if not results.is_file():
+        raise FlexcellError("there are no results yet", where=results, hint="`flexcell sweep FILE` executes a sweep")
+    return SweepResults.open(results)
+
+
+def _shard(text: str | None) -> Shard | None:
+    if text is None:
+        return None
+    index, slash, count = text.partition("/")
+    if not slash or not index.isdecimal() or not count.isdecimal() or not 1 <= int(index) <= int(count):
+        raise FlexcellError(f"{text!r} is not a part of a sweep", where="--shard", hint="1/3, 2/3 or 3/3")
+    return Shard(index=int(index) - 1, count=int(count))
+
+
+def _compared(end: SweepEnd, baseline: Path | None, margin: float | None) -> tuple[SweepSummary, Comparison | None]:
+    summary = summarize(end)
+    if baseline is None:
+        if margin is not None:
+            raise FlexcellError("--margin requires --baseline", hint="--baseline FILE has the results to compare with")
+        return summary, None
+    with _existing(baseline) as saved:
+        return summary, compare_with_baseline(
+            summary.results,
+            summary.subject,
+            summary.versions,
+            saved,
+            confidence=summary.sweep.document.confidence,
+            margin=margin,
+        )
+
+
+def _report(
+    summary: SweepSummary,
+    comparison: Comparison | None,
+    file: Path,
+    files: tuple[Path, ...] | list[Path],
+    junit: Path | None,
+    *,
+    json: bool,
+) -> None:
+    for each in files:
+        write(each, report(summary, comparison, each))
+    if junit is not None:
+        write_sweep_junit(junit, file, summary, comparison)
+    write_github_summary(summary, comparison, os.environ)
+    if json:
+        sys.stdout.write(report(summary, comparison, Path("report.json")).decode() + "\n")
+    else:
+        sys.stdout.write(markdown(summary, comparison))
+
+
+def _exit_code(summary: SweepSummary, comparison: Comparison | None) -> ExitCode:
+    if summary.ended_by == "interrupted" and summary.verdict not in ("passed", "failed"):
+        return ExitCode.INTERRUPTED
+    verdicts = {summary.verdict, comparison.verdict if comparison is not None else None}
+    if "failed" in verdicts:
+        return ExitCode.OTHER_OUTCOME
+    return ExitCode.UNDECIDED if "undecided" in verdicts else ExitCode.SUCCESS

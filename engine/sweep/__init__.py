@@ -1,0 +1,33 @@
+"""Sweeps: a behavior executed many times with varied factors, and what that says about how often it succeeds.
+
+`load_sweep(file)` of `engine.document.sweep` reads what is varied, `SweepSubject.load` everything that all runs have in
+common, `configurations` the design. `execute_sweep` executes what is left in worker processes and saves each result;
+`summarize` and `engine.sweep.report` tell what came out. `run_sweep` does it all, for scripts and notebooks. A worker
+loads no statistics, so each name is imported with its first use.
+"""
+
+from engine.lazy_face import lazy_face
+
+_HOMES = {
+    "Comparison": "engine.sweep.comparison",
+    "Configuration": "engine.sweep.configuration",
+    "Shard": "engine.sweep.execution",
+    "SweepEnd": "engine.sweep.execution",
+    "SweepProgress": "engine.sweep.execution",
+    "SweepResults": "engine.sweep.results",
+    "SweepSubject": "engine.sweep.subject",
+    "SweepSummary": "engine.sweep.summary",
+    "SweepTable": "engine.sweep.sweep_table",
+    "TrialResult": "engine.sweep.trial_result",
+    "Trials": "engine.sweep.trial",
+    "WorkerOptions": "engine.sweep.worker_pool",
+    "compare_with_baseline": "engine.sweep.comparison",
+    "configurations": "engine.sweep.design",
+    "execute_sweep": "engine.sweep.execution",
+    "run_sweep": "engine.sweep.sweep_table",
+    "saved_sweep": "engine.sweep.execution",
+    "summarize": "engine.sweep.summary",
+}
+
+__all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll] - checkers read `__init__.pyi`
+__getattr__ = lazy_face(__name__, _HOMES)

@@ -1,0 +1,34 @@
+# The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
+
+from engine.sweep.comparison import Comparison, compare_with_baseline
+from engine.sweep.configuration import Configuration
+from engine.sweep.design import configurations
+from engine.sweep.execution import Shard, SweepEnd, SweepProgress, execute_sweep, saved_sweep
+from engine.sweep.results import SweepResults
+from engine.sweep.subject import SweepSubject
+from engine.sweep.summary import SweepSummary, summarize
+from engine.sweep.sweep_table import SweepTable, run_sweep
+from engine.sweep.trial import Trials
+from engine.sweep.trial_result import TrialResult
+from engine.sweep.worker_pool import WorkerOptions
+
+__all__ = [
+    "Comparison",
+    "Configuration",
+    "Shard",
+    "SweepEnd",
+    "SweepProgress",
+    "SweepResults",
+    "SweepSubject",
+    "SweepSummary",
+    "SweepTable",
+    "TrialResult",
+    "Trials",
+    "WorkerOptions",
+    "compare_with_baseline",
+    "configurations",
+    "execute_sweep",
+    "run_sweep",
+    "saved_sweep",
+    "summarize",
+]

@@ -1,0 +1,36 @@
+"""Reports of sweeps: Markdown for people and pull requests, one HTML page with figures, JSON and CSV for programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.errors import FlexcellError
+from engine.sweep.comparison import Comparison
+from engine.sweep.report.html_page import html_page
+from engine.sweep.report.markdown import markdown
+from engine.sweep.report.table import csv_table, json_report
+from engine.sweep.summary import SweepSummary
+
+SUFFIXES = (".md", ".html", ".json", ".csv")
+
+
+def report(summary: SweepSummary, comparison: Comparison | None, file: Path) -> bytes:
+    """Return the report that the suffix of a file asks for.
+
+    Raises:
+        FlexcellError: there is no such report.
+    """
+    match file.suffix:
+        case ".md":
+            return markdown(summary, comparison).encode()
+        case ".html":
+            return html_page(summary, comparison).encode()
+        case ".json":
+            return json_report(summary, comparison)
+        case ".csv":
+            return csv_table(summary.results).encode()
+        case _:
+            raise FlexcellError(f"there is no report `{file.suffix}`", where=file, hint=", ".join(SUFFIXES))
+
+
+__all__ = ["SUFFIXES", "csv_table", "html_page", "json_report", "markdown", "report"]

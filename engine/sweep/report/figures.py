@@ -1,0 +1,138 @@
+"""Figures of a sweep as SVG: the interval after each run, rates by level with intervals, runs over two factors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from engine.sweep.report.words import interval_text, percent, value_text
+from engine.sweep.statistics import rate_interval
+from engine.sweep.statistics.effects import FactorEffect
+from engine.sweep.trial_result import TrialResult
+
+_WIDTH, _HEIGHT = 640, 240
+_LEFT, _RIGHT, _TOP, _BOTTOM = 52, 12, 12, 34
+_POINTS = 200
+_ROW = 22
+_NAMES = 210
+
+
+def convergence(results: Sequence[TrialResult], *, confidence: float, required: float | None) -> str:
+    """Return the success rate and its interval after each run, with the required rate as a line."""
+    total = len(results)
+    at = sorted({max(1, round(total * index / _POINTS)) for index in range(1, _POINTS + 1)})
+    sums = _running([result.success for result in results])
+    intervals = {n: rate_interval(sums[n - 1], n, confidence=confidence) for n in at}
+    upper = " ".join(_point(n / total, intervals[n].high) for n in at)
+    lower = " ".join(_point(n / total, intervals[n].low) for n in reversed(at))
+    middle = " ".join(_point(n / total, sums[n - 1] / n) for n in at)
+    line = _level_line(required) if required is not None else ""
+    body = (
+        f'{_axes("runs", total)}<polygon class="band" points="{upper} {lower}"/>'
+        f'<polyline class="rate" points="{middle}"/>{line}'
+    )
+    last = intervals[at[-1]]
+    return _svg(body, _HEIGHT, f"Success rate after each of {total} runs; at the end {interval_text(last)}")
+
+
+def level_rates(effect: FactorEffect, *, rate: float) -> str:
+    """Return the success rate of each level of a factor with its interval, beside the rate of all runs."""
+    height = _TOP + _ROW * len(effect.levels) + 8
+    parts: list[str] = []
+    span = _WIDTH - _NAMES - _RIGHT
+    for index, level in enumerate(effect.levels):
+        y = _TOP + _ROW * index + _ROW / 2
+        low, high = (_NAMES + span * each for each in level.interval)
+        middle = _NAMES + span * level.successes / level.runs
+        text = f"{level.successes}/{level.runs}"
+        parts.append(
+            f'<text x="{_NAMES - 10}" y="{y + 4:.1f}" text-anchor="end">{escape(level.label)} ({text})</text>'
+            f'<line class="whisker" x1="{low:.1f}" x2="{high:.1f}" y1="{y:.1f}" y2="{y:.1f}"/>'
+            f'<circle class="dot" cx="{middle:.1f}" cy="{y:.1f}" r="4"/>'
+        )
+    x = _NAMES + span * rate
+    parts.append(f'<line class="required" x1="{x:.1f}" x2="{x:.1f}" y1="{_TOP}" y2="{height - 8}"/>')
+    label = f"Success rate by {effect.address}, with intervals; all runs {percent(rate)}"
+    return _svg("".join(parts), height, label)
+
+
+def scatter(results: Sequence[TrialResult], first: str, second: str) -> str:
+    """Return the runs over two factors of numbers: dots succeeded, crosses did not."""
+    points = [(_number(each, first), _number(each, second), each) for each in results]
+    known = [(x, y, each) for x, y, each in points if x is not None and y is not None]
+    (least_x, most_x), (least_y, most_y) = _limits([x for x, _, _ in known]), _limits([y for _, y, _ in known])
+    marks: list[str] = []
+    # Failures last, so that no success hides one.
+    for x, y, each in sorted(known, key=lambda item: not item[2].success):
+        px = _x((x - least_x) / (most_x - least_x))
+        py = _y((y - least_y) / (most_y - least_y))
+        title = f"<title>#{each.configuration.number}: {escape(each.label)}</title>"
+        if each.success:
+            marks.append(f'<circle class="good" cx="{px:.1f}" cy="{py:.1f}" r="3">{title}</circle>')
+        else:
+            marks.append(f'<path class="bad" d="M{px - 4:.1f} {py - 4:.1f}l8 8m0 -8l-8 8">{title}</path>')
+    ends = (
+        f'<text x="{_LEFT}" y="{_HEIGHT - 18}">{value_text(least_x)}</text>'
+        f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 18}" text-anchor="end">{value_text(most_x)}</text>'
+        f'<text x="{_WIDTH / 2}" y="{_HEIGHT - 4}" text-anchor="middle">{escape(first)}</text>'
+        f'<text x="{_LEFT - 6}" y="{_HEIGHT - _BOTTOM}" text-anchor="end">{value_text(least_y)}</text>'
+        f'<text x="{_LEFT - 6}" y="{_TOP + 10}" text-anchor="end">{value_text(most_y)}</text>'
+    )
+    return _svg(_frame() + ends + "".join(marks), _HEIGHT, f"Runs by {first} and {second}: crosses did not succeed")
+
+
+def _running(successes: Sequence[bool]) -> list[int]:
+    sums: list[int] = []
+    total = 0
+    for success in successes:
+        total += success
+        sums.append(total)
+    return sums
+
+
+def _number(result: TrialResult, address: str) -> float | None:
+    value = result.configuration.values.get(address)
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+def _limits(numbers: Sequence[float]) -> tuple[float, float]:
+    least, most = (min(numbers), max(numbers)) if numbers else (0.0, 1.0)
+    return (least, most) if least < most else (least - 0.5, most + 0.5)
+
+
+def _x(share: float) -> float:
+    return _LEFT + (_WIDTH - _LEFT - _RIGHT) * share
+
+
+def _y(share: float) -> float:
+    return _HEIGHT - _BOTTOM - (_HEIGHT - _TOP - _BOTTOM) * share
+
+
+def _point(x: float, y: float) -> str:
+    return f"{_x(x):.1f},{_y(y):.1f}"
+
+
+def _frame() -> str:
+    return (
+        f'<rect class="frame" x="{_LEFT}" y="{_TOP}" width="{_WIDTH - _LEFT - _RIGHT}" '
+        f'height="{_HEIGHT - _TOP - _BOTTOM}"/>'
+    )
+
+
+def _axes(name: str, most: int) -> str:
+    ticks = "".join(
+        f'<text x="{_LEFT - 6}" y="{_y(share) + 4:.1f}" text-anchor="end">{100 * share:g} %</text>'
+        f'<line class="grid" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{_y(share):.1f}" y2="{_y(share):.1f}"/>'
+        for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+    )
+    end = f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 14}" text-anchor="end">{most} {escape(name)}</text>'
+    return _frame() + ticks + end
+
+
+def _level_line(rate: float) -> str:
+    y = _y(rate)
+    return f'<line class="required" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>'
+
+
+def _svg(body: str, height: int, label: str) -> str:
+    return f'<svg viewBox="0 0 {_WIDTH} {height}" role="img" aria-label="{escape(label, quote=True)}">{body}</svg>'

@@ -1,0 +1,139 @@
+"""A sweep as one self-contained HTML page with figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from pathlib import Path
+
+from engine.sweep.comparison import Comparison
+from engine.sweep.report.figures import convergence, level_rates, scatter
+from engine.sweep.report.words import (
+    difference_text,
+    end_text,
+    interval_text,
+    percent,
+    rate_text,
+    value_text,
+    verdict_text,
+)
+from engine.sweep.summary import Quantiles, SweepSummary
+
+_STYLE = Path(__file__).with_name("report.css")
+_NODES = 25
+_FAILING = 200
+_FIGURES = 8
+
+
+def html_page(summary: SweepSummary, comparison: Comparison | None = None) -> str:
+    """Return the page; it loads nothing."""
+    title = f"Sweep of {summary.sweep.document.behavior}"
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
+        "</head>\n<body>\n<main>\n" + "\n".join(_sections(summary, comparison, title)) + "\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) -> Iterator[str]:
+    document = summary.sweep.document
+    yield f"<h1>{escape(title)}</h1>"
+    if document.description:
+        yield f"<p>{escape(document.description)}</p>"
+    if summary.verdict is not None:
+        yield f'<p class="verdict {summary.verdict}">{escape(verdict_text(summary))}</p>'
+    yield f"<p>{escape(rate_text(summary).capitalize())}. {escape(end_text(summary).capitalize())}.</p>"
+    if comparison is not None:
+        changed = ", ".join(comparison.changed)
+        yield f"<p>The success rate is {escape(difference_text(comparison))}. Changed: {escape(changed)}.</p>"
+    ordered = summary.results[: summary.looked_at]
+    if ordered and document.design == "random":
+        figure = convergence(ordered, confidence=document.confidence, required=document.required_rate)
+        yield f"<h2>Success rate after each run</h2><figure>{figure}</figure>"
+    yield from _table(
+        "Causes of failures",
+        ("runs", "where", "cause", "for example"),
+        [(each.runs, each.at, each.message, ", ".join(f"#{n}" for n in each.examples)) for each in summary.causes],
+    )
+    yield from _failing(summary)
+    yield from _table(
+        "Outcomes",
+        ("outcome", "runs", "share", "interval"),
+        [
+            (each.label, each.runs, percent(each.runs / summary.done), interval_text(each.interval))
+            for each in summary.outcomes
+        ],
+    )
+    yield from _factors(summary)
+    durations = [summary.duration_s] if summary.duration_s is not None else []
+    head = ("runs", "least", "middle", "95 %", "most")
+    yield from _table("Seconds by node", ("node", *head), map(_quantiles, (*durations, *summary.nodes[:_NODES])))
+    yield from _table("Outputs", ("userdata", *head), map(_quantiles, summary.outputs))
+    covered = summary.items - len(summary.missing)
+    yield f"<h2>Coverage</h2><p>{covered} of {summary.items} nodes and exits of the behavior were executed.</p>"
+    yield from _table(
+        "Never executed",
+        ("place", "node", "exit"),
+        [(item.place, item.path, item.label) for item in summary.missing],
+    )
+    yield from _table(
+        "Versions", ("of", "version"), [(name, text[:16]) for name, text in summary.versions.items() if text]
+    )
+
+
+def _failing(summary: SweepSummary) -> Iterator[str]:
+    failing = summary.failing[:_FAILING]
+    addresses = [address for address in (failing[0].configuration.values if failing else ()) if address != "seed"]
+    yield from _table(
+        "Failing runs",
+        ("run", "seed", *addresses, "ended", "cause"),
+        [
+            (
+                f"#{each.configuration.number}",
+                each.configuration.seed,
+                *(value_text(each.configuration.values[address]) for address in addresses),
+                each.label,
+                each.cause,
+            )
+            for each in failing
+        ],
+    )
+
+
+def _factors(summary: SweepSummary) -> Iterator[str]:
+    if not summary.effects or summary.done == 0:
+        return
+    yield "<h2>Factors, those that matter most first</h2>"
+    rate = sum(each.success for each in summary.results) / summary.done
+    for effect in summary.effects[:_FIGURES]:
+        words = [
+            f"rank correlation with {name} {value:+.2f}"
+            for name, value in (("success", effect.with_success), ("duration", effect.with_duration))
+            if value is not None
+        ]
+        if effect.input_share is not None:
+            words.append(f"{percent(effect.input_share)} of its range has a run")
+        caption = f"<code>{escape(effect.address)}</code>: {escape('; '.join(words))}"
+        yield f"<figure><figcaption>{caption}</figcaption>{level_rates(effect, rate=rate)}</figure>"
+    numbers = [
+        each.address for each in summary.effects if each.with_duration is not None or each.with_success is not None
+    ]
+    if len(numbers) > 1:
+        first, second = numbers[:2]
+        figure = scatter(summary.results, first, second)
+        yield f"<figure><figcaption>Runs over the first two</figcaption>{figure}</figure>"
+
+
+def _quantiles(each: Quantiles) -> tuple[object, ...]:
+    return (each.name, each.runs, *(f"{number:.4g}" for number in (each.least, each.middle, each.p95, each.most)))
+
+
+def _table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
+    body = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
+    if body:
+        names = "".join(f'<th scope="col">{escape(name)}</th>' for name in head)
+        yield (
+            f'<h2>{escape(title)}</h2><div class="scroll" tabindex="0"><table><thead><tr>{names}</tr></thead>'
+            f"<tbody>{body}</tbody></table></div>"
+        )

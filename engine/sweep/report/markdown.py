@@ -1,0 +1,133 @@
+"""A sweep as Markdown: what a terminal, a pull request and the summary of a CI job show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from engine.sweep.comparison import Comparison
+from engine.sweep.report.words import (
+    difference_text,
+    end_text,
+    interval_text,
+    percent,
+    rate_text,
+    value_text,
+    verdict_text,
+)
+from engine.sweep.statistics.effects import FactorEffect
+from engine.sweep.summary import Quantiles, SweepSummary
+
+_NODES = 12
+_FAILING = 20
+
+
+def markdown(summary: SweepSummary, comparison: Comparison | None = None) -> str:
+    """Return the report."""
+    return "\n".join(_lines(summary, comparison)) + "\n"
+
+
+def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str]:
+    document = summary.sweep.document
+    verdict = verdict_text(summary)
+    yield f"# Sweep of {document.behavior}"
+    yield ""
+    if verdict:
+        yield f"**{verdict}**"
+        yield ""
+    yield f"{rate_text(summary).capitalize()}. {end_text(summary).capitalize()}; {summary.cpu_s:.1f} s of CPU."
+    if document.design != "random":
+        yield ""
+        yield "The configurations are not drawn at random: the share is that of this design, and has no interval."
+    if comparison is not None:
+        yield ""
+        yield f"The success rate is {difference_text(comparison)}. Changed: {', '.join(comparison.changed)}."
+    yield from _section(
+        "Outcomes",
+        ("outcome", "runs", "share", "interval"),
+        [
+            (each.label, each.runs, percent(each.runs / summary.done), interval_text(each.interval))
+            for each in summary.outcomes
+        ],
+    )
+    yield from _section(
+        "Causes of failures",
+        ("runs", "where", "cause", "for example"),
+        [(each.runs, each.at, each.message, ", ".join(f"#{n}" for n in each.examples)) for each in summary.causes],
+    )
+    yield from _failing(summary)
+    yield from _section(
+        "Factors, those that matter most first",
+        ("factor", "correlation with success", "with duration", "success by level", "input covered"),
+        [_effect(each) for each in summary.effects],
+    )
+    durations = [summary.duration_s] if summary.duration_s is not None else []
+    yield from _section(
+        "Seconds",
+        ("node", "runs", "least", "middle", "95 %", "most"),
+        [_quantiles(each, "s") for each in (*durations, *summary.nodes[:_NODES])],
+    )
+    yield from _section(
+        "Outputs",
+        ("userdata", "runs", "least", "middle", "95 %", "most"),
+        [_quantiles(each, "") for each in summary.outputs],
+    )
+    yield ""
+    covered = summary.items - len(summary.missing)
+    yield f"Coverage of the behavior: {covered} of {summary.items} nodes and exits."
+    yield f"Versions {summary.subject[:12]}."
+
+
+def _failing(summary: SweepSummary) -> Iterator[str]:
+    failing = summary.failing
+    addresses = [address for address in (failing[0].configuration.values if failing else ()) if address != "seed"]
+    yield from _section(
+        f"Failing runs, the first {_FAILING} of {len(failing)}" if len(failing) > _FAILING else "Failing runs",
+        ("run", "seed", *addresses, "ended", "cause"),
+        [
+            (
+                f"#{each.configuration.number}",
+                each.configuration.seed,
+                *(value_text(each.configuration.values[address]) for address in addresses),
+                each.label,
+                each.reason,
+            )
+            for each in failing[:_FAILING]
+        ],
+    )
+
+
+def _effect(effect: FactorEffect) -> tuple[object, ...]:
+    levels = "; ".join(f"{each.label}: {each.successes}/{each.runs}" for each in effect.levels)
+    share = percent(effect.input_share) if effect.input_share is not None else "–"
+    return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels, share
+
+
+def _correlation(value: float | None) -> str:
+    return f"{value:+.2f}" if value is not None else "–"
+
+
+def _quantiles(each: Quantiles, unit: str) -> tuple[object, ...]:
+    numbers = (each.least, each.middle, each.p95, each.most)
+    return (each.name, each.runs, *(f"{number:.3f}" if unit else f"{number:.4g}" for number in numbers))
+
+
+def _section(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
+    found = [tuple(map(_cell, row)) for row in rows]
+    if not found:
+        return
+    # Padded, so that the text reads well in a terminal too.
+    widths = [max(len(row[column]) for row in (tuple(head), *found)) for column in range(len(head))]
+    yield ""
+    yield f"## {title}"
+    yield ""
+    yield _row(head, widths)
+    yield _row(["-" * width for width in widths], widths)
+    yield from (_row(row, widths) for row in found)
+
+
+def _row(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return f"| {' | '.join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))} |"
+
+
+def _cell(value: object) -> str:
+    return " ".join(str(value).replace("|", "\\|").split())

@@ -1,0 +1,84 @@
+"""How numbers and verdicts of a sweep are written, the same in every report."""
+
+from __future__ import annotations
+
+from engine.sweep.comparison import Comparison
+from engine.sweep.statistics import Interval
+from engine.sweep.summary import SweepSummary
+
+
+def percent(share: float) -> str:
+    """Return a share as a percentage; what is not quite everything never reads as 100 %."""
+    shown = f"{100.0 * share:.1f}"
+    if shown == "100.0" and share < 1.0:
+        return "> 99.9 %"
+    return f"{shown} %"
+
+
+def interval_text(interval: Interval) -> str:
+    """Return an interval of rates."""
+    return f"{percent(interval.low)} to {percent(interval.high)}"
+
+
+def rate_text(summary: SweepSummary) -> str:
+    """Return the success rate with its interval in one sentence."""
+    if summary.rate is None:
+        return "no run has ended yet"
+    text = f"{summary.successes} of {summary.looked_at} runs succeeded ({percent(summary.rate)})"
+    if summary.interval is None:
+        return text
+    confidence = percent(summary.sweep.document.confidence)
+    kind = "at any time" if summary.sweep.document.interval == "anytime" else "for this number of runs"
+    return f"{text}; the rate is {interval_text(summary.interval)} with {confidence} confidence {kind}"
+
+
+def verdict_text(summary: SweepSummary) -> str:
+    """Return what is required and whether it is reached; empty where nothing is."""
+    if summary.verdict is None:
+        return ""
+    return f"{summary.sweep.document.require}: {summary.verdict}"
+
+
+def end_text(summary: SweepSummary) -> str:
+    """Return why the sweep ended and what is left."""
+    left = summary.planned - summary.done
+    match summary.ended_by:
+        case "runs":
+            return "all runs are done" if not left else f"{left} runs are left to other shards"
+        case "decided":
+            return f"decided after {summary.done} of {summary.planned} runs"
+        case "time":
+            return f"its time is over, {left} runs are left"
+        case "interrupted":
+            return f"interrupted, {left} runs are left"
+
+
+def difference_text(comparison: Comparison) -> str:
+    """Return how the success rate has changed, in one sentence."""
+    pair, interval = comparison.pair, comparison.interval
+    if interval.high < 0.0:
+        change = "worse than"
+    elif interval.low > 0.0:
+        change = "better than"
+    else:
+        change = "not known to differ from"
+    rates = f"{signed(interval.low)} to {signed(interval.high)} points"
+    verdict = (
+        f"; at most {100.0 * comparison.margin:g} points lower: {comparison.verdict}"
+        if comparison.margin is not None
+        else ""
+    )
+    return (
+        f"{change} the baseline: {rates} on {pair.runs} equal configurations, {pair.only_second} mended and "
+        f"{pair.only_first} broken{verdict}"
+    )
+
+
+def signed(share: float) -> str:
+    """Return a difference of rates in percentage points."""
+    return f"{100.0 * share:+.1f}"
+
+
+def value_text(value: object) -> str:
+    """Return the value of a factor."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,81 @@
+"""Sweeps for scripts and notebooks: `run_sweep(file)` returns a table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from engine.document.duration import seconds
+from engine.document.sweep import Sweep, load_sweep
+from engine.host.state_folder_names import STATE_FOLDER
+from engine.sweep.comparison import Comparison
+from engine.sweep.design import configurations
+from engine.sweep.execution import SweepProgress, execute_sweep
+from engine.sweep.report import report
+from engine.sweep.report.table import Row, rows
+from engine.sweep.results import SweepResults
+from engine.sweep.subject import SweepSubject
+from engine.sweep.summary import SweepSummary, summarize
+from engine.sweep.worker_pool import WorkerOptions
+
+DEFAULT_RESULTS = Path(STATE_FOLDER) / "sweeps.db"
+"""Where results are kept, relative to the current directory."""
+
+
+@dataclass(frozen=True)
+class SweepTable:
+    """The results of a sweep: iterate it for one flat row a run, or give `rows` to a table library."""
+
+    summary: SweepSummary
+
+    @property
+    def rows(self) -> list[Row]:
+        """One flat row for each run, with equal keys: number, seed, factors, outcome, success, times and outputs."""
+        return rows(self.summary.results)
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.summary.results)
+
+    def save(self, file: Path | str, comparison: Comparison | None = None) -> None:
+        """Write a report: `.md`, `.html`, `.json` or `.csv`.
+
+        Raises:
+            FlexcellError: there is no report of this suffix.
+            OSError: the file cannot be written.
+        """
+        Path(file).write_bytes(report(self.summary, comparison, Path(file)))
+
+
+def run_sweep(
+    sweep: Sweep | Path | str,
+    *,
+    results: Path | str = DEFAULT_RESULTS,
+    workers: int | None = None,
+    show: Callable[[SweepProgress], None] = lambda _progress: None,
+) -> SweepTable:
+    """Execute what is left of a sweep in worker processes and return all its results.
+
+    Args:
+        sweep: The sweep or its file.
+        results: File in which results are found and saved.
+        workers: Number of processes; by default that of the processors.
+        show: Called after each run.
+
+    Raises:
+        FlexcellError: the sweep or a document that it names has errors, or results cannot be saved.
+    """
+    loaded = sweep if isinstance(sweep, Sweep) else load_sweep(sweep)
+    subject = SweepSubject.load(loaded)
+    options = WorkerOptions(workers=workers or available_processors(), timeout_s=seconds(loaded.document.timeout))
+    with SweepResults.open(Path(results)) as saved:
+        return SweepTable(summarize(execute_sweep(subject, configurations(loaded), saved, options, show=show)))
+
+
+def available_processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,192 @@
+"""Executes configurations of a sweep in this process, one after the other."""
+
+from __future__ import annotations
+
+import resource
+import sqlite3
+import tempfile
+import time
+from collections.abc import Mapping
+from contextlib import closing
+from hashlib import sha256
+from pathlib import Path
+
+import msgspec
+
+from engine.cause_chain import cause_of, describe_cause, links_from_root
+from engine.coverage import CoverageRuns
+from engine.document.duration import seconds
+from engine.document.sweep import NO_FILE
+from engine.errors import FlexcellError
+from engine.event import Cause, Event
+from engine.journal import encode_event_log
+from engine.project.cell_runner import CellSetup
+from engine.project.headless_run import CompletedRun, run_headless
+from engine.project.run_request import RunRequest
+from engine.recording import RecordingOptions, collect_documents
+from engine.runtime.history.run_reducer import RunReducer
+from engine.sweep.cell_variation import varied_cell
+from engine.sweep.configuration import Configuration
+from engine.sweep.subject import SweepSubject
+from engine.sweep.trial_result import NodeTime, TrialResult, TrialStatus
+
+_KIBIBYTE = 1024
+
+
+class Trials:
+    """Executes configurations; belongs to one thread.
+
+    Args:
+        subject: What all of them have in common.
+    """
+
+    def __init__(self, subject: SweepSubject) -> None:
+        self.subject = subject
+        self._coverage = CoverageRuns(subject.behavior, subject.catalogue)
+
+    def run(self, configuration: Configuration, *, record: Path | None = None) -> TrialResult:
+        """Execute one configuration in virtual time.
+
+        Args:
+            configuration: The configuration.
+            record: MCAP file to which the run is recorded.
+        """
+        began_s, cpu_began_s = time.perf_counter(), _cpu_s()
+        with tempfile.TemporaryDirectory(prefix="flexcell-sweep-") as folder:
+            try:
+                setup, request = self._request(configuration, Path(folder), record)
+            except FlexcellError as error:
+                ended = _failed(configuration, "refused", cause_of(error))
+            else:
+                ended = self._executed(configuration, setup, request)
+        return msgspec.structs.replace(
+            ended,
+            wall_s=time.perf_counter() - began_s,
+            cpu_s=_cpu_s() - cpu_began_s,
+            memory_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KIBIBYTE,
+        )
+
+    def _executed(self, configuration: Configuration, setup: CellSetup, request: RunRequest) -> TrialResult:
+        covered = self._coverage.follow()
+        limit_s = seconds(self.subject.sweep.document.limit)
+        try:
+            run = run_headless(setup, request, watchers=(covered.take,), limit_s=limit_s)
+        except (FlexcellError, MemoryError) as error:
+            # A world that cannot be opened with these values, or a run in which everything waits.
+            return _failed(configuration, "errored", cause_of(error))
+        return _completed(configuration, run, covered=covered.bits)
+
+    def _request(self, configuration: Configuration, folder: Path, record: Path | None) -> tuple[CellSetup, RunRequest]:
+        subject, document, values = self.subject, self.subject.sweep.document, configuration.values
+        plan = subject.plans[str(values.get("substitutes", "" if "" in subject.substitutes else NO_FILE))]
+        cell = varied_cell(subject.cell, values) if subject.cell is not None else None
+        name = values.get("faults", "")
+        seed = configuration.seed
+        documents = collect_documents(plan.source, cell) if record is not None and plan.source is not None else None
+        setup = CellSetup(
+            cell=cell,
+            seed=seed if document.placement_noise else None,
+            store=str(_copied_store(subject.store_file, folder)) if cell is not None and cell.document.store else None,
+            recording=RecordingOptions(path=record, documents=documents)
+            if record is not None and documents is not None
+            else None,
+        )
+        request = RunRequest(
+            plan=plan,
+            parameters={**document.parameters, **_given(values, "parameters")},
+            inputs={**document.inputs, **_given(values, "inputs")},
+            seed=seed,
+            faults=subject.faults.get(str(name)),
+            documents=documents,
+            run_id=f"sweep-{configuration.key(subject.hash)}",
+        )
+        plan.checked_parameters(request.parameters)
+        plan.checked_inputs(request.inputs)
+        return setup, request
+
+
+def ended_process(configuration: Configuration, status: TrialStatus, message: str, *, wall_s: float) -> TrialResult:
+    """Return the result of a configuration whose process has ended, or was ended, before it could answer."""
+    return msgspec.structs.replace(_failed(configuration, status, Cause(message=message)), wall_s=wall_s)
+
+
+def _completed(configuration: Configuration, run: CompletedRun, *, covered: str) -> TrialResult:
+    result = run.result
+    cause = result.cause if not result.success else None
+    return TrialResult(
+        configuration=configuration,
+        status=_status(result.status),
+        outcome=result.outcome,
+        success=result.success,
+        cause=describe_cause(cause) if cause is not None else "",
+        reason=links_from_root(cause)[0].message if cause is not None else "",
+        reason_at=links_from_root(cause)[0].where if cause is not None else "",
+        duration_s=result.duration_s,
+        events=len(run.events),
+        events_sha256=sha256(encode_event_log(list(run.events))).hexdigest(),
+        nodes=_node_times(run.events),
+        outputs=_numbers(result.userdata),
+        covered=covered,
+    )
+
+
+def _failed(configuration: Configuration, status: TrialStatus, cause: Cause) -> TrialResult:
+    root = links_from_root(cause)[0]
+    return TrialResult(
+        configuration=configuration,
+        status=status,
+        cause=describe_cause(cause),
+        reason=root.message,
+        reason_at=root.where,
+    )
+
+
+def _status(text: str) -> TrialStatus:
+    match text:
+        case "finished" | "stopped":
+            return text
+        case _:
+            return "errored"
+
+
+def _node_times(events: tuple[Event, ...]) -> dict[str, NodeTime]:
+    reducer = RunReducer()
+    found: dict[str, NodeTime] = {}
+    for event in events:
+        change = reducer.apply(event)
+        if change is None or change.step is None or change.step.kind != "ended":
+            continue
+        path = change.step.path
+        before = found.get(path, NodeTime(visits=0, total_s=0.0))
+        found[path] = NodeTime(visits=before.visits + 1, total_s=before.total_s + change.duration_s)
+    return found
+
+
+def _numbers(userdata: Mapping[str, object]) -> dict[str, float]:
+    return {
+        key: float(value)
+        for key, value in userdata.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    }
+
+
+def _given(values: Mapping[str, object], kind: str) -> dict[str, object]:
+    """Return the values of the factors of a kind by their names without it."""
+    return {
+        address.removeprefix(f"{kind}."): value for address, value in values.items() if address.startswith(f"{kind}.")
+    }
+
+
+def _copied_store(file: Path | None, folder: Path) -> Path:
+    """Return the file of a store of this run alone: a copy of the store, or a new one for the seed entries."""
+    copy = folder / "store.db"
+    if file is not None:
+        address = f"{file.absolute().as_uri()}?mode=ro"
+        with closing(sqlite3.connect(address, uri=True)) as stored, closing(sqlite3.connect(copy)) as copied:
+            stored.backup(copied)
+    return copy
+
+
+def _cpu_s() -> float:
+    own, children = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
+    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime

@@ -1,0 +1,68 @@
+"""The result of one run of a sweep."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Literal
+
+import msgspec
+
+from engine.sweep.configuration import Configuration
+
+_NUMBERS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
+TrialStatus = Literal["finished", "stopped", "errored", "refused", "crashed", "hung"]
+"""`refused`: this configuration cannot be executed; `crashed`, `hung`: its process ended or was ended."""
+
+
+class NodeTime(msgspec.Struct, frozen=True, kw_only=True):
+    """The activations of a node that ended in a run, and the seconds that they took on its clock."""
+
+    visits: int
+    total_s: float
+
+
+class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
+    """How one configuration ended; everything but the costs is the same wherever it is executed."""
+
+    configuration: Configuration
+    status: TrialStatus
+    outcome: str | None = None
+    success: bool = False
+    cause: str = ""
+    """The chain of causes on one line, from the root cause outwards; empty for a success."""
+    reason: str = ""
+    """The message of the innermost cause."""
+    reason_at: str = ""
+    """The node, device or frame of the innermost cause."""
+    duration_s: float = 0.0
+    """On the clock of the run."""
+    events: int = 0
+    events_sha256: str = ""
+    """The hash of the event log, as `flexcell run --json` prints it."""
+    nodes: Mapping[str, NodeTime] = {}
+    """By path."""
+    outputs: Mapping[str, float] = {}
+    """Userdata at the end that are numbers."""
+    covered: str = ""
+    """Hexadecimal bits of the coverage items of the behavior that the run executed, in document order."""
+    wall_s: float = 0.0
+    cpu_s: float = 0.0
+    """Of its process and of ended child processes."""
+    memory_bytes: int = 0
+    """The largest resident size that its process had until then."""
+
+    @property
+    def label(self) -> str:
+        """Its outcome, or its status where it has none."""
+        return self.outcome or self.status
+
+    @property
+    def cause_key(self) -> tuple[str, str]:
+        """What runs that failed alike have in common: the place and message of the root cause without its numbers."""
+        return self.reason_at, _NUMBERS.sub("#", self.reason)
+
+    @property
+    def broken(self) -> bool:
+        """Whether the process failed and not the behavior: another attempt may end differently."""
+        return self.status in ("crashed", "hung")
