@@ -93,11 +93,7 @@ class _Search:
         return self._best.configuration.values
 
     def _varied(self) -> list[str]:
-        return [
-            name
-            for name, factor in self._factors.items()
-            if name != "seed" and self._values.get(name) != self._nominal[name]
-        ]
+        return [name for name in self._factors if name != "seed" and self._values.get(name) != self._nominal[name]]
 
     def set_back(self) -> None:
         """Set factors back to nominal, all that can be at once and then one by one, until none can."""

@@ -12,7 +12,8 @@ from engine.document.schema import schema_texts
 
 def schema(
     kind: Annotated[
-        Literal["behavior", "cell", "entries", "faults", "substitutes", "sweep"], typer.Argument(help="Kind of document.")
+        Literal["behavior", "cell", "entries", "faults", "substitutes", "sweep"],
+        typer.Argument(help="Kind of document."),
     ] = "behavior",
 ) -> None:
     """Print the JSON Schema of a kind of document."""

@@ -153,7 +153,7 @@ async def test_a_session_keeps_two_runs_of_one_behavior_apart(project: Path) -> 
             OpenCell(cell_document, store_path=str(project / "store.db")) as cell,
             Session(cell, project=project, catalogue=load_states(), journal=journal) as session,
         ):
-            session.subscribe(lambda run, event: told.setdefault(run, []).append(event))
+            session.subscribe(lambda run, _change: told.setdefault(run.run_id, []).append(run.events[-1]))
             left = await _start(session, "left")
             right = await _start(session, "right")
             await cell.bus.clock.sleep(THIRD_AT_S)

@@ -529,7 +529,7 @@ export interface DuplicateNodes {
   readonly paths: readonly string[]
 }
 
-/** A text after edits with its graph and findings, and the difference from the graph that the asker has. It crosses to the page without the graph where there is a difference. */
+/** A text after edits with its findings, and its graph, or the difference from the graph that the asker has. */
 export interface EditAnswer {
   readonly hash: string
   readonly graph: DocumentNode | null

@@ -63,7 +63,7 @@ async def test_it_ends_errored_and_the_next_runs_again_once_there_is_space(
             OpenCell(None) as cell,
             Session(cell, project=project, catalogue=CATALOGUE, journal=journal) as session,
         ):
-            session.subscribe(lambda run, event: told.append(event))
+            session.subscribe(lambda run, _change: told.append(run.events[-1]))
             lost = await session.start(BEHAVIOR, parameters={"for_s": for_s}, seed=0)
             with full_disk(folder):
                 view = await session.wait(lost)
