@@ -59,7 +59,7 @@ def swept(behavior: Path, runs: int, options: WorkerOptions, folder: Path) -> tu
 
 
 def _progress(progress: SweepProgress) -> None:
-    sys.stderr.write(f"\r{progress.tally.done} runs ")
+    sys.stderr.write(f"\r{progress.count.done} runs ")
     sys.stderr.flush()
 
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -28,6 +28,7 @@ from msgspec import Meta
 
 from engine.document.duration import Duration
 from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source, parse_source
 from engine.errors import DocumentError
 
@@ -131,12 +132,8 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class Sweep(DocumentFile[SweepDocument]):
     """A sweep document with its file."""
-
-    document: SweepDocument
-    file: Path
-    source: DocumentSource = field(repr=False)
 
     @property
     def text(self) -> bytes:

@@ -11,9 +11,9 @@ from engine.lazy_face import lazy_face
 _HOMES = {
     "Comparison": "engine.sweep.comparison",
     "Configuration": "engine.sweep.configuration",
-    "Shard": "engine.sweep.execution",
-    "SweepEnd": "engine.sweep.execution",
-    "SweepProgress": "engine.sweep.execution",
+    "Shard": "engine.sweep.sweep_execution",
+    "SweepEnd": "engine.sweep.sweep_execution",
+    "SweepProgress": "engine.sweep.sweep_execution",
     "SweepResults": "engine.sweep.results",
     "SweepSubject": "engine.sweep.subject",
     "SweepSummary": "engine.sweep.summary",
@@ -23,9 +23,9 @@ _HOMES = {
     "WorkerOptions": "engine.sweep.worker_pool",
     "compare_with_baseline": "engine.sweep.comparison",
     "configurations": "engine.sweep.design",
-    "execute_sweep": "engine.sweep.execution",
+    "execute_sweep": "engine.sweep.sweep_execution",
     "run_sweep": "engine.sweep.sweep_table",
-    "saved_sweep": "engine.sweep.execution",
+    "saved_sweep": "engine.sweep.sweep_execution",
     "summarize": "engine.sweep.summary",
 }
 

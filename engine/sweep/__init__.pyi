@@ -3,10 +3,10 @@
 from engine.sweep.comparison import Comparison, compare_with_baseline
 from engine.sweep.configuration import Configuration
 from engine.sweep.design import configurations
-from engine.sweep.execution import Shard, SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.results import SweepResults
 from engine.sweep.subject import SweepSubject
 from engine.sweep.summary import SweepSummary, summarize
+from engine.sweep.sweep_execution import Shard, SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.sweep_table import SweepTable, run_sweep
 from engine.sweep.trial import Trials
 from engine.sweep.trial_result import TrialResult

@@ -10,7 +10,7 @@ import msgspec
 from engine.errors import FlexcellError
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import Interval, RatePair, difference
-from engine.sweep.tally import Verdict
+from engine.sweep.success_count import Verdict
 from engine.sweep.trial_result import TrialResult
 
 

@@ -7,23 +7,20 @@ from dataclasses import dataclass
 
 from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
-from engine.sweep.execution import EndedBy, SweepEnd
 from engine.sweep.statistics import Interval, exact_interval
-from engine.sweep.statistics.effects import FactorEffect, factor_effect, quantile
-from engine.sweep.tally import Verdict
+from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
+from engine.sweep.success_count import Verdict
+from engine.sweep.sweep_execution import EndedBy, SweepEnd
 from engine.sweep.trial_result import TrialResult
 
 _EXAMPLES = 5
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutcomeShare:
-    """How many runs ended with one outcome, or with one status where they had none."""
+class OutcomeShare(RunGroup):
+    """The runs that ended with one outcome, or status where they had none; the interval is of its share of all."""
 
-    label: str
-    runs: int
     success: bool
-    interval: Interval
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,19 +91,19 @@ class SweepSummary:
 
 def summarize(end: SweepEnd) -> SweepSummary:
     """Return what a sweep has shown until now."""
-    subject, results, tally = end.subject, end.results, end.tally
+    subject, results, count = end.subject, end.results, end.count
     document = subject.sweep.document
     coverage = CoverageRuns(subject.behavior, subject.catalogue)
     return SweepSummary(
         sweep=subject.sweep,
         subject=subject.hash,
         versions=subject.versions,
-        planned=tally.planned,
-        done=tally.done,
-        looked_at=tally.looked_at,
-        successes=tally.successes,
-        interval=tally.interval,
-        verdict=tally.verdict,
+        planned=count.planned,
+        done=count.done,
+        looked_at=count.looked_at,
+        successes=count.successes,
+        interval=count.interval,
+        verdict=count.verdict,
         ended_by=end.ended_by,
         outcomes=_outcomes(results, document.confidence),
         causes=_causes(results),

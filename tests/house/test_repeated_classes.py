@@ -23,13 +23,11 @@ LEAST_FIELDS = 3
 MOST_SHARED = 0.75
 """The share of the larger class."""
 CARTESIAN = "the same about joints and about the tool; their values have other types"
-TOOL_DOCUMENT = "a tool as its folder describes it, before it is joined with the URDF"
 DIFFERENT_FACTS: Mapping[str, str] = {
     "AttachedPart ~ HeldPart": "of the scene to plan in, where no link is the tool link; the topic names the link",
     "BusParameter ~ EntryDraft": "a setting and an entry, both typed and named",
     "CartDMP ~ JointDMP": CARTESIAN,
     "CartFit ~ JointFit": CARTESIAN,
-    "ClawModel ~ ClawSpec": TOOL_DOCUMENT,
     "Close ~ Open": "of a hand: closing has a share",
     "Concurrency ~ ConcurrencySpec": "the container that executes what the document says",
     "EntryChange ~ EntryChanged": "a change with its value; the topic has none",
@@ -43,7 +41,6 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "FoxgloveQuaternion ~ FoxgloveVector3": "two messages of Foxglove",
     "GateReached ~ GateWait": "the event of a wait; the wait itself, which also knows the required autonomy",
     "GraphTransition ~ TransitionTaken": "an arrow of a picture; that a run took it",
-    "GripperModel ~ ParallelGripperSpec": TOOL_DOCUMENT,
     "GripperSetting ~ GripperState": "a taught entry; a measurement",
     "HandResult ~ HandState": "how an action ended; a measurement",
     "IfThenElseSpec ~ WhileDoElseSpec": "two kinds of nodes with the same parts",
@@ -51,16 +48,10 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "KeySignature ~ KeyView": "a declaration in Python with its type; its plain data",
     "KeyView ~ ParameterView": "a key of a state; a parameter, whose schema has the default",
     "LearnCartDmp ~ LearnJointDmp": CARTESIAN,
-    "LinkageGripperSpec ~ LinkageModel": TOOL_DOCUMENT,
     "LoopBlocked ~ LoopStall": "the event of a state that blocks; a block by anything, also outside a run",
-    "MagnetModel ~ MagnetSpec": TOOL_DOCUMENT,
     "MagnetResult ~ MagnetState": "how an action ended; a measurement",
-    "PadBox ~ PadSpec": TOOL_DOCUMENT,
-    "PastRun ~ RunView": "a run in a journal, by any process; a run of this session, which may wait for a person",
     "Pose ~ PoseTarget": "a pose; a pose or the name of an entry",
     "SetTransition ~ TransitionTaken": "an edit of a document; that a run took a transition",
-    "SynergyHandSpec ~ SynergyModel": TOOL_DOCUMENT,
-    "SynergyJoint ~ TendonJoint": TOOL_DOCUMENT,
 }
 """Pairs of classes with nearly the same names of fields, and why they are not one class."""
 

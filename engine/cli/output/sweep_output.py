@@ -53,7 +53,7 @@ class SweepPrinter:
         if self._quiet:
             return
         text = progress_text(progress)
-        done, total = progress.tally.done, progress.tally.done + progress.due
+        done, total = progress.count.done, progress.count.done + progress.due
         if self._task is not None:
             self._bar.update(self._task, completed=done, total=total, description=text)
         elif done >= self._next or not progress.due:
@@ -64,10 +64,10 @@ class SweepPrinter:
 
 def progress_text(progress: SweepProgress) -> str:
     """Return the rate of success, its interval, the speed and the remaining time."""
-    tally, parts = progress.tally, list[str]()
-    if tally.rate is not None:
-        interval = f" ({interval_text(tally.interval)})" if tally.interval is not None else ""
-        parts.append(f"{percent(tally.rate)} succeeded{interval}")
+    count, parts = progress.count, list[str]()
+    if count.rate is not None:
+        interval = f" ({interval_text(count.interval)})" if count.interval is not None else ""
+        parts.append(f"{percent(count.rate)} succeeded{interval}")
     parts.append(f"{progress.rate_hz * _MINUTE_S:.1f} runs/min")
     if progress.remaining_s is not None and progress.due:
         parts.append(f"{_duration(progress.remaining_s)} left")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from engine.errors import FlexcellError
 from engine.sweep.comparison import Comparison
-from engine.sweep.report.html_page import html_page
 from engine.sweep.report.markdown import markdown
-from engine.sweep.report.table import csv_table, json_report
+from engine.sweep.report.result_rows import csv_table, json_report
+from engine.sweep.report.sweep_page import html_page
 from engine.sweep.summary import SweepSummary
 
 SUFFIXES = (".md", ".html", ".json", ".csv")

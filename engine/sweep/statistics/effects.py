@@ -24,14 +24,20 @@ _FEW = 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Level:
-    """The runs with one value of a factor, or with values of one range."""
+class RunGroup:
+    """Runs that have something in common."""
 
     label: str
     runs: int
-    successes: int
     interval: Interval
-    """Of its success rate, by itself: where there are many levels, some miss their rate."""
+    """Of a rate, for this number of runs; where there are many groups, some intervals miss their rate."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Level(RunGroup):
+    """The runs with one value of a factor, or with values of one range; the interval is of their success rate."""
+
+    successes: int
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,9 +33,9 @@ def colour(server: viser.ViserServer, name: str) -> tuple[int, ...]:
 
 
 def test_every_shape_is_drawn_but_what_the_scene_shows_anyway(
-    server: viser.ViserServer, newest: LatestMessages
+    server: viser.ViserServer, messages: LatestMessages
 ) -> None:
-    ObstacleLayer(server).draw(newest)
+    ObstacleLayer(server).draw(messages)
     found = {
         name: server.scene.get_handle_by_name(f"/obstacles/{name}/0") is not None
         for name in ("post", "crate", "ball", "rail", "wedge", "cup", "table")
@@ -43,60 +43,62 @@ def test_every_shape_is_drawn_but_what_the_scene_shows_anyway(
     assert [name for name, is_there in found.items() if not is_there] == ["table"]
 
 
-def test_a_held_part_moves_with_the_link_that_holds_it(server: viser.ViserServer, newest: LatestMessages) -> None:
+def test_a_held_part_moves_with_the_link_that_holds_it(server: viser.ViserServer, messages: LatestMessages) -> None:
     obstacles = ObstacleLayer(server)
     for time_s in (0.0, 0.7):
-        newest.put("cell", frames_at(time_s))
-        obstacles.draw(newest)
+        messages.put("cell", frames_at(time_s))
+        obstacles.draw(messages)
         expected = matrix_of_pose(poses_by_frame(frames_at(time_s))["right/fore"]) @ np.array([0.0, 0.0, 0.44, 1.0])
         cup = server.scene.get_handle_by_name("/obstacles/cup")
         assert cup is not None
         assert np.allclose(cup.position, expected[:3])
 
 
-def test_what_is_taken_out_of_the_scene_vanishes(server: viser.ViserServer, newest: LatestMessages) -> None:
+def test_what_is_taken_out_of_the_scene_vanishes(server: viser.ViserServer, messages: LatestMessages) -> None:
     obstacles = ObstacleLayer(server)
-    obstacles.draw(newest)
-    newest.put("cell", msgspec.structs.replace(planning_scene(), revision=2, obstacles=(), held=()))
-    obstacles.draw(newest)
+    obstacles.draw(messages)
+    messages.put("cell", msgspec.structs.replace(planning_scene(), revision=2, obstacles=(), held=()))
+    obstacles.draw(messages)
     assert [n for n in ("post", "cup") if server.scene.get_handle_by_name(f"/obstacles/{n}/0")] == []
 
 
 def test_what_a_blocked_way_names_stands_out_until_the_way_is_free(
-    server: viser.ViserServer, newest: LatestMessages
+    server: viser.ViserServer, messages: LatestMessages
 ) -> None:
     obstacles = ObstacleLayer(server)
-    obstacles.draw(newest)
+    obstacles.draw(messages)
     plain = colour(server, "post")
-    newest.put("left", planned_path("left", "blocked", reason="left/fore would touch post, not crates"))
-    obstacles.draw(newest)
+    messages.put("left", planned_path("left", "blocked", reason="left/fore would touch post, not crates"))
+    obstacles.draw(messages)
     assert colour(server, "post") != plain
     assert colour(server, "crate") == plain
-    newest.put("left", planned_path("left", "moving"))
-    obstacles.draw(newest)
+    messages.put("left", planned_path("left", "moving"))
+    obstacles.draw(messages)
     assert colour(server, "post") == plain
 
 
-def test_a_part_that_moves_elsewhere_draws_no_obstacle_anew(server: viser.ViserServer, newest: LatestMessages) -> None:
+def test_a_part_that_moves_elsewhere_draws_no_obstacle_anew(
+    server: viser.ViserServer, messages: LatestMessages
+) -> None:
     obstacles = ObstacleLayer(server)
-    obstacles.draw(newest)
+    obstacles.draw(messages)
     before = server.scene.get_handle_by_name("/obstacles/post/0")
     state = planning_scene()
     moved = tuple(
         msgspec.structs.replace(each, pose=Pose(xyz=(9.0, 0.0, 0.0))) if each.name == "table" else each
         for each in state.obstacles
     )
-    newest.put("cell", msgspec.structs.replace(state, revision=2, obstacles=moved))
-    obstacles.draw(newest)
+    messages.put("cell", msgspec.structs.replace(state, revision=2, obstacles=moved))
+    obstacles.draw(messages)
     assert server.scene.get_handle_by_name("/obstacles/post/0") is before
 
 
 def test_a_hull_that_is_none_leaves_the_others(
-    server: viser.ViserServer, newest: LatestMessages, caplog: pytest.LogCaptureFixture
+    server: viser.ViserServer, messages: LatestMessages, caplog: pytest.LogCaptureFixture
 ) -> None:
     flat = Obstacle.of("flat", Hull(points_m=((0.0, 0.0, 0.0),) * 4), Pose(xyz=(0.0, 0.0, 0.0)))
     state = planning_scene()
-    newest.put("cell", msgspec.structs.replace(state, obstacles=(flat, *state.obstacles)))
-    ObstacleLayer(server).draw(newest)
+    messages.put("cell", msgspec.structs.replace(state, obstacles=(flat, *state.obstacles)))
+    ObstacleLayer(server).draw(messages)
     assert "flat is not drawn" in caplog.text
     assert server.scene.get_handle_by_name("/obstacles/post/0") is not None

@@ -49,70 +49,70 @@ def test_a_share_of_the_way_lies_on_it(joints: tuple[tuple[float, ...], ...], sh
 
 
 def test_a_proposed_way_has_a_line_and_a_ghost_that_goes_along_it(
-    server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
+    server: viser.ViserServer, messages: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     ways, preview = PathLayer(server), planned_path("left")
-    newest.put("left", preview)
-    assert ways.draw(newest, 0.0, is_shown=True) is not None
+    messages.put("left", preview)
+    assert ways.draw(messages, 0.0, is_shown=True) is not None
     assert node("line").points.shape == (len(preview.tool_path) - 1, 2, 3)
     assert np.allclose(node("goal").position, preview.tool_path[-1])
     assert node("ghost").visible
-    ways.draw(newest, TRAVEL_S + REST_S / 2, is_shown=True)
+    ways.draw(messages, TRAVEL_S + REST_S / 2, is_shown=True)
     at_the_goal = node("ghost/fore").wxyz.copy()
-    ways.draw(newest, TRAVEL_S + REST_S, is_shown=True)
+    ways.draw(messages, TRAVEL_S + REST_S, is_shown=True)
     assert not np.allclose(node("ghost/fore").wxyz, at_the_goal)
     # Whoever does not look costs nothing.
-    assert ways.draw(newest, TRAVEL_S * 2, is_shown=False) is None
+    assert ways.draw(messages, TRAVEL_S * 2, is_shown=False) is None
 
 
 def test_the_ghost_of_a_way_that_an_arm_goes_stands_at_the_goal_in_the_colour_of_its_state(
-    server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
+    server: viser.ViserServer, messages: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     ways = PathLayer(server)
     colours: list[tuple[int, ...]] = []
     for state in ("proposed", "moving", "blocked"):
-        newest.put("left", planned_path("left", state))
-        ways.draw(newest, 0.0, is_shown=True)
+        messages.put("left", planned_path("left", state))
+        ways.draw(messages, 0.0, is_shown=True)
         colours.append(tuple(node("goal").color))
     assert len(set(colours)) == 3
-    assert ways.draw(newest, 1.0, is_shown=True) is None
+    assert ways.draw(messages, 1.0, is_shown=True) is None
     ghost = node("ghost/fore")
-    newest.put("cell", frames_at(1.0))
-    ways.draw(newest, 2.0, is_shown=True)
+    messages.put("cell", frames_at(1.0))
+    ways.draw(messages, 2.0, is_shown=True)
     assert node("ghost/fore") is ghost
 
 
 def test_a_way_that_is_over_vanishes_and_the_meshes_are_kept_for_the_next_one(
-    server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
+    server: viser.ViserServer, messages: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     ways = PathLayer(server)
-    newest.put("left", planned_path("left"))
-    ways.draw(newest, 0.0, is_shown=True)
+    messages.put("left", planned_path("left"))
+    ways.draw(messages, 0.0, is_shown=True)
     body = node("ghost/fore")
-    newest.put("left", planned_path("left", "none"))
-    assert ways.draw(newest, 1.0, is_shown=True) is None
+    messages.put("left", planned_path("left", "none"))
+    assert ways.draw(messages, 1.0, is_shown=True) is None
     assert (node("line"), node("goal"), node("ghost").visible) == (None, None, False)
-    newest.put("left", planned_path("left", "moving"))
-    ways.draw(newest, 2.0, is_shown=True)
+    messages.put("left", planned_path("left", "moving"))
+    ways.draw(messages, 2.0, is_shown=True)
     assert node("ghost/fore") is body
     assert node("ghost").visible
 
 
 @pytest.mark.parametrize("urdf", ["no XML", "<robot/>"])
 def test_without_a_description_that_can_be_read_the_line_alone_is_drawn(
-    server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any], urdf: str
+    server: viser.ViserServer, messages: LatestMessages, node: Callable[[str], Any], urdf: str
 ) -> None:
-    newest.put("left", msgspec.structs.replace(description("left"), urdf=urdf))
-    newest.put("left", planned_path("left"))
-    PathLayer(server).draw(newest, 0.0, is_shown=True)
+    messages.put("left", msgspec.structs.replace(description("left"), urdf=urdf))
+    messages.put("left", planned_path("left"))
+    PathLayer(server).draw(messages, 0.0, is_shown=True)
     assert node("line") is not None
     assert node("ghost") is None
 
 
 def test_a_way_of_numbers_that_are_none_is_not_drawn(
-    server: viser.ViserServer, newest: LatestMessages, node: Callable[[str], Any]
+    server: viser.ViserServer, messages: LatestMessages, node: Callable[[str], Any]
 ) -> None:
     path = ((0.0, 0.0, 0.0), (float("nan"), 0.0, 0.0))
-    newest.put("left", msgspec.structs.replace(planned_path("left"), tool_path=path, joints=()))
-    assert PathLayer(server).draw(newest, 0.0, is_shown=True) is None
+    messages.put("left", msgspec.structs.replace(planned_path("left"), tool_path=path, joints=()))
+    assert PathLayer(server).draw(messages, 0.0, is_shown=True) is None
     assert node("line") is None

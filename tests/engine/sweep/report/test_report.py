@@ -12,9 +12,9 @@ import pytest
 
 from engine.errors import FlexcellError
 from engine.sweep import SweepSubject, SweepSummary, TrialResult, Trials, configurations, summarize
-from engine.sweep.execution import SweepEnd
 from engine.sweep.report import SUFFIXES, report
-from engine.sweep.tally import Tally
+from engine.sweep.success_count import SuccessCount
+from engine.sweep.sweep_execution import SweepEnd
 from tests.engine.sweep.luck_project import LuckProject
 
 HOSTILE = "<script>alert('x')</script> | a\nb"
@@ -25,13 +25,13 @@ def _summary(folder: Path, *, runs: int = 12, otherwise: str = "raise", **keys: 
     sweep = project.sweep(runs=runs, parameters={"otherwise": otherwise}, description=HOSTILE, **keys)
     subject, trials = SweepSubject.load(sweep), None
     planned = configurations(sweep)
-    tally = Tally(sweep.document, len(planned))
+    count = SuccessCount(sweep.document, len(planned))
     results: list[TrialResult] = []
     for configuration in planned:
         trials = trials or Trials(subject)
         results.append(trials.run(configuration))
-        tally.add(results[-1])
-    return summarize(SweepEnd(subject=subject, configurations=planned, results=results, tally=tally, ended_by="runs"))
+        count.add(results[-1])
+    return summarize(SweepEnd(subject=subject, configurations=planned, results=results, count=count, ended_by="runs"))
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_json_and_csv_have_a_row_for_each_run(summary: SweepSummary) -> None:
     assert sum(row["success"] == "True" for row in rows) == summary.successes
 
 
-def test_times_coverage_and_the_factor_are_told(summary: SweepSummary) -> None:
+def test_times_coverage_and_the_factor_are_there(summary: SweepSummary) -> None:
     assert {each.name for each in summary.nodes} == {"root", "root/only"}
     assert summary.duration_s is not None
     assert 1.0 < summary.duration_s.least < summary.duration_s.most < 1.5

@@ -8,7 +8,7 @@ import pytest
 
 from engine.document.sweep import SweepDocument
 from engine.sweep.configuration import Configuration
-from engine.sweep.tally import Tally
+from engine.sweep.success_count import SuccessCount
 from engine.sweep.trial_result import TrialResult
 
 
@@ -22,32 +22,32 @@ def _result(number: int, *, success: bool) -> TrialResult:
     return TrialResult(configuration=configuration, status="finished", outcome=outcome, success=success)
 
 
-def _counted(document: SweepDocument, ends: list[bool], *, planned: int | None = None) -> Tally:
-    tally = Tally(document, planned if planned is not None else len(ends))
+def _counted(document: SweepDocument, ends: list[bool], *, planned: int | None = None) -> SuccessCount:
+    count = SuccessCount(document, planned if planned is not None else len(ends))
     for number, success in enumerate(ends):
-        tally.add(_result(number, success=success))
-    return tally
+        count.add(_result(number, success=success))
+    return count
 
 
 def test_only_results_without_a_gap_before_them_are_looked_at() -> None:
-    tally = Tally(_document(), 5)
+    count = SuccessCount(_document(), 5)
     for number in (3, 1, 2):
-        tally.add(_result(number, success=True))
-    assert (tally.done, tally.looked_at, tally.rate) == (3, 0, None)
-    tally.add(_result(0, success=False))
-    assert (tally.done, tally.looked_at, tally.successes) == (4, 4, 3)
+        count.add(_result(number, success=True))
+    assert (count.done, count.looked_at, count.rate) == (3, 0, None)
+    count.add(_result(0, success=False))
+    assert (count.done, count.looked_at, count.successes) == (4, 4, 3)
 
 
 def test_short_runs_that_arrive_first_do_not_bias_the_rate() -> None:
     """Failures take longer here: in order of arrival the first half of the runs would all succeed."""
     source = random.Random(4)
     ends = [source.random() < 0.5 for _ in range(200)]
-    tally = Tally(_document(), len(ends))
+    count = SuccessCount(_document(), len(ends))
     arrived = sorted(range(len(ends)), key=lambda number: (not ends[number], number))
     for number in arrived[:100]:
-        tally.add(_result(number, success=ends[number]))
-    assert tally.looked_at < 100
-    assert tally.successes == tally.looked_at == next(n for n, end in enumerate(ends) if not end)
+        count.add(_result(number, success=ends[number]))
+    assert count.looked_at < 100
+    assert count.successes == count.looked_at == next(n for n, end in enumerate(ends) if not end)
 
 
 @pytest.mark.parametrize(
@@ -55,9 +55,9 @@ def test_short_runs_that_arrive_first_do_not_bias_the_rate() -> None:
     [([True] * 400, "passed"), ([False] * 20, "failed"), ([True] * 20, "undecided"), ([], "undecided")],
 )
 def test_a_required_rate_is_reached_or_not_or_open(ends: list[bool], verdict: str) -> None:
-    tally = _counted(_document(require="success >= 0.98"), ends, planned=1000)
-    assert tally.verdict == verdict
-    assert tally.is_decided == (verdict != "undecided")
+    count = _counted(_document(require="success >= 0.98"), ends, planned=1000)
+    assert count.verdict == verdict
+    assert count.is_decided == (verdict != "undecided")
 
 
 def test_nothing_required_has_no_verdict() -> None:
@@ -106,9 +106,9 @@ def test_gates_end_early_where_the_rate_is_far_from_what_is_required(
     lengths: list[int] = []
     for sweep in range(40):
         source = random.Random(f"{rate} {sweep}")
-        tally = Tally(_document(require="success >= 0.98"), 5000)
-        while not tally.is_decided and tally.done < 5000:
-            tally.add(_result(tally.done, success=source.random() < rate))
-        lengths.append(tally.done)
-        assert tally.verdict == expected
+        count = SuccessCount(_document(require="success >= 0.98"), 5000)
+        while not count.is_decided and count.done < 5000:
+            count.add(_result(count.done, success=source.random() < rate))
+        lengths.append(count.done)
+        assert count.verdict == expected
     assert least <= sorted(lengths)[20] <= most

@@ -13,7 +13,7 @@ from engine.document.duration import seconds
 from engine.sweep.configuration import Configuration
 from engine.sweep.results import SweepResults
 from engine.sweep.subject import SweepSubject
-from engine.sweep.tally import Tally
+from engine.sweep.success_count import SuccessCount
 from engine.sweep.trial_result import TrialResult
 from engine.sweep.worker_pool import WorkerOptions, WorkerPool
 
@@ -36,7 +36,7 @@ class Shard:
 class SweepProgress:
     """How far a sweep is."""
 
-    tally: Tally
+    count: SuccessCount
     executed: int
     """Runs executed by this process; the others were saved before."""
     due: int
@@ -62,7 +62,7 @@ class SweepEnd:
     configurations: Sequence[Configuration]
     """All that the design has."""
     results: Sequence[TrialResult]
-    tally: Tally
+    count: SuccessCount
     ended_by: EndedBy
     executed: int = 0
     elapsed_s: float = 0.0
@@ -71,16 +71,16 @@ class SweepEnd:
 def saved_sweep(subject: SweepSubject, configurations: Sequence[Configuration], results: SweepResults) -> SweepEnd:
     """Return what is saved of a sweep, without executing anything."""
     found = _saved(subject, configurations, results)
-    tally = Tally(subject.sweep.document, len(configurations))
+    count = SuccessCount(subject.sweep.document, len(configurations))
     for number in sorted(found):
-        tally.add(found[number])
+        count.add(found[number])
     complete = len(found) == len(configurations)
     return SweepEnd(
         subject=subject,
         configurations=configurations,
         results=[found[number] for number in sorted(found)],
-        tally=tally,
-        ended_by="runs" if complete else "decided" if tally.is_decided else "interrupted",
+        count=count,
+        ended_by="runs" if complete else "decided" if count.is_decided else "interrupted",
     )
 
 
@@ -116,9 +116,9 @@ def execute_sweep(
         for number, result in _saved(subject, configurations, results).items()
         if not (again and result.broken)
     }
-    tally = Tally(document, len(configurations))
+    count = SuccessCount(document, len(configurations))
     for number in sorted(found):
-        tally.add(found[number])
+        count.add(found[number])
     due = [each for each in configurations if each.number not in found and part.has(each)]
     began_s = time.monotonic()
     deadline_s = began_s + seconds(document.time) if document.time is not None else None
@@ -129,7 +129,7 @@ def execute_sweep(
         """Yield what is due until nothing more is needed; what has begun then still ends."""
         nonlocal ended_by
         for configuration in due:
-            if part.count == 1 and tally.is_decided:
+            if part.count == 1 and count.is_decided:
                 ended_by = "decided"
                 return
             if deadline_s is not None and time.monotonic() >= deadline_s:
@@ -142,11 +142,11 @@ def execute_sweep(
             for result in pool.results(remaining()):
                 results.save(result.configuration.key(subject.hash), subject.hash, result, replace=again)
                 found[result.configuration.number] = result
-                tally.add(result)
+                count.add(result)
                 executed += 1
                 show(
                     SweepProgress(
-                        tally=tally,
+                        count=count,
                         executed=executed,
                         due=len(due) - executed,
                         elapsed_s=time.monotonic() - began_s,
@@ -158,7 +158,7 @@ def execute_sweep(
         subject=subject,
         configurations=configurations,
         results=[found[number] for number in sorted(found)],
-        tally=tally,
+        count=count,
         ended_by=ended_by,
         executed=executed,
         elapsed_s=time.monotonic() - began_s,

@@ -12,7 +12,7 @@ from engine.sweep.trial_result import TrialResult
 Verdict = Literal["passed", "failed", "undecided"]
 
 
-class Tally:
+class SuccessCount:
     """The results of one sweep, counted in the order of its configurations.
 
     Short runs arrive first, and short runs may succeed more often: an interval of the results that happen to be there

@@ -66,7 +66,7 @@ def test_a_run_ends_alike_in_a_worker_and_in_this_process(project: LuckProject, 
     end = _execute(sweep, tmp_path / "r.db")
     trials = Trials(SweepSubject.load(sweep))
     assert _table(end.results) == _table([trials.run(each) for each in configurations(sweep)])
-    assert (end.ended_by, end.executed, end.tally.done) == ("runs", 6, 6)
+    assert (end.ended_by, end.executed, end.count.done) == ("runs", 6, 6)
     assert {each.success for each in end.results} == {True, False}
     assert all(each.success == (float(str(each.configuration.values["parameters.luck"])) < 0.5) for each in end.results)
     assert all(each.cpu_s > 0.0 and each.memory_bytes > 0 for each in end.results)
@@ -108,7 +108,7 @@ def test_a_decided_sweep_ends_early(project: LuckProject, tmp_path: Path) -> Non
     sweep = project.sweep(runs=500, parameters={"rate": 0.0}, require="success >= 0.5")
     # One process: of two, the second may execute many runs before the first one has ended its first.
     end = _execute(sweep, tmp_path / "r.db", options=ONE)
-    assert (end.ended_by, end.tally.verdict) == ("decided", "failed")
+    assert (end.ended_by, end.count.verdict) == ("decided", "failed")
     assert end.executed < 20
 
 
