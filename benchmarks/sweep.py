@@ -91,15 +91,15 @@ def truth(sweeps: int) -> None:
     print(f"| rate | wrong in {sweeps} sweeps of {LOOKS} looks | exact interval | runs of a gate at {REQUIRED:.0%} |")
     print("|--:|--:|--:|---|")
     for rate in RATES:
-        wrong = sum(_misses(rate, f"{rate} {sweep}", rate_interval) for sweep in range(sweeps))
-        naive = sum(_misses(rate, f"{rate} {sweep}", exact_interval) for sweep in range(sweeps))
+        wrong = sum(_excludes(rate, f"{rate} {sweep}", rate_interval) for sweep in range(sweeps))
+        naive = sum(_excludes(rate, f"{rate} {sweep}", exact_interval) for sweep in range(sweeps))
         lengths = sorted(_gate(rate, f"gate {rate} {sweep}") for sweep in range(sweeps // 5))
         middle = lengths[len(lengths) // 2]
         shown = f"{middle} (median)" if middle < MOST else f"undecided after {MOST}"
         print(f"| {rate} | {wrong / sweeps:.1%} | {naive / sweeps:.1%} | {shown} |")
 
 
-def _misses(rate: float, seed: str, interval: Callable[[int, int], Interval]) -> bool:
+def _excludes(rate: float, seed: str, interval: Callable[[int, int], Interval]) -> bool:
     source, successes = random.Random(seed), 0
     for runs in range(1, LOOKS + 1):
         successes += source.random() < rate

@@ -55,7 +55,7 @@ def test_a_result_is_counted_once_unless_it_is_replaced(tmp_path: Path) -> None:
     assert [each.outcome for each in _read(file)] == ["missed"]
 
 
-def test_versions_are_told_apart(tmp_path: Path) -> None:
+def test_versions_are_kept_apart(tmp_path: Path) -> None:
     file = _file(tmp_path / "r.db", _result(0))
     _file(file, _result(0, outcome="missed"), subject="b")
     assert [each.outcome for each in _read(file, "a")] == ["done"]

@@ -47,19 +47,19 @@ def test_more_confidence_needs_a_wider_interval(successes: int, failures: int, c
 
 
 @pytest.mark.parametrize("rate", [0.5, 0.9, 0.97, 0.99])
-def test_looking_after_every_run_misses_the_rate_in_few_sweeps(rate: float) -> None:
+def test_intervals_after_every_run_exclude_the_rate_in_few_sweeps(rate: float) -> None:
     """Of 100 sweeps of 300 runs; with error 5 % the probability of more than 14 is below 0.0002."""
-    misses = sum(_misses(rate, random.Random(f"{rate} {sweep}")) for sweep in range(100))
-    assert misses <= 14
+    excluded = sum(_excludes(rate, random.Random(f"{rate} {sweep}")) for sweep in range(100))
+    assert excluded <= 14
 
 
-def test_the_exact_interval_looked_at_after_every_run_misses_far_more_often() -> None:
+def test_the_exact_interval_after_every_run_excludes_it_far_more_often() -> None:
     """Why it is only for a fixed number of runs."""
-    misses = sum(_misses(0.9, random.Random(f"exact {sweep}"), exact=True) for sweep in range(40))
-    assert misses >= 8
+    excluded = sum(_excludes(0.9, random.Random(f"exact {sweep}"), exact=True) for sweep in range(40))
+    assert excluded >= 8
 
 
-def _misses(rate: float, source: random.Random, *, exact: bool = False) -> bool:
+def _excludes(rate: float, source: random.Random, *, exact: bool = False) -> bool:
     successes = 0
     for runs in range(1, 301):
         successes += source.random() < rate
