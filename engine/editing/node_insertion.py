@@ -13,8 +13,9 @@ from engine.editing.draft import EditRefused
 from engine.editing.edit import AddNode, CanvasPoint, DuplicateNodes, PasteNodes, SetPositions, TransitionRef
 from engine.editing.edit_session import NAME, EditSession, ReferenceUpdate, insert_key, named_children
 from engine.editing.field_edits import plain_value, set_positions
+from engine.editing.indentation import indent_text
 from engine.editing.outline import NodeRef, Plain, kind_of, own_name, transition_entries, tree_names
-from engine.editing.text_rewriter import TextRewriter, WritePosition, indent_text
+from engine.editing.text_rewriter import TextRewriter, WritePosition
 from engine.editing.transition_edits import connect, unconnected_outcomes, write_initial
 from engine.editing.yaml_style import key_text
 from engine.errors import DocumentError

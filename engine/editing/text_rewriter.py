@@ -15,6 +15,7 @@ from typing import cast
 
 from engine.document.nodes.node_kind import KINDS
 from engine.document.nodes.node_spec import TREE_KINDS
+from engine.editing.indentation import indent_after, indent_text
 from engine.editing.node_matching import EntryMatch, is_same_value, match_entries
 from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
 from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text
@@ -153,7 +154,7 @@ class TextRewriter:
         text, members = source.origin.text, source.members
         gaps = [text[one.stop : two.at] for one, two in itertools.pairwise(members)]
         gap = self._usual_gap(source, gaps)
-        indent = _indent_after(gap, source.origin.indent_at(source.start))
+        indent = indent_after(gap, source.origin.indent_at(source.start))
         made = text[source.start : members[0].at]
         places = {id(member): place for place, member in enumerate(members)}
         before = -2
@@ -272,7 +273,7 @@ class TextRewriter:
         stays = isinstance(old, Collection) and was_block and isinstance(value, type(old.data))
         column = old.column if isinstance(old, Collection) and stays else home.column + _STEP
         beside = old.flow if isinstance(old, Collection) and _had_node(old) else None
-        place = WritePosition(column, _indent_after(gap, home.column), flow=False, beside=beside)
+        place = WritePosition(column, indent_after(gap, home.column), flow=False, beside=beside)
         written = self.value(cast("object", value), place, PreviousValue(home.origin, old))
         mark = "" if key is None else ":"
         if written.block and not stays:
@@ -362,14 +363,6 @@ class TextRewriter:
         return f"{around[0]}\n{' ' * indent}{between.join(shown)}\n{' ' * place.indent}{around[1]}"
 
 
-def indent_text(text: str, by: int, *, first: bool = False) -> str:
-    """Return text indented by a number of columns; the first line only if `first`."""
-    if by == 0:
-        return text
-    lines = text.split("\n")
-    return "\n".join(_moved(line, by) if number or first else line for number, line in enumerate(lines))
-
-
 def has_node(value: object) -> bool:
     """Return whether a value is, or contains, a node of a behavior: nodes are written in block style."""
     if isinstance(value, list):
@@ -398,15 +391,6 @@ def _is_kind(key: str, value: object) -> bool:
     return isinstance(value, str) if key in ("state", "behavior", "behaviour") else isinstance(value, dict | list)
 
 
-def _moved(line: str, by: int) -> str:
-    if not line.strip():
-        return line
-    if by > 0:
-        return " " * by + line
-    bare = line.lstrip(" ")
-    return " " * max(0, len(line) - len(bare) + by) + bare
-
-
 def _inside(value: Plain) -> Iterable[object]:
     return value.values() if isinstance(value, dict) else value
 
@@ -417,11 +401,6 @@ def _is_unchanged(was: object, value: object) -> bool:
 
 def _slice(source: Collection) -> str:
     return source.origin.text[source.start : source.end]
-
-
-def _indent_after(gap: str, otherwise: int) -> int:
-    last = gap.rpartition("\n")
-    return len(last[2]) - len(last[2].lstrip(" ")) if last[1] else otherwise
 
 
 def _beside(source: Collection) -> bool | None:

@@ -37,6 +37,8 @@ class ContactMotions:
         runner.require_ready(handle)
         start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
         direction = self._direction(goal, start, handle)
+        if not math.isfinite(goal.distance_m):
+            raise GoalRejected(f"{goal.distance_m} m is not a distance", where=handle.address, hint="`distance_m: 0.1`")
         end = RigidTransform(xyz=start.xyz + goal.distance_m * direction, xyzw=start.xyzw)
         duration_s = PEAK_SPEED * goal.distance_m / goal.speed_m_s
         trajectory = await runner.planned(

@@ -20,11 +20,13 @@ from engine.document.cell import load_cell
 from engine.document.entries_document import load_entries
 from engine.document.faults import parse_faults
 from engine.document.substitutes import parse_substitutes
+from engine.document.sweep import parse_sweep
 from engine.messages.demonstrations import Trajectory
 from engine.registry import load_states
 from engine.runtime.control import load_breakpoints
 from engine.runtime.control.breakpoint import breakpoints_file
 from engine.skills.entries import WriteEntry
+from engine.sweep import SweepSubject, configurations
 from engine.teaching import load_triggers
 from engine.testing.behavior_run import run_behavior
 from robots.scene.scene_builder import build_scene
@@ -37,6 +39,7 @@ BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbr
 SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
 TAGS = "\ntags:"
+FACTORS = "\nfactors:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
@@ -147,9 +150,18 @@ def test_entries_are_taken_with_their_tags(tmp_path: Path, text: str) -> None:
     assert any(record.tags for record in load_entries(file).records())
 
 
+@shown(holding=FACTORS)
+def test_sweeps_are_taken_and_vary_what_there_is(tmp_path: Path, text: str) -> None:
+    """The behavior and its cell are those of the repository; a document of faults is written beside."""
+    (tmp_path / "slip.yaml").write_text("flexcell: 1\nfaults: [{error: it slips}]\n", encoding="utf-8")
+    sweep = parse_sweep(text.replace("../reconcycle", str(ROOT / "behaviors" / "reconcycle")), file=tmp_path / "s.yaml")
+    assert len(configurations(sweep)) == sweep.document.runs
+    assert set(SweepSubject.load(sweep).nominal) == set(sweep.document.factors)
+
+
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS)
     begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

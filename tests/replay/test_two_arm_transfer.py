@@ -21,7 +21,7 @@ PROJECT = FOLDER.parents[1]
 RECORDING = FOLDER / "two_arm_transfer.mcap"
 BEHAVIOR = PROJECT / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 AGAIN = "make it again: python tests/replay/make_recordings.py"
-SIMULATION = ("mujoco", "numpy", "scipy", "pinocchio", "ruckig", "robots")
+SIMULATION = ("mujoco", "numpy", "scipy", "pinocchio", "ruckig", "robots.sim", "robots.model", "robots.arm")
 REPLAY = f"""
 import json, sys
 from engine.cli.main import main

@@ -122,6 +122,7 @@ class RunReducer(RunStatePart):
 
     def run_resumed(self, event: RunResumed) -> None:
         """Return to the event after which the run was resumed."""
+        self._run_changed = True
         before = self.state
         if event.after_seq >= before.seq:
             return

@@ -16,6 +16,7 @@ from engine.event import (
     NodeEntered,
     NodeExited,
     RunEnded,
+    RunResumed,
     RunStarted,
     RunSteppedBack,
     StatusChanged,
@@ -55,6 +56,14 @@ def test_two_branches_are_active_at_the_same_time() -> None:
         "root/left",
         "root/right",
     }
+
+
+def test_a_run_that_is_resumed_is_announced_as_one_that_starts_is() -> None:
+    """Otherwise no page hears of it before it waits or ends."""
+    live = folded(entered(1, "root"))
+    change = live.apply(RunResumed(seq=2, time_s=0.0, epoch=2, after_seq=1, rerun=()))
+    assert change is not None
+    assert change.run_changed
 
 
 def test_a_visit_shorter_than_a_frame_is_counted() -> None:

@@ -18,8 +18,9 @@ async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> No
     """Where the cell lets the engine be silent for so long: this test never lets the loop turn."""
     host = ProcessHost(one_arm())
     async with SimWorld(one_arm(), host=host) as world:
-        motion = world.arm("left").follow(smooth(HOME, HOME + 0.05, 0.3), tolerance=Tolerance())
+        # Before the motion: the world may have gone on until this process looks again.
         began_s = world.measured().time_s
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.05, 0.3), tolerance=Tolerance())
         # Where it ends is looked at, and not that it moves: this process may be kept from looking for longer than that.
         while not np.allclose(world.measured().arm("left").desired_rad, HOME + 0.05, rtol=0.0, atol=1e-9):
             os.sched_yield()
