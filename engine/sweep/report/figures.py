@@ -75,6 +75,7 @@ def scatter(results: Sequence[TrialResult], first: str, second: str) -> str:
         f'<text x="{_LEFT}" y="{_HEIGHT - 18}">{value_text(least_x)}</text>'
         f'<text x="{_WIDTH - _RIGHT}" y="{_HEIGHT - 18}" text-anchor="end">{value_text(most_x)}</text>'
         f'<text x="{_WIDTH / 2}" y="{_HEIGHT - 4}" text-anchor="middle">{escape(first)}</text>'
+        f'<text x="{_LEFT + 6}" y="{_TOP + 14}">{escape(second)}</text>'
         f'<text x="{_LEFT - 6}" y="{_HEIGHT - _BOTTOM}" text-anchor="end">{value_text(least_y)}</text>'
         f'<text x="{_LEFT - 6}" y="{_TOP + 10}" text-anchor="end">{value_text(most_y)}</text>'
     )

@@ -94,7 +94,7 @@ def _failing(summary: SweepSummary) -> Iterator[str]:
                 each.configuration.seed,
                 *(value_text(each.configuration.values[address]) for address in addresses),
                 each.label,
-                each.cause,
+                each.reason,
             )
             for each in failing
         ],
