@@ -55,7 +55,7 @@ class SweepSubject:
     versions: Mapping[str, str]
     """The hashes and versions of all that decides a run beside its configuration, by what they are of."""
 
-    @property
+    @cached_property
     def hash(self) -> str:
         """The hash of `versions`."""
         return sha256(msgspec.json.encode(dict(self.versions), order="deterministic")).hexdigest()

@@ -65,7 +65,6 @@ class SweepEnd:
     count: SuccessCount
     ended_by: EndedBy
     executed: int = 0
-    elapsed_s: float = 0.0
 
 
 def saved_sweep(subject: SweepSubject, configurations: Sequence[Configuration], results: SweepResults) -> SweepEnd:
@@ -161,7 +160,6 @@ def execute_sweep(
         count=count,
         ended_by=ended_by,
         executed=executed,
-        elapsed_s=time.monotonic() - began_s,
     )
 
 

@@ -87,11 +87,6 @@ class WorkerPool:
             worker.end()
         self._workers.clear()
 
-    @property
-    def process_ids(self) -> tuple[int, ...]:
-        """The ids of the running processes."""
-        return tuple(worker.process.pid for worker in self._workers)
-
     def results(self, due: Iterator[Configuration]) -> Iterator[TrialResult]:
         """Yield the result of each configuration as it ends; the next ones begin meanwhile.
 
