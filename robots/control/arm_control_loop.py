@@ -59,7 +59,8 @@ class ArmControlLoop:
         self.tool_xyz_m: Array = np.array(self.settings.tool_xyz_m)
         """Tool centre point in the frame of the tool link, (3,), from the settings."""
         self.state = ArmState(kinematics)
-        self.motion = MotionExecutor(joints=model.arm_joints, touching=touching)
+        self._touching = touching
+        self.motion = MotionExecutor(joints=model.arm_joints, touching=self._felt)
         self._kinematics = kinematics
         self._inertia = inertia_kg_m2
         self._limit_nm = np.array(limits.effort_nm)
@@ -86,6 +87,12 @@ class ArmControlLoop:
     def reflex(self) -> bool:
         """True from a reflex stop until `recover`."""
         return bool(self._reflex.reason)
+
+    def _felt(self) -> str:
+        """Describe what the arm touches, and what it carries that its settings do not know."""
+        unknown_kg = self._load.unknown_kg(self.state.wrench[:3])
+        weight = f"the tool is pulled down as by {unknown_kg:.1f} kg more than the load that is set (motion.SetLoad)"
+        return "; ".join(filter(None, (self._touching(), weight if unknown_kg else "")))
 
     @property
     def has_unreported_end(self) -> bool:

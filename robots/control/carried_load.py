@@ -11,6 +11,10 @@ from robots.model.transform import RigidTransform, cross
 from robots.port import Array
 
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+# Less than this may be friction or noise.
+_NOTICED_KG = 0.2
+# Share of a pull that may be sideways for it to count as a weight.
+_SIDEWAYS = 0.2
 
 
 class CarriedLoad:
@@ -56,6 +60,21 @@ class CarriedLoad:
         before = velocity if self._velocity is None else self._velocity
         self._force = self._mass_kg * (self._gravity - (velocity - before) / step_s)
         self._velocity = velocity
+
+    def unknown_kg(self, force_n: Array) -> float:
+        """Return the mass whose weight a force on the tool is, beyond the configured load; 0 for any other force.
+
+        Args:
+            force_n: External force on the tool without that of the load, world axes, (3,).
+        """
+        gravity_m_s2 = float(np.linalg.norm(self._gravity))
+        if gravity_m_s2 == 0.0:
+            return 0.0
+        down = self._gravity / gravity_m_s2
+        weight_n = float(force_n @ down)
+        if weight_n < _NOTICED_KG * gravity_m_s2 or np.linalg.norm(force_n - weight_n * down) > _SIDEWAYS * weight_n:
+            return 0.0
+        return weight_n / gravity_m_s2
 
     def bearing_nm(self, acceleration: Array) -> Array:
         """Return the joint torques that support the load and accelerate it along the set point, (n,)."""

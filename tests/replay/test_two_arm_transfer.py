@@ -50,12 +50,12 @@ def test_the_transfer_runs_again_within_two_seconds_and_without_its_simulation()
 def test_one_changed_transition_is_caught_with_its_path_and_both_sides(tmp_path: Path) -> None:
     changed = tmp_path / "changed.yaml"
     text = BEHAVIOR.read_text(encoding="utf-8")
-    old, new = "transitions: {held: lift, missed: failed", "transitions: {held: home, missed: failed"
+    old, new = "transitions: {held: load, missed: failed", "transitions: {held: home, missed: failed"
     changed.write_text(text.replace(old, new, 1), encoding="utf-8")
     said = flexcell("replay", RECORDING, "--behavior", changed, cwd=PROJECT)
     assert said.code == 4
     first = said.err.splitlines()[0]
-    assert "root/transfer/left: recorded `grasp —held→ lift`" in first
+    assert "root/transfer/left: recorded `grasp —held→ load`" in first
     assert "replayed `grasp —held→ home`" in first
 
 

@@ -156,6 +156,18 @@ def test_a_part_too_heavy_to_lift_fails_by_name_and_not_by_time(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
+    ("parameters", "expected"), [({"north_part_kg": 1.9}, "finished"), nightly({}, "failed")], ids=["known", "unknown"]
+)
+def test_a_heavy_part_is_transferred_once_its_mass_is_known(
+    tmp_path: Path, parameters: dict[str, object], expected: str
+) -> None:
+    """Shrunk from a sweep: 1.9 kg that the arm does not compensate make it sag by more than its tolerance."""
+    cell = changed_cell(tmp_path, lambda text: text.replace("mass_kg: 0.12", "mass_kg: 1.9", 1))
+    result = Transfer(cell, None, parameters=parameters).run(tmp_path / "store.db")
+    assert result.outcome == expected
+
+
+@pytest.mark.parametrize(
     "parameters",
     [
         {"speed": 1.0, "line_speed_m_s": 0.4},

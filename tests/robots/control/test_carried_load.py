@@ -1,4 +1,4 @@
-"""What the arm is told that it carries no longer pulls it down, nor counts as a push."""
+"""A load that is set no longer pulls the arm down, nor counts as a push; one that is not set is named."""
 
 from __future__ import annotations
 
@@ -76,3 +76,18 @@ async def test_a_gripped_part_is_carried_as_if_it_weighed_nothing_once_its_mass_
         known_off, known_felt = await carry(world, ControlSettings(load_kg=2.0))
     assert (off > 0.005, felt > 18.0) == (True, True)
     assert (known_off < 0.001, known_felt < 3.0) == (True, True)
+
+
+@pytest.mark.virtual
+async def test_a_motion_that_fails_under_a_load_that_is_not_set_names_its_mass() -> None:
+    async with opened(HEAVY) as world:
+        arm = world.arm("left")
+        await grasp(world, force_n=100.0)
+        motion = arm.follow(
+            smooth(arm.sample().position_rad, LIFTED, 1.0), tolerance=Tolerance(goal_rad=0.002, settle_s=0.3)
+        )
+        report = await motion.report()
+    assert report.end is MotionEnd.FAILED
+    assert report.reason.endswith(
+        "the tool is pulled down as by 2.0 kg more than the load that is set (motion.SetLoad)"
+    )
