@@ -140,13 +140,17 @@ class PartSpec(StrictModel, frozen=True, kw_only=True):
     """A free body with contact physics; `magnetic` if it is of iron or steel.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
-    `at` is its centre.
+    `at` is its centre. `friction` is that of its surface with any other body, where it is not that of rubber pads on
+    dry steel or plastic: oil, wax, ice.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
     size_m: tuple[Length, ...]
     mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")]
     magnetic: bool = False
+    friction: (
+        Annotated[float, Meta(gt=0.0, le=2.0, description="Coefficient of friction with any other body")] | None
+    ) = None
     at: Placement = Placement()
     jitter: Jitter = Jitter()
     color: Color = "#d0d0d0"

@@ -91,6 +91,7 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
                 size_m=part.size_m,
                 mass_kg=part.mass_kg,
                 magnetic=part.magnetic,
+                friction=part.friction,
                 pose=pose,
                 rgba=_rgba(part.color),
             )

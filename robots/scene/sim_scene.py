@@ -71,7 +71,10 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A free body with uniform density; `magnetic` if it is of iron or steel."""
+    """A free body with uniform density; `magnetic` if it is of iron or steel.
+
+    Without `friction` the contact has the larger coefficient of the two bodies, or that of a pad.
+    """
 
     name: str
     shape: str
@@ -79,6 +82,7 @@ class PartBody(msgspec.Struct, frozen=True, kw_only=True):
     mass_kg: float
     pose: Pose
     magnetic: bool = False
+    friction: float | None = None
     rgba: Rgba = GREY
 
 

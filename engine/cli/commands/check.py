@@ -37,13 +37,25 @@ from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import load_states
 
 TargetLevel = Literal["warning", "error", "off"]
-_ENTRIES = tuple((key, "entries") for key in SECTIONS.values())
+_KINDS = (
+    ("root", "behavior"),
+    ("outcomes", "behavior"),
+    # A sweep may name the cell and the faults of its runs.
+    ("behavior", "sweep"),
+    ("cell", "cell"),
+    *((key, "entries") for key in SECTIONS.values()),
+    ("faults", "faults"),
+    ("substitutes", "substitutes"),
+)
 
 
 def check(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Behavior, cell, entries or project documents, or FILE.py:NAME.", show_default=False),
+        typer.Argument(
+            help="Behavior, cell, entries, sweep, faults, substitutes or project documents, or FILE.py:NAME.",
+            show_default=False,
+        ),
     ] = None,
     format_: Annotated[
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="Output format of the findings.")
@@ -152,12 +164,16 @@ def findings_of(
         if file.name == PROJECT_FILE:
             load_project(file)
             return ()
-        kind = document_kind(file)
-        if kind == "behavior":
-            return _of_behavior(file, catalogue, store, cell, targets)
-        if kind == "cell":
-            return check_cell(load_cell(file))
-        return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
+        match document_kind(file):
+            case "behavior":
+                return _of_behavior(file, catalogue, store, cell, targets)
+            case "cell":
+                return check_cell(load_cell(file))
+            case "entries":
+                return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
+            case kind:
+                _load_of_runs(kind, file)
+                return ()
     except DocumentError as error:
         return tuple(invalid_document_finding(each, file) for each in (error, *error.others))
 
@@ -183,6 +199,23 @@ def _load_python(file: Path) -> Behavior:
     return load_python_behavior(str(file))
 
 
+def _load_of_runs(kind: str, file: Path) -> None:
+    """Load a document that says how runs are executed; raises DocumentError at its first mistake."""
+    if kind == "sweep":
+        from engine.document.sweep import load_sweep
+        from engine.sweep import SweepSubject
+
+        SweepSubject.load(load_sweep(file))
+    elif kind == "faults":
+        from engine.document.faults import load_faults
+
+        load_faults(file)
+    else:
+        from engine.document.substitutes import load_substitutes
+
+        load_substitutes(file)
+
+
 def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
     from engine.cli.commands.check_store import stored_names
 
@@ -200,22 +233,22 @@ def _target_findings(
 
 
 def document_kind(file: Path) -> str:
-    """Return the kind of a document, by its keys: behavior, cell or entries.
+    """Return the kind of a document, by its keys: behavior, cell, entries, sweep, faults or substitutes.
 
     Raises:
         DocumentError: the document cannot be read, or is of no known kind.
     """
     recovered = load_recovering(file)
     data = recovered.source.data if recovered.source is not None else None
-    for key, kind in (("root", "behavior"), ("outcomes", "behavior"), ("cell", "cell"), *_ENTRIES):
+    for key, kind in _KINDS:
         if isinstance(data, dict) and key in data:
             return kind
     if recovered.mistakes:
         raise recovered.mistakes[0]
     raise DocumentError(
-        "this is not a behavior, cell or entries document",
+        "this is not a behavior, cell, entries, sweep, faults or substitutes document",
         where=Position(file=str(file), line=1, column=1),
-        hint="a behavior has `root:`, a cell has `cell:`",
+        hint="a behavior has `root:`, a cell has `cell:`, a sweep has `behavior:`",
     )
 
 

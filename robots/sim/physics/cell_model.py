@@ -16,7 +16,7 @@ from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
-from robots.sim.physics.tool_body import ToolIndices, tool_body
+from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF, ToolIndices, tool_body
 
 Indices = NDArray[np.intp]
 
@@ -25,8 +25,8 @@ _SPHERE = mujoco.mjtGeom.mjGEOM_SPHERE
 # The skin of compliant fixtures is soft at first touch: with MuJoCo's default of 0.9, which spreads a force over the
 # corners of flat pads, sliding objects repeatedly lose contact (`benchmarks/contact_sliding.py`).
 _SKIN_SOLIMP = (0.5, 0.95, 0.001, 0.5, 2.0)
-# Its contact parameters take priority; pads have priority 1.
-_SKIN_PRIORITY = 2
+# Whose contact parameters count; pads have priority 1.
+_SLIPPERY_PRIORITY, _SKIN_PRIORITY = 2, 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +159,11 @@ def _add_part(spec: Any, part: PartBody) -> None:
     # Rolling friction (condim 6) keeps round parts where they are placed.
     geom = _add_shape(body, part.name, part.shape, part.size_m, condim=3 if part.shape == "box" else 6)
     geom.mass = part.mass_kg
+    if part.friction is not None:
+        # What counts instead of the parameters of a pad is as stiff, and resists torsion, too.
+        geom.priority, geom.condim = _SLIPPERY_PRIORITY, max(int(geom.condim), 4)
+        geom.solref, geom.solimp = list(PAD_SOLREF), list(PAD_SOLIMP)
+        geom.friction[0] = part.friction
 
 
 def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, condim: int) -> Any:

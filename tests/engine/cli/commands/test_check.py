@@ -127,3 +127,20 @@ def test_cells_and_entries_are_checked_as_documents_of_their_own(tmp_path: Path)
     ]
     said = flexcell("check", "b.yaml", "--cell", "none.yaml", cwd=tmp_path)
     assert (said.code, "none.yaml:1:1" in said.err, "Traceback" in said.err) == (2, True, False)
+
+
+def test_documents_of_runs_are_checked_with_what_they_name(tmp_path: Path) -> None:
+    (tmp_path / "good.yaml").write_text(GOOD, encoding="utf-8")
+    documents = {
+        "sweep.yaml": "behavior: good.yaml\nfactors: {parameters.sped: {values: [1]}}\n",
+        "right.yaml": "behavior: good.yaml\nfaults: faults.yaml\n",
+        "faults.yaml": 'faults:\n  - {at: "**", hang: {}}\n',
+        "substitutes.yaml": "substitutes:\n  - {at: root/wait}\n",
+    }
+    for name, text in documents.items():
+        (tmp_path / name).write_text(f"flexcell: 1\n{text}", encoding="utf-8")
+    said = flexcell("check", *documents, cwd=tmp_path)
+    first, second = said.out.splitlines()
+    assert (said.code, said.err.startswith("4 checked: 2 errors")) == (2, True)
+    assert first.startswith("sweep.yaml:3:11: error: the behavior has no parameter `sped`")
+    assert second.startswith("substitutes.yaml:3:5: error: ")
