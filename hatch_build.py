@@ -41,8 +41,8 @@ def is_stale() -> bool:
     """Say whether the built page does not fit its sources."""
     if os.environ.get("FLEXCELL_SKIP_PAGE"):
         return False
-    wanted = source_digest()
-    return bool(wanted) and (not DIGEST.exists() or DIGEST.read_text(encoding="ascii") != wanted)
+    digest = source_digest()
+    return bool(digest) and (not DIGEST.exists() or DIGEST.read_text(encoding="ascii") != digest)
 
 
 def npm(*arguments: str) -> None:
@@ -90,9 +90,9 @@ def install() -> None:
 def build() -> None:
     """Build the page into `static`, and note what it was built from."""
     install()
-    wanted = source_digest()
+    digest = source_digest()
     npm("run", "build")
-    DIGEST.write_text(wanted, encoding="ascii")
+    DIGEST.write_text(digest, encoding="ascii")
 
 
 class PageHook(BuildHookInterface[Any]):

@@ -47,10 +47,10 @@ class TrialFailure(Exception):
 
 
 def _engine_killed(running: Server, run: str, _chance: random.Random) -> LossResult:
-    began_s = time.monotonic()
+    started_s = time.monotonic()
     world = running.children("sim.process_main")[0]
     running.signal(signal.SIGKILL)
-    rest_s = running.resting_since_s() - began_s
+    rest_s = running.resting_since_s() - started_s
     _until(lambda: not _alive(world), _END_S, "the world's process lives on")
     done = subprocess.run(
         [FLEXCELL, "resume", run, "--journal", "state", "--timeout", "3", "-q"],
@@ -68,9 +68,9 @@ def _engine_killed(running: Server, run: str, _chance: random.Random) -> LossRes
 
 
 def _engine_suspended(running: Server, run: str, _chance: random.Random) -> LossResult:
-    began_s = time.monotonic()
+    started_s = time.monotonic()
     running.signal(signal.SIGSTOP)
-    rest_s = running.resting_since_s() - began_s
+    rest_s = running.resting_since_s() - started_s
     time.sleep(_SUSPENDED_S)
     running.signal(signal.SIGCONT)
     cause = _cause(running, run, "silent")
@@ -86,9 +86,9 @@ def _world_lost(running: Server, run: str, _chance: random.Random, *, by: signal
 
 
 def _relay_killed(running: Server, run: str, _chance: random.Random) -> LossResult:
-    began_s = time.monotonic()
+    started_s = time.monotonic()
     os.kill(running.children("stop.process")[0], signal.SIGKILL)
-    rest_s = running.resting_since_s() - began_s
+    rest_s = running.resting_since_s() - started_s
     cause = _cause(running, run, "stop relay")
     _until(lambda: not running.children("sim.process_main"), _END_S, "the world's process lives on")
     running.http.post("/api/v1/cell/connect", json={}).raise_for_status()
@@ -102,18 +102,18 @@ def _worker_killed(running: Server, run: str, _chance: random.Random, *, worker:
         raise TrialFailure("there is no such process")
     os.kill(pids[0], signal.SIGKILL)
     time.sleep(_SUSPENDED_S)
-    told = running.run(run)
-    if told["status"] not in ("running", "finished", "errored") or (told["status"] != "running" and not told["cause"]):
-        raise TrialFailure(f"the run is {told['status']} without a cause")
-    after = "went on" if told["status"] == "running" else "ended"
-    cause = str(told["cause"]) or "the run goes on"
-    if told["status"] == "running":
+    view = running.run(run)
+    if view["status"] not in ("running", "finished", "errored") or (view["status"] != "running" and not view["cause"]):
+        raise TrialFailure(f"the run is {view['status']} without a cause")
+    after = "went on" if view["status"] == "running" else "ended"
+    cause = str(view["cause"]) or "the run goes on"
+    if view["status"] == "running":
         _stop(running)
     return LossResult(cause=cause, after=f"{after}; {_runs_again(running)}")
 
 
 def _disk_full(running: Server, run: str, _chance: random.Random) -> LossResult:
-    began_s = time.monotonic()
+    started_s = time.monotonic()
     filler = running.state / "filler"
     with filler.open("wb", buffering=0) as file:
         try:
@@ -123,7 +123,7 @@ def _disk_full(running: Server, run: str, _chance: random.Random) -> LossResult:
             if error.errno != errno.ENOSPC:
                 raise
         cause = _cause(running, run, "the journal cannot be written")
-    rest_s = running.resting_since_s() - began_s
+    rest_s = running.resting_since_s() - started_s
     filler.unlink()
     return LossResult(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
@@ -136,9 +136,9 @@ def _clock_jumps(running: Server, run: str, chance: random.Random, *, sign: int)
     _jump(running.folder.parent, 0.0)
     time.sleep(_SUSPENDED_S)
     _until(lambda: not running.heartbeat.at_rest_since_ns, _END_S, "no arm moves after the jumps")
-    told = running.run(run)
-    if told["status"] != "running":
-        raise TrialFailure(f"the run is {told['status']}: {told['cause']}")
+    view = running.run(run)
+    if view["status"] != "running":
+        raise TrialFailure(f"the run is {view['status']}: {view['cause']}")
     _stop(running)
     return LossResult(cause=f"by {by_s:+.0f} s; the run goes on", after=_runs_again(running))
 

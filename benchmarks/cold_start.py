@@ -47,7 +47,7 @@ class Cost:
 
     cpu_s: float
     wall_s: float
-    said: str
+    output: str
 
 
 def commands(behavior: str) -> Mapping[str, Sequence[str]]:
@@ -76,12 +76,12 @@ def cost(arguments: Sequence[str], environment: Mapping[str, str]) -> Cost:
     Raises:
         RuntimeError: it failed.
     """
-    before, began_s = _children_s(), time.perf_counter()
+    before, started_s = _children_s(), time.perf_counter()
     command = [sys.executable, "-P", *arguments]
     ended = subprocess.run(command, cwd=_ROOT, env=environment, capture_output=True, text=True, check=False)
     if ended.returncode != 0:
         raise RuntimeError(f"{arguments} failed:\n{ended.stderr}")
-    return Cost(_children_s() - before, time.perf_counter() - began_s, ended.stdout)
+    return Cost(_children_s() - before, time.perf_counter() - started_s, ended.stdout)
 
 
 def median(costs: Sequence[Cost], of: Callable[[Cost], float]) -> float:
@@ -108,7 +108,7 @@ def main() -> None:
         for _ in range(options.rounds):
             for name, arguments in rows.items():
                 found[name].append(cost(arguments, environment))
-            splits.append(json.loads(cost(split, environment).said.splitlines()[-1]))
+            splits.append(json.loads(cost(split, environment).output.splitlines()[-1]))
     print(f"Medians and least of {options.rounds} fresh processes; {machine()}.\n")
     print(_table(found))
     print(_split_table(splits))

@@ -24,7 +24,7 @@ from robots.sim.physics.physics import mujoco
 
 FORCE_N = 10.0
 FRICTION = 0.3
-SETTLING_S, LOOKING_S = 2.0, 2.0
+SETTLING_S, MEASURING_S = 2.0, 2.0
 STEP_S = 0.001
 _WORLD = """
 <mujoco>
@@ -125,7 +125,7 @@ def slide(tool: Tool, contact: Contact, *, speed_m_s: float) -> Slide:
     data.qfrc_applied[2] = -FORCE_N
     forces: list[float] = []
     wrench = np.zeros(6)
-    for _ in range(math.ceil((SETTLING_S + LOOKING_S) / STEP_S)):
+    for _ in range(math.ceil((SETTLING_S + MEASURING_S) / STEP_S)):
         mujoco.mj_step(model, data)
         force = 0.0
         for number in range(data.ncon):

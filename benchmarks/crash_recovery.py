@@ -23,12 +23,12 @@ from benchmarks.crash_point import CrashPoint, Moment  # noqa: E402
 from benchmarks.crash_subjects import SUBJECTS, Subject  # noqa: E402
 from benchmarks.crash_trial import End, Trial, crash, whole  # noqa: E402
 
-MOMENTS: tuple[Moment, ...] = ("event", "before commit", "after commit")
+POINTS: tuple[Moment, ...] = ("event", "before commit", "after commit")
 
 
 def points(end: End, every: int) -> Iterator[CrashPoint]:
     """Go through every `every`-th crash point; after the last commit a run is over and cannot be resumed."""
-    for moment in MOMENTS:
+    for moment in POINTS:
         last = end.counts[moment] - (moment == "after commit")
         for number in range(1, last + 1, every):
             yield CrashPoint(moment=moment, number=number)

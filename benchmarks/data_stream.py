@@ -93,10 +93,10 @@ def _print_looks(session: Session, topics: int) -> None:
 
 
 def _mean_us(work: Callable[[], object]) -> float:
-    began_s = time.process_time()
+    started_s = time.process_time()
     for _ in range(_REPEATS):
         work()
-    return (time.process_time() - began_s) / _REPEATS * 1e6
+    return (time.process_time() - started_s) / _REPEATS * 1e6
 
 
 async def _print_pages(running: Dashboard, token: str, topics: list[Topic[JointState]], seconds: float) -> None:
@@ -110,9 +110,9 @@ async def _print_pages(running: Dashboard, token: str, topics: list[Topic[JointS
     for what, look in looks.items():
         watching = asyncio.create_task(_watch(running.url, token, dict(look))) if look is not None else None
         await asyncio.sleep(1.0)
-        began_s, before_s = time.perf_counter(), cpu_s(os.getpid())
+        started_s, before_s = time.perf_counter(), cpu_s(os.getpid())
         await asyncio.sleep(seconds)
-        share = (cpu_s(os.getpid()) - before_s) / (time.perf_counter() - began_s)
+        share = (cpu_s(os.getpid()) - before_s) / (time.perf_counter() - started_s)
         print(f"{what:24}  {share:8.1%} CPU (with its reader), {memory_mb(os.getpid()):.0f} MB")
         if watching is not None:
             watching.cancel()

@@ -112,7 +112,7 @@ LOAD = Table(
     columns={"µs CPU per state": lambda r: f"{r.cpu_us:.3g}", **_ONCE},
     ratio=lambda r: r.cpu_us * r.samples[0].units,
 )
-GROWTH = Table(
+SCALING = Table(
     "Growth: transitions in a chain of so many states",
     rows=tuple(
         Row(f"{name}, {states:,} states", function, (states,), (4,))
@@ -143,7 +143,7 @@ IMPORT = Table(
     columns=_ONCE,
     ratio=_cpu_us,
 )
-TABLES = (CHAIN, BRANCHES, TICKS, REACTION, IDLE, LOAD, GROWTH, IMPORT)
+TABLES = (CHAIN, BRANCHES, TICKS, REACTION, IDLE, LOAD, SCALING, IMPORT)
 
 ELSEWHERE = """\
 ### Measured elsewhere, not in this run

@@ -85,7 +85,7 @@ class Wiping:
         subject: Subject,
         *,
         slope: float,
-        way_m: float = 0.2,
+        length_m: float = 0.2,
         step_s: float = 0.001,
         settings: ControlSettings | None = None,
         first_touch: float | None = None,
@@ -94,7 +94,7 @@ class Wiping:
             name="arm", model=subject.model, base=Pose(xyz=(0.0, 0.0, 0.0)), gripper=subject.gripper
         )
         self._along = np.array(subject.along)
-        self._way_m = way_m
+        self._length_m = length_m
         model = placement.robot()
         self._kinematics = ArmKinematics(model, base=RigidTransform.from_pose(placement.base))
         start = self._kinematics.tool_pose(np.array(subject.start_rad))
@@ -115,7 +115,9 @@ class Wiping:
         thick = 0.01
         turn = RigidTransform(xyz=np.zeros(3), xyzw=quaternion_of(math.atan(slope) * np.cross(self._along, UP)))
         middle = (
-            start.xyz + self._way_m / 2.0 * self._along - np.array([0.0, 0.0, CLEARANCE_M - slope * self._way_m / 2.0])
+            start.xyz
+            + self._length_m / 2.0 * self._along
+            - np.array([0.0, 0.0, CLEARANCE_M - slope * self._length_m / 2.0])
         )
         xyz = middle - turn.rotation @ np.array([0.0, 0.0, thick / 2.0])
         pose = RigidTransform(xyz=xyz, xyzw=turn.xyzw).to_pose("world")
@@ -135,11 +137,11 @@ class Wiping:
         here = self._kinematics.tool_pose(joints)
         deep = 3.0 * CLEARANCE_M
         below = RigidTransform(xyz=here.xyz - np.array([0.0, 0.0, deep]), xyzw=here.xyzw)
-        way = plan_line(self._kinematics, joints, below, duration_s=PEAK_SPEED * deep / APPROACH_M_S)
+        trajectory = plan_line(self._kinematics, joints, below, duration_s=PEAK_SPEED * deep / APPROACH_M_S)
         self._number += 1
         until = ContactCondition(force_n=3.0, direction=UP)
         self.simulation.apply(
-            FollowTrajectory(arm="arm", motion=self._number, trajectory=way, tolerance=Tolerance(), until=until)
+            FollowTrajectory(arm="arm", motion=self._number, trajectory=trajectory, tolerance=Tolerance(), until=until)
         )
         return self._finished()[0]
 
@@ -152,9 +154,9 @@ class Wiping:
         assert approach.contact, approach
         joints = self.control.motion.position.copy()
         here = self._kinematics.tool_pose(joints)
-        end = RigidTransform(xyz=here.xyz + self._way_m * self._along, xyzw=here.xyzw)
-        way = plan_line(self._kinematics, joints, end, duration_s=PEAK_SPEED * self._way_m / peak_m_s)
-        task = pressing(way, learned=learned, slow_per_n=slow_per_n)
+        end = RigidTransform(xyz=here.xyz + self._length_m * self._along, xyzw=here.xyzw)
+        trajectory = plan_line(self._kinematics, joints, end, duration_s=PEAK_SPEED * self._length_m / peak_m_s)
+        task = pressing(trajectory, learned=learned, slow_per_n=slow_per_n)
         self._number += 1
         self.simulation.apply(TrackForce(arm="arm", motion=self._number, task=task, tolerance=Tolerance()))
         report, forces = self._finished()
@@ -164,13 +166,15 @@ class Wiping:
     def _move_to(self, joints: Array) -> None:
         start = self.control.motion.position.copy()
         u = np.linspace(0.0, 1.0, 501)[:, None]
-        way = JointTrajectory(
+        trajectory = JointTrajectory(
             dt_s=0.002,
             position_rad=start + (joints - start) * (10 * u**3 - 15 * u**4 + 6 * u**5),
             velocity_rad_s=(joints - start) * (30 * u**2 - 60 * u**3 + 30 * u**4),
         )
         self._number += 1
-        self.simulation.apply(FollowTrajectory(arm="arm", motion=self._number, trajectory=way, tolerance=Tolerance()))
+        self.simulation.apply(
+            FollowTrajectory(arm="arm", motion=self._number, trajectory=trajectory, tolerance=Tolerance())
+        )
         report, _ = self._finished()
         assert report.end is MotionEnd.REACHED, report
 
@@ -184,13 +188,15 @@ class Wiping:
             assert len(forces) < 100_000
 
 
-def pressing(way: JointTrajectory, *, learned: ForceRecord | None, slow_per_n: float) -> ForceTask:
+def pressing(trajectory: JointTrajectory, *, learned: ForceRecord | None, slow_per_n: float) -> ForceTask:
     """Return the task to press down with 10 N on this way."""
-    samples = len(way.position_rad)
+    samples = len(trajectory.position_rad)
     wrench = np.zeros((samples, 6))
     wrench[:, 2] = FORCE_N
     offset = np.zeros((samples, 6)) if learned is None else smoothed(learned, samples=samples)
-    return ForceTask(trajectory=way, offset=offset, wrench=wrench, admittance=Compliance(), slow_per_n=slow_per_n)
+    return ForceTask(
+        trajectory=trajectory, offset=offset, wrench=wrench, admittance=Compliance(), slow_per_n=slow_per_n
+    )
 
 
 def smoothed(record: ForceRecord, *, samples: int) -> Array:

@@ -73,14 +73,14 @@ async def _run(rounds: int) -> tuple[float, list[float]]:
             begun = journal.begin("rounds", behavior="rounds.yaml", document="", started_unix_s=time.time())
             run = Run(plan, run="rounds", bus=bus, journal=begun)
             run.watch(look)
-            began_s = time.perf_counter()
+            started_s = time.perf_counter()
             result: RunResult = await run.execute()
-            total_s = time.perf_counter() - began_s
+            total_s = time.perf_counter() - started_s
     assert result.outcome == "exhausted", result.cause
     collected = result.userdata["all"]
     assert isinstance(collected, list)
     assert len(collected) == rounds  # pyright: ignore[reportUnknownArgumentType]
-    return total_s, [after - before for before, after in zip([began_s, *marks_s], marks_s, strict=False)]
+    return total_s, [after - before for before, after in zip([started_s, *marks_s], marks_s, strict=False)]
 
 
 def _peak_mb() -> float:

@@ -100,7 +100,7 @@ class HostileInputProbe:
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
         self._drafts = DraftCache()
-        self._knowledge = ProjectContext(catalogue, PROJECT / "behaviors", PROJECT)
+        self._context = ProjectContext(catalogue, PROJECT / "behaviors", PROJECT)
         self._file = PROJECT / "behaviors" / "hostile.yaml"
         self.checking = ProbeStatistics("check, on a thread")
         self.editing = ProbeStatistics("draw, edit and check, on a thread")
@@ -108,7 +108,7 @@ class HostileInputProbe:
         self.running = ProbeStatistics("run, on the loop")
 
     @property
-    def tallies(self) -> tuple[ProbeStatistics, ...]:
+    def probes(self) -> tuple[ProbeStatistics, ...]:
         """All four."""
         return (self.checking, self.editing, self.planning, self.running)
 
@@ -140,10 +140,10 @@ class HostileInputProbe:
         return behavior
 
     def _edited(self, text: str) -> None:
-        self._drafts.draw(text, file=self._file, context=self._knowledge)
+        self._drafts.draw(text, file=self._file, context=self._context)
         edit = SetParameter(path="root/take", name="value", value="${a + a}")
-        done = self._drafts.edit(text, [edit], file=self._file, context=self._knowledge)
-        self._drafts.examine(done.text, file=self._file, context=self._knowledge)
+        done = self._drafts.edit(text, [edit], file=self._file, context=self._context)
+        self._drafts.examine(done.text, file=self._file, context=self._context)
 
     async def _run(self, plan: Plan) -> RunResult:
         with _timed_callbacks(self.running):
@@ -152,15 +152,15 @@ class HostileInputProbe:
             return await run.execute()
 
 
-async def _beside(tally: ProbeStatistics, work: Callable[[], object]) -> Any:
+async def _beside(statistics: ProbeStatistics, work: Callable[[], object]) -> Any:
     """Work on a thread while the loop ticks; note the longest time between two ticks."""
-    working = asyncio.get_running_loop().run_in_executor(None, tally.look, work)
+    working = asyncio.get_running_loop().run_in_executor(None, statistics.look, work)
     # Only now: the worker has the ordinary schedule.
     with scheduled_first():
         while not working.done():
             wall_s, cpu_s = time.perf_counter(), time.process_time()
             await asyncio.sleep(0.001)
-            _note(tally, time.perf_counter() - wall_s, time.process_time() - cpu_s)
+            _note(statistics, time.perf_counter() - wall_s, time.process_time() - cpu_s)
     return await working
 
 
@@ -182,17 +182,17 @@ def scheduled_first() -> Generator[bool]:
 class _timed_callbacks:  # noqa: N801
     """Times every callback that the loops of this process run inside."""
 
-    def __init__(self, tally: ProbeStatistics) -> None:
-        self._tally = tally
+    def __init__(self, statistics: ProbeStatistics) -> None:
+        self._statistics = statistics
         self._run = asyncio.Handle._run  # pyright: ignore[reportPrivateUsage, reportUnknownMemberType]
 
     def __enter__(self) -> None:
-        tally, run = self._tally, self._run
+        statistics, run = self._statistics, self._run
 
         def timed(handle: asyncio.Handle) -> None:
             wall_s, cpu_s = time.perf_counter(), time.process_time()
             run(handle)
-            _note(tally, time.perf_counter() - wall_s, time.process_time() - cpu_s)
+            _note(statistics, time.perf_counter() - wall_s, time.process_time() - cpu_s)
 
         asyncio.Handle._run = timed  # type: ignore[method-assign] # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue]
 
@@ -200,10 +200,10 @@ class _timed_callbacks:  # noqa: N801
         asyncio.Handle._run = self._run  # type: ignore[method-assign] # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue]
 
 
-def _note(tally: ProbeStatistics, wall_s: float, cpu_s: float) -> None:
-    tally.block_wall_ms = max(tally.block_wall_ms, 1e3 * wall_s)
-    if 1e3 * cpu_s > tally.block_cpu_ms:
-        tally.block_cpu_ms, tally.worst_text = 1e3 * cpu_s, tally.text
+def _note(statistics: ProbeStatistics, wall_s: float, cpu_s: float) -> None:
+    statistics.block_wall_ms = max(statistics.block_wall_ms, 1e3 * wall_s)
+    if 1e3 * cpu_s > statistics.block_cpu_ms:
+        statistics.block_cpu_ms, statistics.worst_text = 1e3 * cpu_s, statistics.text
 
 
 def hostile_catalogue() -> Catalogue:
@@ -219,12 +219,12 @@ def peak_memory_mb() -> float:
 def _report(title: str, made: HostileInputProbe, memory_mb: float) -> bool:
     print(f"### {title}\n")
     print("| | texts | refused | longest block, CPU ms | wall ms | text | tracebacks |\n|---|---|---|---|---|---|---|")
-    for tally in made.tallies:
-        print(tally.row())
-        for error in tally.errors[:5]:
+    for statistics in made.probes:
+        print(statistics.row())
+        for error in statistics.errors[:5]:
             print(f"    {error}")
     print(f"\nMemory: {memory_mb:.0f} MB more than before.\n", flush=True)
-    kept = all(tally.block_cpu_ms <= MAX_BLOCK_MS and not tally.errors for tally in made.tallies)
+    kept = all(statistics.block_cpu_ms <= MAX_BLOCK_MS and not statistics.errors for statistics in made.probes)
     return kept and memory_mb <= MAX_MEMORY_MB
 
 

@@ -93,26 +93,26 @@ class IntrusionDrawer:
         self.drawn = 0
         self.too_near = 0
 
-    def draw(self, way: UndisturbedMotion, random: np.random.Generator) -> Intrusion:
+    def draw(self, motion: UndisturbedMotion, random: np.random.Generator) -> Intrusion:
         """Return an intrusion into a way.
 
         Raises:
             ValueError: nobody reaches anything of it.
         """
         for _ in range(_TRIES):
-            found = self._tried(way, random)
+            found = self._tried(motion, random)
             if found is not None:
                 return found
         raise ValueError("nobody gets into this way; let a shoulder stand nearer to it")
 
-    def _tried(self, way: UndisturbedMotion, random: np.random.Generator) -> Intrusion | None:
-        after_s = float(random.uniform(0.0, 0.9 * way.duration_s))
-        ahead_s = float(random.uniform(after_s, way.duration_s))
+    def _tried(self, motion: UndisturbedMotion, random: np.random.Generator) -> Intrusion | None:
+        after_s = float(random.uniform(0.0, 0.9 * motion.duration_s))
+        ahead_s = float(random.uniform(after_s, motion.duration_s))
         speed_m_s = float(random.uniform(0.25, 1.2))
         stay_s = None if random.random() < 0.3 else float(random.uniform(0.3, 3.0))
         who = self._people[int(random.integers(len(self._people)))]
         body = int(random.choice(sorted(self._arm.bodies)))
-        place = self._body_at(way.joints[round(ahead_s / STEP_S)], body) + random.normal(0.0, _SPREAD_M, 3)
+        place = self._body_at(motion.joints[round(ahead_s / STEP_S)], body) + random.normal(0.0, _SPREAD_M, 3)
         least_m, greatest_m = who.person.reach_m
         if not least_m <= who.limb.away_m(place) <= greatest_m:
             return None
@@ -121,16 +121,16 @@ class IntrusionDrawer:
             return None
         self.drawn += 1
         # The last pose decides most; the whole reach is looked at where it lets that pass.
-        ahead = way.joints[round(after_s / STEP_S) :]
+        ahead = motion.joints[round(after_s / STEP_S) :]
         if not self._nearer(who, poses[-1], ahead, than_m=SEEN_M):
             return None
         if self._nearer(who, poses[-1], ahead[: round(self._stopping_s / STEP_S) + 1], than_m=CLEAR_M):
             self.too_near += 1
             return None
-        noticeable_s = self._noticeable_s(who, way, poses, after_s)
+        noticeable_s = self._noticeable_s(who, motion, poses, after_s)
         if noticeable_s is None:
             return None
-        if not self._keeps_clear(who, way, poses, until_s=noticeable_s + self._stopping_s, from_s=after_s):
+        if not self._keeps_clear(who, motion, poses, until_s=noticeable_s + self._stopping_s, from_s=after_s):
             self.too_near += 1
             return None
         x, y, z = place.tolist()
@@ -145,20 +145,20 @@ class IntrusionDrawer:
         )
 
     def _noticeable_s(
-        self, who: _Reacher, way: UndisturbedMotion, poses: Sequence[LimbPose], after_s: float
+        self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], after_s: float
     ) -> float | None:
         """Return when the person is first in the rest of the way, None for never."""
         for k, pose in enumerate(poses):
             at_s = after_s + k * STEP_S
-            rest = way.joints[min(round(at_s / STEP_S), len(way.joints) - 1) :]
+            rest = motion.joints[min(round(at_s / STEP_S), len(motion.joints) - 1) :]
             if self._nearer(who, pose, rest, than_m=SEEN_M):
                 return at_s
         return None
 
     def _keeps_clear(
-        self, who: _Reacher, way: UndisturbedMotion, poses: Sequence[LimbPose], *, from_s: float, until_s: float
+        self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], *, from_s: float, until_s: float
     ) -> bool:
-        passed = way.joints[round(from_s / STEP_S) : round(until_s / STEP_S) + 1]
+        passed = motion.joints[round(from_s / STEP_S) : round(until_s / STEP_S) + 1]
         return not any(self._nearer(who, pose, passed, than_m=CLEAR_M) for pose in poses)
 
     def _nearer(self, who: _Reacher, pose: LimbPose, rows: Array, *, than_m: float) -> bool:
@@ -194,13 +194,13 @@ class IntrusionDrawer:
 def _reaching(who: _Reacher, place: Array, speed_m_s: float) -> list[LimbPose] | None:
     """Return a person every `STEP_S` of a reach; None where it would lead through the shoulder, there or back."""
     rest, limb = np.array(who.person.hand_rests), who.limb
-    way = plan_hand_trajectory(HandMotion(xyz=rest, velocity=np.zeros(3)), place, speed_m_s=speed_m_s)
-    if any(limb.away_m(at) < who.person.reach_m[0] for at in way.places()):
+    trajectory = plan_hand_trajectory(HandMotion(xyz=rest, velocity=np.zeros(3)), place, speed_m_s=speed_m_s)
+    if any(limb.away_m(at) < who.person.reach_m[0] for at in trajectory.places()):
         return None
     side = limb.hanging(rest)
     poses: list[LimbPose] = []
-    for k in range(int(np.ceil(way.duration_s / STEP_S)) + 1):
-        hand = way.at(k * STEP_S).xyz
+    for k in range(int(np.ceil(trajectory.duration_s / STEP_S)) + 1):
+        hand = trajectory.at(k * STEP_S).xyz
         side = limb.carried_on(side, hand, step_s=STEP_S)
         poses.append(limb.pose(hand, side))
     return poses

@@ -83,24 +83,24 @@ class IntrudedCell:
         assert end.status is GoalStatus.SUCCEEDED, end.cause
         return UndisturbedMotion(start=start, goal=goal, joints=np.array(rows))
 
-    async def stopping_s(self, way: UndisturbedMotion) -> float:
+    async def stopping_s(self, undisturbed: UndisturbedMotion) -> float:
         """Return how long the arm takes to stop from half of a way, from where that way starts; it then goes it."""
-        handle = self.bus.send_goal(JointTrapVel(joints=way.goal, speed=self._speed), to=self.arm)
+        handle = self.bus.send_goal(JointTrapVel(joints=undisturbed.goal, speed=self._speed), to=self.arm)
         await self._until_it_moves(handle)
-        await self.bus.clock.sleep(way.duration_s / 2.0)
-        began_s = self.bus.clock.now_s()
+        await self.bus.clock.sleep(undisturbed.duration_s / 2.0)
+        started_s = self.bus.clock.now_s()
         await handle.hold()
         stopped_s = self.bus.clock.now_s()
         await handle.resume()
         await handle.result()
-        return stopped_s - began_s
+        return stopped_s - started_s
 
-    async def intruded(self, way: UndisturbedMotion, intrusion: Intrusion, *, adapts: bool) -> IntrusionResult:
+    async def intruded(self, undisturbed: UndisturbedMotion, intrusion: Intrusion, *, adapts: bool) -> IntrusionResult:
         """Go a way, with or without looking out, while the hand gets into it; the hand is back at the end."""
         before = await self._count()
-        handle = self._start(way, adapts=adapts)
+        handle = self._start(undisturbed, adapts=adapts)
         await self._until_it_moves(handle)
-        began_s = self.bus.clock.now_s()
+        started_s = self.bus.clock.now_s()
         watch = _Watch(self, before)
         watching = asyncio.create_task(watch.run(), name="counting contacts")
         try:
@@ -115,7 +115,7 @@ class IntrudedCell:
                 to="cell",
             )
             ended = await self._outcome(handle, stays=intrusion.stay_s is None)
-            duration_s = self.bus.clock.now_s() - began_s
+            duration_s = self.bus.clock.now_s() - started_s
             if not await self._cleared(handle, intrusion.person):
                 ended = _so_far(handle.feedback, "stuck")
                 handle.cancel()
@@ -133,10 +133,10 @@ class IntrudedCell:
             pairs=tuple(pair for pair in after.pairs if pair not in before.pairs),
         )
 
-    def _start(self, way: UndisturbedMotion, *, adapts: bool) -> GoalHandle[Any, Any]:
+    def _start(self, undisturbed: UndisturbedMotion, *, adapts: bool) -> GoalHandle[Any, Any]:
         if adapts:
-            return self.bus.send_goal(self._free_goal(MotionTarget(joints=way.goal)), to=self.arm)
-        return self.bus.send_goal(JointTrapVel(joints=way.goal, speed=self._speed), to=self.arm)
+            return self.bus.send_goal(self._free_goal(MotionTarget(joints=undisturbed.goal)), to=self.arm)
+        return self.bus.send_goal(JointTrapVel(joints=undisturbed.goal, speed=self._speed), to=self.arm)
 
     def _free_goal(self, target: MotionTarget) -> MoveFree:
         return MoveFree(
@@ -147,7 +147,7 @@ class IntrudedCell:
 
     async def _outcome(self, handle: GoalHandle[Any, Any], *, stays: bool) -> dict[str, Any]:
         """Wait for the end, or until the arm has waited for long enough before a hand that stays."""
-        began_s, waiting_since_s = self.bus.clock.now_s(), None
+        started_s, waiting_since_s = self.bus.clock.now_s(), None
         while not handle.finished:
             await self.bus.clock.sleep(_LOOK_S)
             now_s, feedback = self.bus.clock.now_s(), handle.feedback
@@ -155,7 +155,7 @@ class IntrudedCell:
             waiting_since_s = (waiting_since_s or now_s) if waits else None
             if stays and waiting_since_s is not None and now_s - waiting_since_s > WAITS_S:
                 return _so_far(feedback, "waiting")
-            if now_s - began_s > _LONGEST_S:
+            if now_s - started_s > _LONGEST_S:
                 return {"end": "failed", "reason": f"no end after {_LONGEST_S:g} s"}
         return _ended(await handle.result())
 

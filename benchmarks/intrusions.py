@@ -83,17 +83,17 @@ async def _trials(
     done: list[Trial] = []
     async with intruded_cell(document, speed=speed) as cell:
         for number, intrusion in intrusions:
-            way = ways.of(number)
-            await cell.free(MotionTarget(joints=way.start))
-            began_s = time.process_time()
+            undisturbed = ways.of(number)
+            await cell.free(MotionTarget(joints=undisturbed.start))
+            started_s = time.process_time()
             async with asyncio.timeout(_TRIAL_S):
-                ended = await cell.intruded(way, intrusion, adapts=group == "MoveFree")
+                ended = await cell.intruded(undisturbed, intrusion, adapts=group == "MoveFree")
             trial = Trial(
                 group=group,
                 number=number,
                 intrusion=intrusion,
                 ended=ended,
-                cpu_s=time.process_time() - began_s,
+                cpu_s=time.process_time() - started_s,
             )
             done.append(trial)
             print(_line(trial), flush=True)
@@ -124,12 +124,12 @@ def _group(
 def _line(trial: Trial) -> str:
     ended, intrusion = trial.ended, trial.intrusion
     stay = "for ever" if intrusion.stay_s is None else f"{intrusion.stay_s:.1f} s"
-    said = (
+    text = (
         f"{trial.group} {trial.number:3}: {ended.end} after {ended.duration_s:.1f} s, {ended.contacts} contacts "
         f"({ended.in_motion} in motion), {ended.stops} stops, {ended.replans} replans; hand at "
         f"{intrusion.after_s:.2f} s to {intrusion.near}, {intrusion.speed_m_s:.2f} m/s, {stay}; {trial.cpu_s:.1f} s CPU"
     )
-    return f"{said}; {ended.reason}" if ended.reason else said
+    return f"{text}; {ended.reason}" if ended.reason else text
 
 
 def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:

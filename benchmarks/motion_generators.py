@@ -30,20 +30,20 @@ STEP_S = 0.001
 def swing(start: Array, duration_s: float) -> JointTrajectory:
     """Return a motion of three joints over `duration_s`."""
     u = np.linspace(0.0, 1.0, round(duration_s / 0.002) + 1)[:, None]
-    way = np.array([0.3, 0.1, 0.0, 0.2, 0.0, 0.0, 0.0])
+    travel = np.array([0.3, 0.1, 0.0, 0.2, 0.0, 0.0, 0.0])
     return JointTrajectory(
         dt_s=0.002,
-        position_rad=start + way * (10 * u**3 - 15 * u**4 + 6 * u**5),
-        velocity_rad_s=way * (30 * u**2 - 60 * u**3 + 30 * u**4) / duration_s,
+        position_rad=start + travel * (10 * u**3 - 15 * u**4 + 6 * u**5),
+        velocity_rad_s=travel * (30 * u**2 - 60 * u**3 + 30 * u**4) / duration_s,
     )
 
 
-def cost_us(generator: MotionGenerator, told: Array, state: ArmState, periods: int) -> float:
+def cost_us(generator: MotionGenerator, setpoint: Array, state: ArmState, periods: int) -> float:
     """Return the mean CPU time of a step; streams are told something new in every eighth."""
     spent_s = 0.0
     for period in range(periods):
-        if isinstance(generator, StreamGenerator) and period % 8 == 0 and len(told):
-            generator.receive(told * (1.0 + 0.001 * period))
+        if isinstance(generator, StreamGenerator) and period % 8 == 0 and len(setpoint):
+            generator.receive(setpoint * (1.0 + 0.001 * period))
         state.refill(generator.position, generator.velocity)
         before = time.thread_time()
         generator.step(STEP_S, target_pace=1.0, state=state)
@@ -59,13 +59,15 @@ def main() -> None:
     model = model_by_name("panda")
     state = ArmState(ArmKinematics(model, base=RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))))
     home, limits, joints = np.array(model.home_rad), model.limits, model.arm_joints
-    way, acceleration = swing(home, periods * STEP_S), np.array(limits.acceleration_rad_s2)
-    samples = len(way.position_rad)
-    task = ForceTask(trajectory=way, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)))
+    trajectory, acceleration = swing(home, periods * STEP_S), np.array(limits.acceleration_rad_s2)
+    samples = len(trajectory.position_rad)
+    task = ForceTask(trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)))
     generators: dict[str, tuple[MotionGenerator, Array]] = {
-        "playback": (TrajectoryPlayback(way, acceleration_rad_s2=acceleration), np.zeros(0)),
+        "playback": (TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration), np.zeros(0)),
         "guarded": (
-            GuardedMotion(TrajectoryPlayback(way, acceleration_rad_s2=acceleration), ContactCondition(force_n=10.0)),
+            GuardedMotion(
+                TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration), ContactCondition(force_n=10.0)
+            ),
             np.zeros(0),
         ),
         "joint positions": (JointStreamGenerator(limits=limits, joints=joints, start=home, watchdog_s=1.0), home),
@@ -77,8 +79,8 @@ def main() -> None:
         "guiding": (GuidingGenerator(limits=limits, start=home), np.zeros(0)),
         "force tracking": (ForceTracking(task, limits=limits, joints=joints), np.zeros(0)),
     }
-    for name, (generator, told) in generators.items():
-        print(f"{name:<18}{cost_us(generator, told, state, periods):8.1f} us")
+    for name, (generator, setpoint) in generators.items():
+        print(f"{name:<18}{cost_us(generator, setpoint, state, periods):8.1f} us")
 
 
 if __name__ == "__main__":

@@ -93,8 +93,8 @@ def _tests_of(mutant: Mutant, lines: Sequence[set[tuple[str, int]]]) -> list[int
     """Return the tests that run a line of a mutant, or else of the function around it."""
     file = str(ROOT / mutant.file)
     for first, last in ((mutant.line, mutant.last_line), mutant.function):
-        wanted = {(file, line) for line in range(first, last + 1)}
-        chosen = [index for index, seen in enumerate(lines) if not wanted.isdisjoint(seen)]
+        lines_of_move = {(file, line) for line in range(first, last + 1)}
+        chosen = [index for index, seen in enumerate(lines) if not lines_of_move.isdisjoint(seen)]
         if chosen:
             return chosen
     return []

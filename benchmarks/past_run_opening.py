@@ -24,7 +24,7 @@ from engine.journal import Journal
 
 EVENTS = 100_000
 STATES = 300
-MOMENTS = 100
+POSITIONS = 100
 
 
 def made_up_run(count: int = EVENTS, *, states: int = STATES) -> list[Event]:
@@ -72,7 +72,7 @@ def main() -> None:
         course = RunHistory(run)
         for event in opened.events:
             course.follow(event)
-        first = msgspec.json.encode(course.moments.at(EVENTS // 2))
+        first = msgspec.json.encode(course.states.at(EVENTS // 2))
         open_s, open_cpu_s = time.perf_counter() - begin, time.process_time() - begin_cpu
     begin = time.perf_counter()
     timeline = msgspec.json.encode(course.timeline())
@@ -80,10 +80,10 @@ def main() -> None:
     draw = random.Random(1)
     taken_s: list[float] = []
     taken_cpu_s: list[float] = []
-    for _ in range(MOMENTS):
-        wanted = draw.randrange(1, len(events))
+    for _ in range(POSITIONS):
+        position = draw.randrange(1, len(events))
         begin, begin_cpu = time.perf_counter(), time.process_time()
-        msgspec.json.encode(course.moments.at(wanted))
+        msgspec.json.encode(course.states.at(position))
         taken_s.append(time.perf_counter() - begin)
         taken_cpu_s.append(time.process_time() - begin_cpu)
     print(f"{len(events)} events: read {read_s:.3f} s, read and first moment {open_s:.3f} s (CPU {open_cpu_s:.3f} s)")

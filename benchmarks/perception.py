@@ -86,8 +86,8 @@ def robot_voxels(postures: int) -> str:
     """Return how many voxels the robot leaves behind in random configurations, and what the margin covers."""
     cell = document(cameras=2)
     scene = scene_with(cell, person=False)
-    sight = perception_setup(cell, scene)
-    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
+    setup = perception_setup(cell, scene)
+    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(setup, repeatable=False)
     body, shells = ArmBody(scene.arms[0]), list[tuple[float, float]]()
     random = np.random.default_rng(1)
     left = [0] * postures
@@ -95,9 +95,9 @@ def robot_voxels(postures: int) -> str:
         joints = random.uniform(stage.lower, stage.upper)
         stage.put_arm(joints)
         seen = eye.look(stage.look())
-        assert sight.box is not None
+        assert setup.box is not None
         assert seen.grid is not None
-        shells.append(_shell_l(sight.box, body, joints))
+        shells.append(_shell_l(setup.box, body, joints))
         left[number] = len(occupied_centres(seen.grid))
     own, near = np.mean(shells, axis=0)
     return (
@@ -111,20 +111,20 @@ def arm_seen(cameras: int, postures: int) -> str:
     """Return a row: the share of a person's arm's surface that is in the map or in a voxel beside it, by one image."""
     cell = document(cameras=cameras)
     scene = scene_with(cell, person=True)
-    sight = perception_setup(cell, scene)
-    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
+    setup = perception_setup(cell, scene)
+    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(setup, repeatable=False)
     random = np.random.default_rng(2)
     shares: list[float] = []
     extra: list[float] = []
     for number in range(postures):
         stage.put_arm(random.uniform(stage.lower, stage.upper) * 0.4)
-        assert sight.box is not None
-        points = inside(sight.box, stage.put_hand(number))
+        assert setup.box is not None
+        points = inside(setup.box, stage.put_hand(number))
         seen = eye.look(stage.look(forget=True))
         assert seen.grid is not None
         found = occupied_centres(seen.grid)
         nearest = _nearest(points, found)
-        shares.append(float((nearest <= 1.5 * sight.box.voxel_m).mean()))
+        shares.append(float((nearest <= 1.5 * setup.box.voxel_m).mean()))
         extra.append(float(_nearest(found, points).max()) if len(found) else 0.0)
     return f"| {cameras} | {100 * np.mean(shares):.0f} % | {100 * min(shares):.0f} % | {1e3 * max(extra):.0f} |"
 

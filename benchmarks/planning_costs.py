@@ -31,13 +31,13 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
     planner = ScenePlanner()
     two = two_pandas(0)
     planner.prepared(two, ARM)
-    way = _planned(planner, shelf)
+    path = _planned(planner, shelf)
     shorter = _planned(planner, cases()[-2].request)
     look = CollisionRequest(scene=shelf.scene, arm=ARM, joints_rad=shelf.start_rad)
     grids = [scatter(seed) for seed in range(runs)]
 
     def seeing(seed: int) -> PathCheckRequest:
-        return msgspec.structs.replace(way, occupancy=grids[seed])
+        return msgspec.structs.replace(path, occupancy=grids[seed])
 
     def replan(seed: int) -> PlanRequest:
         return msgspec.structs.replace(shelf, occupancy=grids[seed], seed=seed)
@@ -53,14 +53,14 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
         "answer with trajectory": _spent(runs, lambda k: msgspec.structs.replace(shelf, seed=k), planner.plan),
         "new voxels, 64 x 90 x 60: distances": _spent(runs, lambda k: grids[k], lambda g: voxels_of(g).field),
         "new voxels: octree": _spent(runs, lambda k: voxels_of(grids[k]), lambda v: v.octree),
-        "check of a way, scene and way known": _spent(runs, lambda _: way, planner.check_path),
+        "check of a way, scene and way known": _spent(runs, lambda _: path, planner.check_path),
         "check of a way, new voxels, distances among it": _spent(runs, seeing, planner.check_path),
         "check of a way, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_path),
         "check of a way, UR10 around a box, voxels known": _spent(
             runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_path
         ),
         "first check of a way that was not planned here": _spent(
-            runs, lambda k: _other_path(way, k), planner.check_path
+            runs, lambda k: _other_path(path, k), planner.check_path
         ),
         "answer with trajectory, new voxels, all of it": _spent(runs, replan, planner.plan),
         "look": _spent(runs, lambda _: look, planner.look),

@@ -147,8 +147,8 @@ def _write_arm(archive: tarfile.TarFile, folder: Path) -> None:
     for member in archive.getmembers():
         place = member.name.partition("/")[2]
         inside = place.removeprefix("resources/panda/")
-        wanted = place == "LICENSE.txt" or (inside != place and inside.endswith((".urdf", ".srdf", ".obj", ".mtl")))
-        content = archive.extractfile(member) if wanted else None
+        is_needed = place == "LICENSE.txt" or (inside != place and inside.endswith((".urdf", ".srdf", ".obj", ".mtl")))
+        content = archive.extractfile(member) if is_needed else None
         if content is not None:
             (folder / inside).parent.mkdir(parents=True, exist_ok=True)
             # The meshes lie beside the URDF, not in a package.

@@ -68,8 +68,8 @@ class Reactions:
         self._thread.join()
 
     def _post(self) -> None:
-        moments = random.Random(1)
-        while not self._ending.wait(0.005 + 0.01 * moments.random()):
+        random_times = random.Random(1)
+        while not self._ending.wait(0.005 + 0.01 * random_times.random()):
             posted_s = time.perf_counter()
             self._bus.post(lambda posted_s=posted_s: self.latencies_s.append(time.perf_counter() - posted_s))
 

@@ -33,12 +33,12 @@ def main() -> None:
     parser.add_argument("--moments", type=int, default=300)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        grown = part_file(Path(folder) / options.recording.name)
-        _ungrouped(options.recording, grown)
-        for what, file in (("finished", options.recording), ("growing", grown)):
+        growing = part_file(Path(folder) / options.recording.name)
+        _ungrouped(options.recording, growing)
+        for what, file in (("finished", options.recording), ("growing", growing)):
             print(f"{what}, {file.stat().st_size / 1e6:.1f} MB")
-            _finding(file, options.moments)
-            asyncio.run(_drawing(file, options.moments))
+            _finding(file, options.positions)
+            asyncio.run(_drawing(file, options.positions))
 
 
 def _ungrouped(finished: Path, target: Path) -> None:
@@ -54,39 +54,39 @@ def _ungrouped(finished: Path, target: Path) -> None:
             writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
 
 
-def _finding(file: Path, moments: int) -> None:
-    began_s = time.perf_counter()
+def _finding(file: Path, positions: int) -> None:
+    started_s = time.perf_counter()
     run = RecordedScene([file])
     from_s, until_s = run.span_s
-    newest = LatestMessages()
-    run.show(newest, from_s)
-    print(f"  opened, and its first moment found, in {(time.perf_counter() - began_s) * 1e3:.1f} ms")
+    latest = LatestMessages()
+    run.show(latest, from_s)
+    print(f"  opened, and its first moment found, in {(time.perf_counter() - started_s) * 1e3:.1f} ms")
     chance = random.Random(1)
-    _report("found and decoded", moments, lambda: run.show(newest, chance.uniform(from_s, until_s)))
+    _report("found and decoded", positions, lambda: run.show(latest, chance.uniform(from_s, until_s)))
     run.close()
 
 
-async def _drawing(file: Path, moments: int) -> None:
+async def _drawing(file: Path, positions: int) -> None:
     backend = FakeBackend()
     backend.recorded["run"] = (file,)
     view = CellView(backend, shadows=False)
     await asyncio.to_thread(view.open)
     await view.subscribe()
     loop = asyncio.get_running_loop()
-    told: asyncio.Queue[PastViewState] = asyncio.Queue()
+    reported: asyncio.Queue[PastViewState] = asyncio.Queue()
 
     def report(state: PastViewState) -> None:
-        loop.call_soon_threadsafe(told.put_nowait, state)
+        loop.call_soon_threadsafe(reported.put_nowait, state)
 
     async with viser_page(view, "one") as page:
         reading = asyncio.create_task(page.until(lambda: False))
         chance, took_s = random.Random(2), list[float]()
         until_s = 1.0
-        for _ in range(moments):
-            began_s = time.perf_counter()
-            view.show_past("one", "run", chance.uniform(0.0, until_s), tell=report)
-            state = await told.get()
-            took_s.append(time.perf_counter() - began_s)
+        for _ in range(positions):
+            started_s = time.perf_counter()
+            view.show_past("one", "run", chance.uniform(0.0, until_s), report=report)
+            state = await reported.get()
+            took_s.append(time.perf_counter() - started_s)
             until_s = state.until_s
             # As somebody who scrubs: 20 a second.
             await asyncio.sleep(max(0.0, 0.05 - took_s[-1]))
@@ -101,9 +101,9 @@ async def _drawing(file: Path, moments: int) -> None:
 def _report(what: str, times: int, work: Callable[[], None]) -> None:
     took_s: list[float] = []
     for _ in range(times):
-        began_s = time.perf_counter()
+        started_s = time.perf_counter()
         work()
-        took_s.append(time.perf_counter() - began_s)
+        took_s.append(time.perf_counter() - started_s)
     _print(what, took_s)
 
 

@@ -71,7 +71,7 @@ class Cameras:
     stale_reason: str = ""
     starting: bool = False
     intruder: np.ndarray | None = None
-    told_s: float = 0.0
+    notified_s: float = 0.0
     _random: np.random.Generator = field(default_factory=lambda: np.random.default_rng(1))
     _subscribers: list[Callable[[], None]] = field(default_factory=list[Callable[[], None]])
 
@@ -109,9 +109,9 @@ class Cameras:
             shape=SHAPE,
             occupied=np.packbits(taken.reshape(-1)).tobytes(),
         )
-        self.told_s = time.perf_counter()
-        for tell in tuple(self._subscribers):
-            tell()
+        self.notified_s = time.perf_counter()
+        for notify in tuple(self._subscribers):
+            notify()
 
 
 class TimedPlanners(PlanningServices):
@@ -122,23 +122,23 @@ class TimedPlanners(PlanningServices):
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
         """Return where a way is blocked."""
-        began_s = time.perf_counter()
+        started_s = time.perf_counter()
         answer = await super().check_path(request)
-        self.checked.append((began_s, time.perf_counter()))
+        self.checked.append((started_s, time.perf_counter()))
         return answer
 
     async def confirm_path(self, request: PathCheckRequest) -> PathCheck:
         """Return where a new way is blocked."""
-        began_s = time.perf_counter()
+        started_s = time.perf_counter()
         answer = await super().confirm_path(request)
-        self.checked.append((began_s, time.perf_counter()))
+        self.checked.append((started_s, time.perf_counter()))
         return answer
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
         """Return a way."""
-        began_s = time.perf_counter()
+        started_s = time.perf_counter()
         answer = await super().plan(request)
-        self.planned.append((began_s, time.perf_counter()))
+        self.planned.append((started_s, time.perf_counter()))
         return answer
 
 
@@ -175,19 +175,19 @@ class ReplanningRig:
         assert preview is not None
         self.cameras.intruder = _arm_across(preview.tool_path[int(0.55 * (len(preview.tool_path) - 1))])
         self.cameras.see()
-        told_s, checks = self.cameras.told_s, len(self.planners.checked)
+        notified_s, checks = self.cameras.notified_s, len(self.planners.checked)
         await asyncio.sleep(0.6)
         found = Round()
-        answers = [end for begin, end in self.planners.checked[checks:] if begin >= told_s]
-        found.answered_s = answers[0] - told_s if answers else None
-        after = [(at - told_s, phase) for at, phase, _ in phases if at > told_s]
+        answers = [end for begin, end in self.planners.checked[checks:] if begin >= notified_s]
+        found.answered_s = answers[0] - notified_s if answers else None
+        after = [(at - notified_s, phase) for at, phase, _ in phases if at > notified_s]
         rest = [at for at, phase in after if phase in ("planning", "waiting")]
         moving = [at for at, phase in after if phase == "moving" and rest and at > rest[0]]
-        plans = [end - told_s for begin, end in self.planners.planned if begin >= told_s]
-        found.kept = any("moves within" in reason for at, _, reason in phases if at > told_s)
+        plans = [end - notified_s for begin, end in self.planners.planned if begin >= notified_s]
+        found.kept = any("moves within" in reason for at, _, reason in phases if at > notified_s)
         if rest and moving and plans:
             found.rest_s, found.moving_s = rest[0], moving[0]
-            confirming = [end - told_s for _, end in self.planners.checked if end - told_s > plans[0]]
+            confirming = [end - notified_s for _, end in self.planners.checked if end - notified_s > plans[0]]
             found.confirmed_s = confirming[0] if confirming else None
         return found
 
@@ -270,10 +270,10 @@ async def _to_and_fro(cell: ReplanningRig, seconds: float) -> None:
 
 
 async def _intrusions(cell: ReplanningRig, rounds: int) -> None:
-    moments = random.Random(7)
+    random_times = random.Random(7)
     for number in range(rounds):
         goal = ACROSS if number % 2 == 0 else THERE
-        found = await cell.move(goal, intrude_after_s=moments.uniform(0.1, 0.45))
+        found = await cell.move(goal, intrude_after_s=random_times.uniform(0.1, 0.45))
         if found is not None:
             cell.rounds.append(found)
 

@@ -80,9 +80,9 @@ class Reactions:
 
     def _send(self) -> None:
         # Moments of posting need not repeat from run to run; only their spread matters.
-        moments = random.Random(1)
+        random_times = random.Random(1)
         for _ in range(self._due):
             self._waiting.acquire()
-            time.sleep(0.002 + moments.random() * self._spread_s)
+            time.sleep(0.002 + random_times.random() * self._spread_s)
             self._posted_s = time.perf_counter()
             self._post()

@@ -72,11 +72,11 @@ def start_server_once(folder: Path, *, clients: int, host: str = "127.0.0.1") ->
         finally:
             ended.set()
             server.send_signal(signal.SIGTERM)
-            said = server.communicate()[1].decode(errors="replace").strip().rpartition("\n")[2]
+            last_line = server.communicate()[1].decode(errors="replace").strip().rpartition("\n")[2]
     if server.returncode < 0:
-        return f"{signal.Signals(-server.returncode).name} {said}".strip()
+        return f"{signal.Signals(-server.returncode).name} {last_line}".strip()
     if not all(answered):
-        return f"no answer, exit code {server.returncode} {said}".strip()
+        return f"no answer, exit code {server.returncode} {last_line}".strip()
     return "ok"
 
 

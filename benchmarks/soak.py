@@ -82,14 +82,14 @@ async def _soak(seconds: float, chance: random.Random) -> list[Count]:
                 dashboard(session, token_file=folder / "tokens", shadows=False) as page,
             ):
                 print(f"{'min':>5}{'rounds':>8}{'MB':>8}{'descriptors':>13}{'threads':>9}{'tasks':>7}", flush=True)
-                began_s = told_s = time.monotonic()
-                while (now_s := time.monotonic()) < began_s + seconds:
+                started_s = reported_s = time.monotonic()
+                while (now_s := time.monotonic()) < started_s + seconds:
                     await _round(page, session, run_s=chance.uniform(0.0, _LONGEST_RUN_S))
                     await recordings.finished()
                     counts.append(_count())
-                    if now_s - told_s >= _REPORT_S:
-                        told_s = now_s
-                        _print((now_s - began_s) / 60.0, len(counts), counts[-1])
+                    if now_s - reported_s >= _REPORT_S:
+                        reported_s = now_s
+                        _print((now_s - started_s) / 60.0, len(counts), counts[-1])
     return counts
 
 

@@ -53,10 +53,10 @@ def step_cost(scene: SimScene, controller: ControllerName, seconds: float) -> St
     count = round(seconds / simulation.step_s)
     wall_s, cpu_s, blocks = time.perf_counter(), time.process_time(), list[float]()
     for _ in range(count // _BLOCK):
-        began_s = time.process_time()
+        started_s = time.process_time()
         for _ in range(_BLOCK):
             swinging.step()
-        blocks.append((time.process_time() - began_s) / _BLOCK)
+        blocks.append((time.process_time() - started_s) / _BLOCK)
     wall_s, cpu_s = time.perf_counter() - wall_s, time.process_time() - cpu_s
     passed_s = len(blocks) * _BLOCK * simulation.step_s
     physics_s, set_points_s, laws_s, rest_s = _parts(swinging, count // 2)
@@ -78,10 +78,10 @@ def _parts(swinging: Swinging, count: int) -> tuple[float, ...]:
     blocks: list[tuple[float, ...]] = []
     with clocks[0].on(), clocks[1].on(), clocks[2].on():
         for _ in range(count // _BLOCK):
-            began_s = time.thread_time()
+            started_s = time.thread_time()
             for _ in range(_BLOCK):
                 swinging.step()
-            whole_s = time.thread_time() - began_s
+            whole_s = time.thread_time() - started_s
             parts_s = [clock.taken() for clock in clocks]
             blocks.append((*parts_s, whole_s - sum(parts_s)))
     return tuple(np.median(np.array(blocks) / _BLOCK, axis=0).tolist())
@@ -113,9 +113,9 @@ class _Clock:
 
     def _timed(self, method: Callable[..., Any]) -> Callable[..., Any]:
         def call(*args: Any, **options: Any) -> Any:
-            began_s = time.thread_time()
+            started_s = time.thread_time()
             result = method(*args, **options)
-            self._spent_s += time.thread_time() - began_s
+            self._spent_s += time.thread_time() - started_s
             return result
 
         return call

@@ -131,9 +131,9 @@ def _over_http(running: Server) -> float:
     with closing(connection):
         connection.request("POST", url.path, json.dumps({"token": running.record["stop_token"], "reason": "benchmark"}))
         answer = connection.getresponse().read()
-    said_s = time.monotonic()
+    written_s = time.monotonic()
     assert json.loads(answer)["acknowledged"], answer
-    return said_s
+    return written_s
 
 
 def _by_command(running: Server) -> float:
@@ -141,10 +141,10 @@ def _by_command(running: Server) -> float:
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         line = process.stdout.readline()
-        said_s = time.monotonic()
+        written_s = time.monotonic()
         process.communicate()
     assert line.startswith(b"STOP acknowledged"), line
-    return said_s
+    return written_s
 
 
 def _by_signal(running: Server) -> float:

@@ -25,7 +25,7 @@ _MOVING_S = 0.4
 _LOOK_S = 0.002
 _START_S = 20.0
 _LOOKS_A_RUN = 50
-_UNDER_WAY = ("running", "stopping")
+_ACTIVE = ("running", "stopping")
 _REST_S = 10.0
 _ITEMS = 38
 # 1,444 rounds: nearly as much as one evaluation may cost.
@@ -45,7 +45,7 @@ cell: cell.yaml
 parameters:
   how: {type: string, default: none}
   for_s: {type: number, default: 1.0}
-  tell: {type: string, default: ""}
+  marker: {type: string, default: ""}
   items: {type: list, default: ITEMS}
 outcomes: [ended]
 success: [ended]
@@ -66,7 +66,7 @@ root:
               transitions: {reached: there, failed: ended}
       block:
         state: stop_states:Block
-        with: {how: "${how}", after_s: AFTER, for_s: "${for_s}", tell: "${tell}"}
+        with: {how: "${how}", after_s: AFTER, for_s: "${for_s}", marker: "${marker}"}
       think:
         machine:
           initial: again
@@ -107,15 +107,15 @@ class Server:
         Raises:
             TimeoutError: the arm does not move; says what the run says.
         """
-        tell = self.folder / "moving"
-        tell.write_bytes(b"")
-        parameters = {"how": how, "for_s": for_s, "tell": str(tell)}
+        marker = self.folder / "moving"
+        marker.write_bytes(b"")
+        parameters = {"how": how, "for_s": for_s, "marker": str(marker)}
         run = self.start("behaviors/swing.yaml", parameters)
         deadline_s = time.monotonic() + _START_S
         looks = 0
-        while not tell.read_bytes():
+        while not marker.read_bytes():
             looks += 1
-            if looks % _LOOKS_A_RUN == 0 and self.run(run)["status"] not in _UNDER_WAY:
+            if looks % _LOOKS_A_RUN == 0 and self.run(run)["status"] not in _ACTIVE:
                 run = self.start("behaviors/swing.yaml", parameters)
             if time.monotonic() > deadline_s:
                 raise TimeoutError(f"the arm does not move: {self.run(run)['cause']}")
@@ -142,13 +142,13 @@ class Server:
         """
         worlds = self.children("sim.process_main")
         if not worlds:
-            told = (self.folder / "log").read_text(encoding="utf-8", errors="replace").splitlines()
-            raise ProcessLookupError(f"the server has no world: {' | '.join(told[-3:])}")
+            lines = (self.folder / "log").read_text(encoding="utf-8", errors="replace").splitlines()
+            raise ProcessLookupError(f"the server has no world: {' | '.join(lines[-3:])}")
         self.heartbeat = Heartbeat.of_process(worlds[0])
 
     def wait_until_idle(self) -> None:
         """Wait until no run is active and the devices take motions again."""
-        while any(run["status"] in _UNDER_WAY for run in self.http.get("/api/v1/runs").json()):
+        while any(run["status"] in _ACTIVE for run in self.http.get("/api/v1/runs").json()):
             time.sleep(0.02)
 
     def resting_since_s(self) -> float:

@@ -18,12 +18,12 @@ class Block(State, frozen=True, kw_only=True):
     how: str
     after_s: float
     for_s: float
-    tell: str
+    marker: str
 
     async def run(self, ctx: Context) -> Outcome:
         """Block the event loop for the time given, or wait without blocking it."""
         await ctx.clock.sleep(self.after_s)
-        Path(self.tell).write_bytes(b"moving")  # noqa: ASYNC240 - blocking is what this state is for
+        Path(self.marker).write_bytes(b"moving")  # noqa: ASYNC240 - blocking is what this state is for
         match self.how:
             case "sleep":
                 time.sleep(self.for_s)  # noqa: ASYNC251

@@ -65,18 +65,18 @@ def _progress(progress: SweepProgress) -> None:
 
 def costs(behavior: Path, runs: int, folder: Path) -> None:
     """Print the first table."""
-    cpu_began_s = _cpu_of_children_s()
+    cpu_started_s = _cpu_of_children_s()
     warm, memory = swept(behavior, runs, WorkerOptions(workers=2), folder)
-    warm_s = _cpu_of_children_s() - cpu_began_s
+    warm_s = _cpu_of_children_s() - cpu_started_s
     cold_runs = max(runs // 5, 2)
-    cpu_began_s = _cpu_of_children_s()
+    cpu_started_s = _cpu_of_children_s()
     cold, _ = swept(behavior, cold_runs, WorkerOptions(workers=2, runs_of_process=1), folder)
-    cold_s = _cpu_of_children_s() - cpu_began_s
+    cold_s = _cpu_of_children_s() - cpu_started_s
     trivial = folder / "trivial.yaml"
     trivial.write_text(TRIVIAL, encoding="utf-8")
-    began_s = time.perf_counter()
+    started_s = time.perf_counter()
     many, _ = swept(trivial, 1000, WorkerOptions(workers=1, runs_of_process=2000), folder)
-    trivial_s = time.perf_counter() - began_s
+    trivial_s = time.perf_counter() - started_s
     equal = [one.events_sha256 for one in warm.results[:cold_runs]] == [one.events_sha256 for one in cold.results]
     print(f"\n{behavior.name}, {runs} runs warm, {cold_runs} cold; events {'equal' if equal else 'DIFFERENT'}\n")
     print("| | CPU-s a run | runs per CPU-hour |\n|---|--:|--:|")

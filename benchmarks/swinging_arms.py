@@ -40,17 +40,19 @@ class Swinging:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._ways = swings()
+        self._trajectories = swings()
         self._arms: dict[int, tuple[str, int]] = {}
         self._number = 0
         for arm in simulation.summary.arms:
             self._start(arm.name, 0)
 
-    def _start(self, arm: str, way: int) -> None:
+    def _start(self, arm: str, direction: int) -> None:
         self._number += 1
-        self._arms[self._number] = (arm, way)
+        self._arms[self._number] = (arm, direction)
         self._simulation.apply(
-            FollowTrajectory(arm=arm, motion=self._number, trajectory=self._ways[way], tolerance=Tolerance())
+            FollowTrajectory(
+                arm=arm, motion=self._number, trajectory=self._trajectories[direction], tolerance=Tolerance()
+            )
         )
 
     def step(self) -> None:
@@ -59,12 +61,12 @@ class Swinging:
             if isinstance(event, MotionFinished):
                 if event.report.end != MotionEnd.REACHED:
                     raise RuntimeError(f"an arm did not get there: {event.report.reason}")
-                arm, way = self._arms.pop(event.motion)
-                self._start(arm, 1 - way)
+                arm, direction = self._arms.pop(event.motion)
+                self._start(arm, 1 - direction)
 
 
 async def swing_for_ever(world: SimWorld, arm: str) -> None:
     """Keep one arm of an open world moving until cancelled."""
     while True:
-        for way in swings():
-            await world.arm(arm).follow(way, tolerance=Tolerance()).report()
+        for trajectory in swings():
+            await world.arm(arm).follow(trajectory, tolerance=Tolerance()).report()

@@ -48,8 +48,8 @@ async def watch(host: ProcessHost, seconds: float) -> Punctuality:
     while marks[-1][0] < end_s:
         await asyncio.sleep(_WINDOW_S)
         marks.append((time.monotonic(), host.timing()))
-    told, _ = await loop.communicate()
-    empty = json.loads(told)
+    output, _ = await loop.communicate()
+    empty = json.loads(output)
     due_s, late_s = np.array(empty["due_s"]), np.array(empty["late_s"])
     quiet = [
         after.since(before)

@@ -108,11 +108,11 @@ def copied_behavior(folder: Path) -> Path:
 async def _while_watched(cell: OpenCell, viewers: int, seconds: float, watching: Process | None) -> ViewerLoad:
     row = ViewerLoad(viewers=viewers)
     reactions = Reactions(cell.bus)
-    began_s, began_cpu_s = time.monotonic(), cpu_s(os.getpid())
-    while time.monotonic() < began_s + seconds:
+    started_s, started_cpu_s = time.monotonic(), cpu_s(os.getpid())
+    while time.monotonic() < started_s + seconds:
         await asyncio.sleep(_SAMPLE_S)
         row.memory_mb.append(memory_mb(os.getpid()))
-    row.cpu = (cpu_s(os.getpid()) - began_cpu_s) / (time.monotonic() - began_s)
+    row.cpu = (cpu_s(os.getpid()) - started_cpu_s) / (time.monotonic() - started_s)
     reactions.close()
     row.reactions_s = reactions.latencies_s
     if watching is not None:

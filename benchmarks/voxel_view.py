@@ -73,12 +73,12 @@ def draw_times_ms(grids: list[OccupancyGrid]) -> list[float]:
     """Return the CPU time that the drawing thread spends on each grid, without anybody who looks."""
     server = new_viser_server("key")
     try:
-        voxels, newest, spent = VoxelLayer(server), LatestMessages(), list[float]()
+        voxels, latest, spent = VoxelLayer(server), LatestMessages(), list[float]()
         for number, grid in enumerate(grids * 4):
-            newest.put("cell", grid)
-            began_s = time.thread_time()
-            voxels.draw(newest, number * PERIOD_S)
-            spent.append((time.thread_time() - began_s) * 1e3)
+            latest.put("cell", grid)
+            started_s = time.thread_time()
+            voxels.draw(latest, number * PERIOD_S)
+            spent.append((time.thread_time() - started_s) * 1e3)
         return spent[_FRAMES:]
     finally:
         server.stop()
@@ -95,16 +95,16 @@ async def measured(voxels: int, *, seconds: float, folder: Path) -> Row:
             topic = cell.bus.topic("cell/occupancy", OccupancyGrid)
             async with dashboard(session, token_file=folder / "tokens", shadows=False) as running:
                 page = _Page(running.url, running.token, seconds=seconds)
-                looking = asyncio.create_task(asyncio.to_thread(page.look), name="page")
+                browsing = asyncio.create_task(asyncio.to_thread(page.look), name="page")
                 used_s, resident = 0.0, 0.0
                 number = 0
-                while not looking.done():
+                while not browsing.done():
                     topic.publish(grids[number % len(grids)])
-                    if page.began.is_set() and resident == 0.0:
+                    if page.started.is_set() and resident == 0.0:
                         used_s, resident = cpu_s(os.getpid()), _resident_mb()
                     number += 1
                     await asyncio.sleep(PERIOD_S)
-                await looking
+                await browsing
                 used_s, grew_mb = cpu_s(os.getpid()) - used_s, _resident_mb() - resident
     return Row(
         voxels=voxels,
@@ -122,7 +122,7 @@ class _Page:
 
     def __init__(self, url: str, token: str, *, seconds: float) -> None:
         self._url, self._token, self._seconds = url, token, seconds
-        self.began = threading.Event()
+        self.started = threading.Event()
         self.fps = 0.0
         self.grew_mb = 0.0
 
@@ -138,7 +138,7 @@ class _Page:
             page.wait_for_timeout(_WARM_UP_S * 1e3)
             page.evaluate(_COUNT_FRAMES)
             before = _of_page(page)
-            self.began.set()
+            self.started.set()
             page.wait_for_timeout(self._seconds * 1e3)
             after = _of_page(page)
             self.fps = (after[1] - before[1]) / (after[0] - before[0])

@@ -31,7 +31,7 @@ LOGIN = re.compile(r"http://\S+/login\?t=\S+")
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 LIMIT_MS = 240_000
 Scheme = Literal["light", "dark"]
-DESK, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)
+DESKTOP, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +87,7 @@ def in_motion(page: Page) -> None:
 
 def asked(page: Page) -> None:
     """Start below full autonomy, and wait for the question about the planned way."""
-    is_narrow = page.viewport_size is not None and page.viewport_size["width"] < DESK[0]
+    is_narrow = page.viewport_size is not None and page.viewport_size["width"] < DESKTOP[0]
     if not is_narrow:
         drawn(page)
     page.get_by_role("button", name="Operation").click()
@@ -142,15 +142,15 @@ TRANSFER = "/behaviors/behaviors/reconcycle/two_arm_transfer.yaml"
 EDITOR = "/edit/behaviors/reconcycle/two_arm_transfer.yaml#root/transfer/left/grasp"
 SHARED = "/behaviors/behaviors/plate_transfer_shared/plate_transfer_shared.yaml"
 PICTURES = (
-    Picture(name="dashboard", cell="dual_panda", address=TRANSFER, size=DESK, prepare=in_motion),
+    Picture(name="dashboard", cell="dual_panda", address=TRANSFER, size=DESKTOP, prepare=in_motion),
     Picture(name="cell", cell="dual_panda", address="/", size=LARGE, prepare=drawn),
     Picture(name="phone", cell="dual_panda", address="/", size=PHONE, prepare=drawn),
-    Picture(name="confirm", cell="ur10", address=CONFIRM, size=DESK, prepare=asked),
+    Picture(name="confirm", cell="ur10", address=CONFIRM, size=DESKTOP, prepare=asked),
     Picture(name="confirm-phone", cell="ur10", address=CONFIRM, size=PHONE, prepare=asked),
     Picture(name="editor", cell="dual_panda", address=EDITOR, size=LARGE, prepare=edited),
-    Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESK, prepare=looked_back),
-    Picture(name="teach", cell="dual_panda", address="/teach", size=DESK, prepare=taught),
-    Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESK, prepare=waiting),
+    Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESKTOP, prepare=looked_back),
+    Picture(name="teach", cell="dual_panda", address="/teach", size=DESKTOP, prepare=taught),
+    Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
 )
 
 
@@ -173,12 +173,12 @@ def main() -> None:
     """Make the pictures that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(each.name for each in PICTURES))
-    wanted = [each for each in PICTURES if each.name in (parser.parse_args().names or [p.name for p in PICTURES])]
+    chosen = [each for each in PICTURES if each.name in (parser.parse_args().names or [p.name for p in PICTURES])]
     program = os.environ.get("FLEXCELL_CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
     schemes: tuple[Scheme, ...] = ("light", "dark")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for picture in wanted:
+        for picture in chosen:
             for scheme in schemes:
                 # A cell of its own for each: what one leaves behind is not in the next.
                 with served(picture.cell) as login:

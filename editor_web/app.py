@@ -142,7 +142,7 @@ def new_app(
         stop=stop,
     )
     app.state.started = OrderedDict[str, str]()
-    app.state.pasts = OpenRunCache(backend)
+    app.state.open_runs = OpenRunCache(backend)
     app.state.joggers = dict[str, Jogger]()
     return SecurityMiddleware(
         app,
@@ -232,27 +232,27 @@ async def _refused(request: Request, error: Exception) -> Response:
     del request
     if not isinstance(error, FlexcellError):
         raise error
-    told = ErrorBody(
+    body = ErrorBody(
         message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
     )
     match error:
         case NoSuchDocument():
-            return json_response(told, 404)
+            return json_response(body, 404)
         case DocumentConflict():
-            return json_response(_conflict(told, error), 409)
+            return json_response(_conflict(body, error), 409)
         case ResumeDecisionRequired():
-            return json_response(ResumeQuestionsBody(**asdict(told), questions=tuple(error.questions)), 409)
+            return json_response(ResumeQuestionsBody(**asdict(body), questions=tuple(error.questions)), 409)
         case ControlError():
             # The request is valid, but the run does not allow the command now.
-            return json_response(told, 409)
+            return json_response(body, 409)
         case _:
-            return json_response(told, 422)
+            return json_response(body, 422)
 
 
-def _conflict(told: ErrorBody, error: DocumentConflict) -> ConflictBody:
+def _conflict(body: ErrorBody, error: DocumentConflict) -> ConflictBody:
     theirs = error.theirs
     return ConflictBody(
-        **asdict(told), theirs=theirs.text, theirs_hash=theirs.hash, merged=error.merged, conflicts=error.conflicts
+        **asdict(body), theirs=theirs.text, theirs_hash=theirs.hash, merged=error.merged, conflicts=error.conflicts
     )
 
 

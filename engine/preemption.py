@@ -21,12 +21,12 @@ OVERDUE_S = 5.0
 
 @dataclass(frozen=True, kw_only=True)
 class OverduePolicy:
-    """Handling of tasks that do not end in time: `tell` reports them, `abandon` is called when one is abandoned.
+    """Handling of tasks that do not end in time: `report` reports them, `abandon` is called when one is abandoned.
 
     Time in which a task `stands_still`, as in a pause, is not counted.
     """
 
-    tell: Callable[[str, float], None]
+    report: Callable[[str, float], None]
     abandon: Callable[[asyncio.Task[Any], float], None] = lambda _task, _waited_s: None
     abandon_after_s: float = math.inf
     stands_still: Callable[[str], bool] = lambda _task: False
@@ -120,7 +120,7 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: OverduePolicy) ->
         waited_s += patience_s
         if waited_s < overdue.abandon_after_s:
             for late in sorted(task.get_name() for task in unfinished):
-                overdue.tell(late, waited_s)
+                overdue.report(late, waited_s)
     late_tasks = [task for task in preempted if task in unfinished]
     for task in late_tasks:
         overdue.abandon(task, waited_s)

@@ -72,8 +72,8 @@ class Reconnectable(Protocol):
         """Why the connection is lost; empty while it is connected."""
         ...
 
-    def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell`, on the event loop, when the connection is lost and when it is restored."""
+    def when_connection_changes(self, callback: Callable[[], None]) -> None:
+        """Call `callback`, on the event loop, when the connection is lost and when it is restored."""
         ...
 
     async def reconnect(self) -> str:

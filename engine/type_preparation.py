@@ -120,10 +120,10 @@ class _Importer(MetaPathFinder):
     ) -> ModuleSpec | None:
         if fullname.partition(".")[0] not in self.packages:
             return None
-        for finder in sys.meta_path:
-            if finder is self or isinstance(finder, _Importer):
+        for importer in sys.meta_path:
+            if importer is self or isinstance(importer, _Importer):
                 continue
-            spec = finder.find_spec(fullname, path, target)
+            spec = importer.find_spec(fullname, path, target)
             if spec is not None:
                 if spec.loader is not None:
                     spec.loader = _PreparingLoader(spec.loader)

@@ -51,13 +51,13 @@ def compiled(*signatures: str) -> Callable[[_F], _F]:
     """
 
     def decorate(function: _F) -> _F:
-        wanted = list(signatures) or None
+        eager = list(signatures) or None
         try:
-            return _numba.njit(wanted, nogil=True, cache=True)(function)
+            return _numba.njit(eager, nogil=True, cache=True)(function)
         except RuntimeError as error:
             # Neither the folder of the source nor the user's cache folder can be written.
             if "no locator available" not in str(error):
                 raise
-            return _numba.njit(wanted, nogil=True)(function)
+            return _numba.njit(eager, nogil=True)(function)
 
     return decorate

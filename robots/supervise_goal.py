@@ -15,11 +15,11 @@ FEEDBACK_S = 0.05
 
 
 async def supervise_goal(
-    motion: Motion, handle: ActiveGoal[Any], *, tell: Callable[[], None], device: str, words: str
+    motion: Motion, handle: ActiveGoal[Any], *, publish: Callable[[], None], device: str, words: str
 ) -> None:
     """Return once `motion` has ended and its device is at rest, also for a canceled goal.
 
-    `tell` publishes feedback, also at the end; `device` is the bus name of the moving device and `words` its name
+    `publish` publishes feedback, also at the end; `device` is the bus name of the moving device and `words` its name
     in messages.
 
     Raises:
@@ -32,10 +32,10 @@ async def supervise_goal(
     report = asyncio.ensure_future(motion.report())
     try:
         while not (await asyncio.wait((report,), timeout=FEEDBACK_S))[0]:
-            tell()
+            publish()
     finally:
         await _at_rest(motion, report)
-    tell()
+    publish()
     _check_report(report.result(), handle, device=device, words=words)
 
 

@@ -135,12 +135,12 @@ def lease(watch: Stopwatch) -> Sample:
 
     async def main() -> Sample:
         leases, holder = SkillBus(new_clock()).leases, Holder("bench", "root/pick")
-        wanted = ("left", "left/gripper")
+        resources = ("left", "left/gripper")
 
         def work() -> None:
             for _ in range(_MANY):
-                leases.acquire(wanted, holder)
-                leases.release(wanted, holder)
+                leases.acquire(resources, holder)
+                leases.release(resources, holder)
 
         return watch.measure(_MANY, work)
 

@@ -87,7 +87,7 @@ class RoboplanPlanner:
                 case _:
                     raise CellError("this comparison has no such shape", where=solid.name)
 
-    def _allow(self, scene: PlanningScene, wanted: set[frozenset[str]]) -> None:
+    def _allow(self, scene: PlanningScene, checked: set[frozenset[str]]) -> None:
         """Switch off what we do not look at: obstacles among themselves, the base, allowed pairs."""
         model = scene.arms[0].placement.robot()
         shapes = arm_shapes(model, ())
@@ -97,7 +97,7 @@ class RoboplanPlanner:
             if shape.parentJoint > 0
         }
         links = sorted(set(shapes.links))
-        off = [(a, b) for a in links for b in links if a < b and frozenset((a, b)) not in wanted]
+        off = [(a, b) for a in links for b in links if a < b and frozenset((a, b)) not in checked]
         names = list(self._solids)
         off += [(a, b) for i, a in enumerate(names) for b in names[:i]]
         for name, ours in self._solids.items():

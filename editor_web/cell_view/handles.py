@@ -86,14 +86,14 @@ class DragHandles:
             self._frames = None
         self._changed()
 
-    def draw(self, newest: LatestMessages) -> None:
+    def draw(self, latest: LatestMessages) -> None:
         """Draw the handles that are not dragged at their frames."""
         with self._lock:
-            if newest.frames is None or newest.frames is self._frames:
+            if latest.frames is None or latest.frames is self._frames:
                 return
-            self._frames = newest.frames
+            self._frames = latest.frames
             clients = [client for client in self._clients.values() if client.may_operate]
-            poses = poses_by_frame(newest.frames)
+            poses = poses_by_frame(latest.frames)
             for client in clients:
                 self._draw(client, poses.get(given.frame) if (given := self._given.get(client.page)) else None)
 

@@ -48,12 +48,12 @@ class PageGhosts:
             self._forget(page)
         self._changed()
 
-    def draw(self, newest: LatestMessages, now_s: float) -> float | None:
+    def draw(self, latest: LatestMessages, now_s: float) -> float | None:
         """Draw the changes; return the time of the next call if a ghost moves."""
         with self._lock:
             due = [(client.ghosts, self._shown.get(client.page, _NOTHING)) for client in self._clients.values()]
         # Without the lock, so that `put` does not wait for meshes.
-        next_s = (ghosts.draw(shown, newest, now_s) for ghosts, shown in due)
+        next_s = (ghosts.draw(shown, latest, now_s) for ghosts, shown in due)
         return min((each for each in next_s if each is not None), default=None)
 
     def _forget(self, page: str) -> None:

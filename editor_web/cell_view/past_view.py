@@ -38,14 +38,14 @@ class PastViewState(msgspec.Struct, frozen=True, kw_only=True):
     problem: str = ""
 
 
-Tell = Callable[[PastViewState], None]
+StateListener = Callable[[PastViewState], None]
 
 
 @dataclass(frozen=True, kw_only=True)
 class _ViewRequest:
     run: str
     time_s: float
-    tell: Tell
+    report: StateListener
 
 
 @dataclass(kw_only=True)
@@ -54,7 +54,7 @@ class _Client:
 
     handle: viser.ClientHandle
     page: str
-    newest: LatestMessages = field(default_factory=LatestMessages)
+    latest: LatestMessages = field(default_factory=LatestMessages)
     drawing: SceneLayers | None = None
     wish: _ViewRequest | None = None
     due_s: float | None = None
@@ -84,11 +84,11 @@ class PastViews:
         server.on_client_disconnect(self._disconnected)
         self._thread.start()
 
-    def show(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
-        """Show a run at a time of its clock to a page; `tell` is called, on another thread, when it is drawn."""
+    def show(self, page: str, run: str, time_s: float, *, report: StateListener) -> None:
+        """Show a run at a time of its clock to a page; `report` is called, on another thread, when it is drawn."""
         with self._lock:
             self._wishes.pop(page, None)
-            self._wishes[page] = _ViewRequest(run=run, time_s=time_s, tell=tell)
+            self._wishes[page] = _ViewRequest(run=run, time_s=time_s, report=report)
             while len(self._wishes) > _KEPT_PAGES:
                 self._wishes.popitem(last=False)
         self._wake.set()
@@ -142,7 +142,7 @@ class PastViews:
                 _log.log(level, "cannot show a past state of %s: %s", wish.run, error, exc_info=not expected)
                 problem = error.message if expected else "its recording cannot be shown"
                 self._end(client.page, wish)
-                wish.tell(PastViewState(run=wish.run, time_s=wish.time_s, problem=problem))
+                wish.report(PastViewState(run=wish.run, time_s=wish.time_s, problem=problem))
                 continue
             if client.due_s is not None:
                 due.append(client.due_s)
@@ -161,21 +161,21 @@ class PastViews:
             run = self._opened(wish.run, is_another=is_another_run)
             if is_another_run or client.drawing is None:
                 self._groups.clear_past(client.handle.client_id)
-                client.newest, client.drawing = LatestMessages(), SceneLayers(client.handle, under=PAST)
-            run.show(client.newest, wish.time_s)
+                client.latest, client.drawing = LatestMessages(), SceneLayers(client.handle, under=PAST)
+            run.show(client.latest, wish.time_s)
             client.wish = wish
         elif client.due_s is None:
             return
         if client.drawing is not None:
             # No animation: unlike in the live view, ghosts do not move in a loop.
-            client.due_s = client.drawing.all(client.newest, frozenset())
+            client.due_s = client.drawing.all(client.latest, frozenset())
         if is_new:
             with self._lock:
                 # Only after drawing; meanwhile the page may have returned to the live view.
                 if client.page in self._wishes:
                     self._groups.show_past(self._groups.past | {client.page})
             from_s, until_s = self._runs[wish.run].span_s
-            wish.tell(PastViewState(run=wish.run, time_s=wish.time_s, from_s=from_s, until_s=until_s))
+            wish.report(PastViewState(run=wish.run, time_s=wish.time_s, from_s=from_s, until_s=until_s))
 
     def _opened(self, run: str, *, is_another: bool) -> RecordedScene:
         known = self._runs.pop(run, None)

@@ -62,8 +62,8 @@ class RecordedScene:
         self._pieces[-1].refresh()
         return self._pieces[0].span_s[0], self._pieces[-1].span_s[1]
 
-    def show(self, newest: LatestMessages, time_s: float) -> None:
-        """Fill `newest` with the latest messages at a time of the run.
+    def show(self, latest: LatestMessages, time_s: float) -> None:
+        """Fill `latest` with the latest messages at a time of the run.
 
         Raises:
             RecordingError: the recording is damaged.
@@ -74,7 +74,7 @@ class RecordedScene:
             if kind in _DECODERS:
                 message = self._message(piece, topic, kind, time_s)
                 if message is not None:
-                    newest.put(topic.rpartition("/")[0], message)
+                    latest.put(topic.rpartition("/")[0], message)
 
     def _message(self, piece: IndexedRecording, topic: str, kind: str, time_s: float) -> object | None:
         recorded = piece.at(topic, time_s)

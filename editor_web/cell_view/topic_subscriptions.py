@@ -59,12 +59,12 @@ class TopicSubscriptions:
     """
 
     def __init__(
-        self, topics: TopicSource, newest: LatestMessages, *, shown: Callable[[], frozenset[LayerGroup]]
+        self, topics: TopicSource, latest: LatestMessages, *, shown: Callable[[], frozenset[LayerGroup]]
     ) -> None:
         self._topics = topics
-        self._newest = newest
+        self._latest = latest
         self._shown = shown
-        self._followed: dict[str, Callable[[], None]] = {}
+        self._unsubscribers: dict[str, Callable[[], None]] = {}
         self._asked = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
@@ -79,9 +79,9 @@ class TopicSubscriptions:
             self._task.cancel()
             await asyncio.wait({self._task})
             self._task = None
-        for unsubscribe in self._followed.values():
+        for unsubscribe in self._unsubscribers.values():
             unsubscribe()
-        self._followed = {}
+        self._unsubscribers = {}
 
     def ask(self) -> None:
         """Request an update of the subscriptions."""
@@ -101,15 +101,17 @@ class TopicSubscriptions:
             for entry in entries
             if entry.type in _RANK or _WHILE_SHOWN.get(entry.type) in shown
         }
-        for topic in [name for name in self._followed if name not in due]:
-            self._followed.pop(topic)()
+        for topic in [name for name in self._unsubscribers if name not in due]:
+            self._unsubscribers.pop(topic)()
         for topic in sorted(due, key=lambda name: (due[name], name)):
-            if topic not in self._followed:
+            if topic not in self._unsubscribers:
                 self._subscribe(topic)
 
     def _subscribe(self, topic: str) -> None:
         name = topic.rpartition("/")[0]
         try:
-            self._followed[topic] = self._topics.subscribe_topic(topic, lambda message: self._newest.put(name, message))
+            self._unsubscribers[topic] = self._topics.subscribe_topic(
+                topic, lambda message: self._latest.put(name, message)
+            )
         except FlexcellError as error:
             _log.info("nothing to draw from %s: %s", topic, error)

@@ -13,7 +13,7 @@ import viser
 from editor_web.cell_view.handles import DragHandle, DragHandles
 from editor_web.cell_view.layers.scene_layers import SceneLayers
 from editor_web.cell_view.page_ghosts import PageGhosts
-from editor_web.cell_view.past_view import PastViews, Tell
+from editor_web.cell_view.past_view import PastViews, StateListener
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import ClientLayerGroups, LayerGroup
 from editor_web.cell_view.rendering.viser_gateway import new_viser_server
@@ -47,8 +47,8 @@ class CellView:
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ending = threading.Event()
-        self._newest = LatestMessages()
-        self._follower = TopicSubscriptions(backend, self._newest, shown=lambda: self.shown)
+        self._latest = LatestMessages()
+        self._follower = TopicSubscriptions(backend, self._latest, shown=lambda: self.shown)
 
     @property
     def port(self) -> int:
@@ -69,8 +69,8 @@ class CellView:
         server.scene.configure_default_lights(cast_shadow=self._shadows)
         self._groups = ClientLayerGroups(server, changed=self._on_shown)
         self._past = PastViews(server, self._groups, find=self._backend.recording_files)
-        handles = self._handles = DragHandles(server, changed=self._newest.arrived.set)
-        ghosts = self._ghosts = PageGhosts(server, changed=self._newest.arrived.set)
+        handles = self._handles = DragHandles(server, changed=self._latest.arrived.set)
+        ghosts = self._ghosts = PageGhosts(server, changed=self._latest.arrived.set)
         self._thread = threading.Thread(
             target=self._write, args=(server, handles, ghosts), name="cell-view", daemon=True
         )
@@ -81,10 +81,10 @@ class CellView:
         if self._groups is not None:
             self._groups.show(page, groups)
 
-    def show_past(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
-        """Show a run at a time of its clock to a page; `tell` is called, on another thread, when it is drawn."""
+    def show_past(self, page: str, run: str, time_s: float, *, report: StateListener) -> None:
+        """Show a run at a time of its clock to a page; `report` is called, on another thread, when it is drawn."""
         if self._past is not None:
-            self._past.show(page, run, time_s, tell=tell)
+            self._past.show(page, run, time_s, report=report)
 
     def show_present(self, page: str) -> None:
         """Show the live cell to a page again."""
@@ -119,7 +119,7 @@ class CellView:
     def close(self) -> None:
         """End the threads; may take a second, call it off the event loop."""
         self._ending.set()
-        self._newest.arrived.set()
+        self._latest.arrived.set()
         if self._thread is not None:
             self._thread.join()
             self._thread = None
@@ -132,7 +132,7 @@ class CellView:
 
     def _on_shown(self) -> None:
         """Redraw and update the subscriptions after a change of the shown groups; called on any thread."""
-        self._newest.arrived.set()
+        self._latest.arrived.set()
         loop = self._loop
         if loop is not None:
             try:
@@ -145,10 +145,10 @@ class CellView:
         draw = SceneLayers(server)
         wait_s: float | None = None
         while not self._ending.is_set():
-            self._newest.arrived.wait(wait_s)
-            self._newest.arrived.clear()
-            due = (draw.all(self._newest, self.shown), ghosts.draw(self._newest, time.monotonic()))
-            handles.draw(self._newest)
+            self._latest.arrived.wait(wait_s)
+            self._latest.arrived.clear()
+            due = (draw.all(self._latest, self.shown), ghosts.draw(self._latest, time.monotonic()))
+            handles.draw(self._latest)
             self._ending.wait(PERIOD_S)
             next_s = min((each for each in due if each is not None), default=None)
             wait_s = None if next_s is None else max(0.0, next_s - time.monotonic())

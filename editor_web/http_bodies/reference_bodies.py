@@ -37,7 +37,7 @@ class MoveResultBody(msgspec.Struct, frozen=True, kw_only=True):
     """A moved document: the ids whose references were updated, and those whose references were not."""
 
     document: DocumentBody
-    followed: tuple[str, ...]
+    updated: tuple[str, ...]
     left: tuple[str, ...]
 
 

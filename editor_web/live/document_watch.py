@@ -28,12 +28,12 @@ class DocumentWatch:
         documents: DocumentRepository,
         *,
         changed: DocumentsCallback,
-        wanted: Callable[[], bool],
+        is_needed: Callable[[], bool],
         period_s: float = PERIOD_S,
     ) -> None:
         self._documents = documents
         self._changed = changed
-        self._wanted = wanted
+        self._is_needed = is_needed
         self._period_s = period_s
         self._seen: dict[str, tuple[int, int]] | None = None
         self._task: asyncio.Task[None] | None = None
@@ -70,7 +70,7 @@ class DocumentWatch:
         while True:
             # Not every file system reports changes, in particular those shared between containers.
             await asyncio.sleep(self._period_s)
-            if not self._wanted():
+            if not self._is_needed():
                 continue
             try:
                 changed = await asyncio.to_thread(self.look)

@@ -147,7 +147,7 @@ class LiveHub:
         self._unsubscribe: Callable[[], None] | None = None
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
         self.documents = DocumentWatch(
-            backend.documents, changed=self._on_documents, wanted=lambda: bool(self._clients)
+            backend.documents, changed=self._on_documents, is_needed=lambda: bool(self._clients)
         )
 
     @property

@@ -32,7 +32,7 @@ class PathLive(msgspec.Struct, frozen=True, kw_only=True):
 class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
     """One arm: its mode, its activity, the error of a reflex stop, and its speed override.
 
-    `way` is its planned path, which the 3D view shows.
+    `path` is its planned path, which the 3D view shows.
     """
 
     name: str
@@ -41,7 +41,7 @@ class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
     error: str
     speed_override: float
     controller: str
-    way: PathLive | None = None
+    path: PathLive | None = None
 
 
 class RobotStatusCache:
@@ -88,12 +88,12 @@ class RobotStatusCache:
                     error=message.error,
                     speed_override=message.settings.speed_override,
                     controller=message.settings.controller,
-                    way=known.way if known is not None else None,
+                    path=known.path if known is not None else None,
                 )
             case SpeedOverride() if known is not None:
                 line = msgspec.structs.replace(known, speed_override=message.share)
             case PathPreview() if known is not None:
-                line = msgspec.structs.replace(known, way=self._path(known.way, message))
+                line = msgspec.structs.replace(known, path=self._path(known.path, message))
             case _:
                 return
         if line != known:

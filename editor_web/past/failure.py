@@ -41,8 +41,8 @@ def failure_of(history: RunStateHistory) -> RunFailure | None:
     if end is None:
         return None
     events, steps = history.events(1, history.last_seq), history.steps
-    told = tuple(map(_link_and_hint, links_from_root(end.cause)))
-    links = tuple(link for link, _ in told)
+    described = tuple(map(_link_and_hint, links_from_root(end.cause)))
+    links = tuple(link for link, _ in described)
     origin = _origin(events, steps, end, end.cause)
     path = _path(origin)
     first = links[0] if links else None
@@ -51,7 +51,7 @@ def failure_of(history: RunStateHistory) -> RunFailure | None:
         time_s=origin.time_s,
         path=path,
         text=first.message if first is not None else log_line(end).text,
-        hint=next((hint for _, hint in told if hint), ""),
+        hint=next((hint for _, hint in described if hint), ""),
         links=links,
         steps=tuple(_steps(events, steps, path, origin.seq)),
         around=_around(events, steps, path, origin.seq),

@@ -29,7 +29,7 @@ class OpenRun:
     """One run with its history; thread-safe; `archived` is None for a run of this server."""
 
     course: RunHistory
-    books: UserdataCheckpoints
+    userdata: UserdataCheckpoints
     archived: ArchivedRun | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -53,21 +53,21 @@ class OpenRun:
         None if that is the state after event `known`, which the client has already.
         """
         with self.lock:
-            moments = self.course.moments
-            wanted = moments.last_seq if seq is None else min(seq, moments.last_seq)
-            wanted = wanted if time_s is None else moments.seq_at(time_s)
-            return None if wanted == known else moments.at(wanted, lines=lines)
+            states = self.course.states
+            position = states.last_seq if seq is None else min(seq, states.last_seq)
+            position = position if time_s is None else states.seq_at(time_s)
+            return None if position == known else states.at(position, lines=lines)
 
     def values(self, *, seq: int | None) -> PastUserdata:
         """Return its userdata after an event; by default after the last event."""
         with self.lock:
-            moments = self.course.moments
-            return self.books.at(moments, moments.last_seq if seq is None else min(seq, moments.last_seq))
+            states = self.course.states
+            return self.userdata.at(states, states.last_seq if seq is None else min(seq, states.last_seq))
 
     def failure(self, *, is_failed: bool) -> RunFailure | None:
         """Return its failure; None if it did not fail."""
         with self.lock:
-            return failure_of(self.course.moments) if is_failed else None
+            return failure_of(self.course.states) if is_failed else None
 
 
 class OpenRunCache:
@@ -94,7 +94,7 @@ class OpenRunCache:
         """
         key = f"server {run_id}"
         known = self._known(key)
-        after = known.course.moments.last_seq if known is not None else 0
+        after = known.course.states.last_seq if known is not None else 0
         try:
             further = self._backend.events(run_id, after=after)
         except FlexcellError:
@@ -130,8 +130,10 @@ class OpenRunCache:
 
     def _with(self, key: str, archived: ArchivedRun) -> OpenRun:
         plan = archived.plan
-        book = UserdataHistory(lambda: plan) if plan is not None else None
-        opened = OpenRun(course=RunHistory(archived.summary.id), books=UserdataCheckpoints(book), archived=archived)
+        userdata_history = UserdataHistory(lambda: plan) if plan is not None else None
+        opened = OpenRun(
+            course=RunHistory(archived.summary.id), userdata=UserdataCheckpoints(userdata_history), archived=archived
+        )
         # Before it is in the cache, so that no reader sees a partial history.
         opened.follow(archived.events)
         with self._lock:
@@ -151,9 +153,11 @@ class OpenRunCache:
         except FlexcellError:
             return None
 
-    def _entry(self, key: str, run_id: str, book: UserdataHistory | None) -> OpenRun:
+    def _entry(self, key: str, run_id: str, userdata_history: UserdataHistory | None) -> OpenRun:
         with self._lock:
-            opened = self._opened.get(key) or OpenRun(course=RunHistory(run_id), books=UserdataCheckpoints(book))
+            opened = self._opened.get(key) or OpenRun(
+                course=RunHistory(run_id), userdata=UserdataCheckpoints(userdata_history)
+            )
             self._keep(key, opened)
             return opened
 

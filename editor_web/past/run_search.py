@@ -42,11 +42,11 @@ def kind_of(run: PastRun) -> RunKind:
 
 
 def search_runs(
-    runs: Sequence[PastRun], wanted: PastRunQuery, *, offset: int, limit: int
+    runs: Sequence[PastRun], query: PastRunQuery, *, offset: int, limit: int
 ) -> tuple[tuple[PastRun, ...], int, Counter[str]]:
     """Return a page of the matching runs, their number, and the number of runs of each kind."""
-    matching = [run for run in runs if wanted.matches(run)]
+    matching = [run for run in runs if query.matches(run)]
     counts: Counter[str] = Counter(map(kind_of, matching))
     counts["all"] = len(matching)
-    shown = [run for run in matching if wanted.kind in ("all", kind_of(run))]
+    shown = [run for run in matching if query.kind in ("all", kind_of(run))]
     return tuple(shown[offset : offset + limit]), len(shown), counts

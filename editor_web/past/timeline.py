@@ -41,13 +41,13 @@ class RunHistory:
 
     def __init__(self, run_id: str) -> None:
         self.run_id = run_id
-        self.moments = RunStateHistory(run_id)
+        self.states = RunStateHistory(run_id)
         self._spans = ActivationIntervals()
         self._marks: list[TimelineMarker] = []
 
     def follow(self, event: Event) -> None:
         """Apply the next event; no effect if it was applied before."""
-        change = self.moments.follow(event)
+        change = self.states.follow(event)
         if change is None:
             return
         if change.nodes:
@@ -60,7 +60,7 @@ class RunHistory:
         self, *, from_s: float = 0.0, until_s: float = math.inf, after_seq: int = 0, most: int = MAX_INTERVALS
     ) -> Timeline:
         """Return the part of the run that overlaps a time range and is newer than an event; all of it if merged."""
-        now = self.moments.now
+        now = self.states.now
         is_many = len(self._spans) > most
         after_seq = 0 if is_many else after_seq
         rows = self._spans.of(from_s=from_s, until_s=until_s, after_seq=after_seq)

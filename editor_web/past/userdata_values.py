@@ -29,18 +29,18 @@ class UserdataCheckpoints:
         book: The userdata history of the run before its first event; None if the executed behavior is unknown.
     """
 
-    def __init__(self, book: UserdataHistory | None) -> None:
-        self._checkpoints = [book] if book is not None else []
+    def __init__(self, checkpoint: UserdataHistory | None) -> None:
+        self._checkpoints = [checkpoint] if checkpoint is not None else []
 
-    def at(self, moments: RunStateHistory, seq: int) -> PastUserdata:
+    def at(self, states: RunStateHistory, seq: int) -> PastUserdata:
         """Return the values after event `seq` of the run with this state history."""
         if not self._checkpoints:
             return PastUserdata(seq=seq, scopes={}, problem="the executed behavior is unknown")
-        index = bisect_right(self._checkpoints, seq, key=lambda book: book.seq) - 1
-        book = self._checkpoints[index].copy()
-        while book.seq + _EVERY < seq:
-            book.read(moments.events(book.seq + 1, book.seq + _EVERY))
-            if book.seq > self._checkpoints[-1].seq:
-                self._checkpoints.append(book.copy())
-        book.read(moments.events(book.seq + 1, seq))
-        return PastUserdata(seq=seq, scopes={path: userdata_scope(scope) for path, scope in book.scopes.items()})
+        index = bisect_right(self._checkpoints, seq, key=lambda checkpoint: checkpoint.seq) - 1
+        checkpoint = self._checkpoints[index].copy()
+        while checkpoint.seq + _EVERY < seq:
+            checkpoint.read(states.events(checkpoint.seq + 1, checkpoint.seq + _EVERY))
+            if checkpoint.seq > self._checkpoints[-1].seq:
+                self._checkpoints.append(checkpoint.copy())
+        checkpoint.read(states.events(checkpoint.seq + 1, seq))
+        return PastUserdata(seq=seq, scopes={path: userdata_scope(scope) for path, scope in checkpoint.scopes.items()})

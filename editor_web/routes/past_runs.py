@@ -51,9 +51,9 @@ async def list_past_runs(
     """List the matching runs of the journal, newest first, filtered by words, kind of end and start time."""
     backend = services.backend
     here = {run.id for run in backend.runs()}
-    wanted = PastRunQuery(text=text, kind=kind, since_s=since_s, until_s=math.inf if until_s is None else until_s)
+    query = PastRunQuery(text=text, kind=kind, since_s=since_s, until_s=math.inf if until_s is None else until_s)
     runs = await asyncio.to_thread(backend.archive.runs)
-    page, total, counts = search_runs(runs, wanted, offset=offset, limit=limit)
+    page, total, counts = search_runs(runs, query, offset=offset, limit=limit)
     bodies = tuple(
         past_run_body(run, recording=backend.archive.recording_of(run.id), here=run.id in here) for run in page
     )
@@ -166,15 +166,15 @@ def _failure(is_failed: bool | None) -> RunReader:
 
 
 def _open_runs(request: Request) -> OpenRunCache:
-    return request.app.state.pasts
+    return request.app.state.open_runs
 
 
 async def _of_run(request: Request, run_id: str, read: RunReader, *, fresh: bool = False) -> Response:
     """Read a run of this server, else of the journal, on a thread that does not block the engine."""
-    pasts = _open_runs(request)
-    known = pasts.of_server(run_id)
+    open_runs = _open_runs(request)
+    known = open_runs.of_server(run_id)
     if known is None:
-        return await asyncio.to_thread(lambda: _response(read(_of_journal(pasts, run_id, fresh=fresh))))
+        return await asyncio.to_thread(lambda: _response(read(_of_journal(open_runs, run_id, fresh=fresh))))
     opened, further = known
 
     def follow_and_read() -> Response:
@@ -184,23 +184,23 @@ async def _of_run(request: Request, run_id: str, read: RunReader, *, fresh: bool
     return await asyncio.to_thread(follow_and_read)
 
 
-def _of_journal(pasts: OpenRunCache, run_id: str, *, fresh: bool) -> OpenRun:
+def _of_journal(open_runs: OpenRunCache, run_id: str, *, fresh: bool) -> OpenRun:
     # A run that is open already needs no access to the journal.
-    if (fresh or not pasts.keeps(run_id)) and not any(run.id == run_id for run in pasts.archive.runs()):
+    if (fresh or not open_runs.keeps(run_id)) and not any(run.id == run_id for run in open_runs.archive.runs()):
         raise HTTPException(404, f"there is no run {run_id[:80]!r} on this server or in its journal")
-    return pasts.of_journal(run_id, fresh=fresh)
+    return open_runs.of_journal(run_id, fresh=fresh)
 
 
-def _of_recording(pasts: OpenRunCache, path: str, read: RunReader) -> Response:
-    return _response(read(_recording(pasts, path)))
+def _of_recording(open_runs: OpenRunCache, path: str, read: RunReader) -> Response:
+    return _response(read(_recording(open_runs, path)))
 
 
-def _recording(pasts: OpenRunCache, path: str) -> OpenRun:
+def _recording(open_runs: OpenRunCache, path: str) -> OpenRun:
     try:
-        pasts.archive.recording_file(path)
+        open_runs.archive.recording_file(path)
     except RecordingError as error:
         raise HTTPException(404, error.message) from error
-    return pasts.of_recording(path)
+    return open_runs.of_recording(path)
 
 
 def _response(value: object) -> Response:

@@ -30,12 +30,12 @@ _SAVE_PERIOD_S = 300.0
 _log = logging.getLogger("flexcell.sessions")
 
 
-class SessionRecord(msgspec.Struct, frozen=True, kw_only=True):
+class SessionRecord(msgspec.Struct, frozen=True, kw_only=True, rename={"started_s": "began_s"}):
     """One session as stored on disk; times in seconds since 1970."""
 
     digest: str
     role: Role
-    began_s: float
+    started_s: float
     used_s: float
 
 
@@ -50,14 +50,14 @@ class LoginSession:
 
     digest: str
     role: Role
-    began_s: float
+    started_s: float
     used_s: float
     is_over: bool = False
     _on_end: set[Callable[[], None]] = field(default_factory=set[Callable[[], None]], init=False)
 
     def left_s(self, now_s: float) -> float:
         """Return the remaining lifetime without further use."""
-        return min(self.began_s + ABSOLUTE_LIMIT_S, self.used_s + IDLE_LIMIT_S) - now_s
+        return min(self.started_s + ABSOLUTE_LIMIT_S, self.used_s + IDLE_LIMIT_S) - now_s
 
     @contextmanager
     def calling(self, on_end: Callable[[], None]) -> Generator[None]:
@@ -111,7 +111,7 @@ class LoginSessions:
         if kept.tokens != self._tokens:
             return
         for each in kept.sessions:
-            session = LoginSession(digest=each.digest, role=each.role, began_s=each.began_s, used_s=each.used_s)
+            session = LoginSession(digest=each.digest, role=each.role, started_s=each.started_s, used_s=each.used_s)
             if session.left_s(self._now_s()) > 0:
                 self._sessions[each.digest] = session
 
@@ -120,7 +120,7 @@ class LoginSessions:
         secret, now_s = secrets.token_urlsafe(32), self._now_s()
         digest = _digest(secret)
         with self._changing:
-            self._sessions[digest] = LoginSession(digest=digest, role=role, began_s=now_s, used_s=now_s)
+            self._sessions[digest] = LoginSession(digest=digest, role=role, started_s=now_s, used_s=now_s)
             while len(self._sessions) > _MAX_SESSIONS:
                 self._drop(min(self._sessions.values(), key=lambda each: each.used_s))
             self.save()
@@ -178,7 +178,7 @@ class LoginSessions:
 
     def _write(self, file: Path) -> None:
         records = tuple(
-            SessionRecord(digest=each.digest, role=each.role, began_s=each.began_s, used_s=each.used_s)
+            SessionRecord(digest=each.digest, role=each.role, started_s=each.started_s, used_s=each.used_s)
             for each in self._sessions.values()
         )
         try:

@@ -51,7 +51,7 @@ async def cell_grip(socket: WebSocket, page: str) -> None:
     await socket.accept()
     outbox = _Outbox()
     joggers = cast("dict[str, Jogger]", socket.app.state.joggers)
-    grip = HandleDrag(services.backend, view, page, joggers=joggers, tell=outbox.put)
+    grip = HandleDrag(services.backend, view, page, joggers=joggers, send=outbox.put)
     try:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, grip), name="grip-receive")

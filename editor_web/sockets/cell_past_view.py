@@ -82,7 +82,7 @@ async def _receive(socket: WebSocket, view: CellView, page: str, latest: _Latest
         if request.time_s is None:
             view.show_present(page)
         else:
-            view.show_past(page, request.run, request.time_s, tell=latest.put)
+            view.show_past(page, request.run, request.time_s, report=latest.put)
 
 
 async def _answer(socket: WebSocket, latest: _LatestState) -> None:

@@ -22,35 +22,35 @@ async def data(socket: WebSocket) -> None:
     """Serve one view of a page until it disconnects or is too slow."""
     services = services_of(socket)
     await socket.accept()
-    looking = PageSubscriptions(services.backend)
+    subscriptions = PageSubscriptions(services.backend)
     try:
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, looking), name="data-receive")
-            tasks.create_task(_sample(looking), name="data-sample")
-            tasks.create_task(_stream(socket, looking), name="data-stream")
+            tasks.create_task(_receive(socket, subscriptions), name="data-receive")
+            tasks.create_task(_sample(subscriptions), name="data-sample")
+            tasks.create_task(_stream(socket, subscriptions), name="data-stream")
     except* PageDisconnected:
         pass
 
 
-async def _receive(socket: WebSocket, looking: PageSubscriptions) -> None:
+async def _receive(socket: WebSocket, subscriptions: PageSubscriptions) -> None:
     while True:
-        looking.look(await read_message(socket, _decoder, expected="a look message"))
+        subscriptions.look(await read_message(socket, _decoder, expected="a look message"))
 
 
-async def _sample(looking: PageSubscriptions) -> None:
+async def _sample(subscriptions: PageSubscriptions) -> None:
     """Sample also while a slow page is being sent to, so that the page loses the oldest samples."""
     while True:
-        await looking.begun.wait()
-        if looking.samples:
-            looking.sample()
+        await subscriptions.begun.wait()
+        if subscriptions.samples:
+            subscriptions.sample()
         await asyncio.sleep(SAMPLE_S)
 
 
-async def _stream(socket: WebSocket, looking: PageSubscriptions) -> None:
+async def _stream(socket: WebSocket, subscriptions: PageSubscriptions) -> None:
     silent_s = 0.0
     while True:
-        await looking.begun.wait()
-        frames = looking.due()
+        await subscriptions.begun.wait()
+        frames = subscriptions.due()
         for frame in frames:
             await send_message(socket, frame)
         silent_s = 0.0 if frames else silent_s + SAMPLE_S

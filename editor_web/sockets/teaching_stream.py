@@ -134,12 +134,12 @@ class _Page:
         self._may_operate = may_operate
         self._waiting: deque[ToPage] = deque(maxlen=MOST_WAITING)
         self._board = ArmStatusReader(backend)
-        self._jogger = Jogger(backend.bus, taken=joggers, tell=self._waiting.append)
-        self._buttons = PressedButtons(backend.bus, tell=self._waiting.append)
+        self._jogger = Jogger(backend.bus, taken=joggers, send=self._waiting.append)
+        self._buttons = PressedButtons(backend.bus, send=self._waiting.append)
         self._unsubscribe: list[Callable[[], None]] = []
         self._hand: TeachStatus | None = None
-        self._is_hand_news = True
-        self._are_entries_news = False
+        self._is_hand_changed = True
+        self._are_entries_changed = False
         self._held_by = ""
         self._previews: set[tuple[str, int]] = set()
         self._preview_tasks: dict[int, asyncio.Task[None]] = {}
@@ -182,11 +182,11 @@ class _Page:
         """Return the pending messages to the page."""
         messages: list[ToPage] = list(self._waiting)
         self._waiting.clear()
-        if self._is_hand_news:
-            self._is_hand_news = False
+        if self._is_hand_changed:
+            self._is_hand_changed = False
             messages.append(HelpingHandFrame(status=self._hand))
-        if self._are_entries_news:
-            self._are_entries_news = False
+        if self._are_entries_changed:
+            self._are_entries_changed = False
             messages.append(EntriesChanged())
         if (jogging := self._jogging()) is not None:
             messages.append(jogging)
@@ -213,10 +213,10 @@ class _Page:
 
     def _on_hand(self, message: object) -> None:
         self._hand = message if isinstance(message, TeachStatus) else None
-        self._is_hand_news = True
+        self._is_hand_changed = True
 
     def _on_entries(self, _message: object) -> None:
-        self._are_entries_news = True
+        self._are_entries_changed = True
 
     async def _preview(self, request: PreviewTaught) -> None:
         try:

@@ -14,9 +14,9 @@ MOST_BUTTONS = 64
 class PressedButtons:
     """The pressed buttons of one page."""
 
-    def __init__(self, bus: JsonBus, *, tell: Callable[[RefusedFrame], None]) -> None:
+    def __init__(self, bus: JsonBus, *, send: Callable[[RefusedFrame], None]) -> None:
         self._bus = bus
-        self._tell = tell
+        self._send = send
         self._down: set[str] = set()
 
     async def take(self, button: ButtonInput) -> None:
@@ -28,7 +28,7 @@ class PressedButtons:
             await self._bus.publish(topic, {"value": button.value})
         except BusError as error:
             if button.value:
-                self._tell(RefusedFrame(what="button", message=f"no trigger listens to {topic}", hint=error.hint or ""))
+                self._send(RefusedFrame(what="button", message=f"no trigger listens to {topic}", hint=error.hint or ""))
             return
         (self._down.add if button.value else self._down.discard)(topic)
 

@@ -40,7 +40,7 @@ class ShowHandle(msgspec.Struct, frozen=True, kw_only=True, tag="take", tag_fiel
     """From the page: show the handle of this arm (empty: none); it moves the tool, or pushes an arm in hand guiding."""
 
     arm: Annotated[str, msgspec.Meta(max_length=200)] = ""
-    way: HandleMode = "move"
+    mode: HandleMode = "move"
 
 
 class DragKeepAlive(msgspec.Struct, frozen=True, kw_only=True, tag="held", tag_field="k"):
@@ -51,11 +51,11 @@ class HandleStatus(msgspec.Struct, frozen=True, kw_only=True, tag="gripped", tag
     """To the page: the arm whose handle it has (empty: none), and whether the handle is dragged."""
 
     arm: str
-    way: HandleMode
+    mode: HandleMode
     pulled: bool
 
 
-Tell = Callable[[HandleStatus | RefusedFrame], None]
+FrameSender = Callable[[HandleStatus | RefusedFrame], None]
 
 
 class HandleDrag:
@@ -69,12 +69,14 @@ class HandleDrag:
         tell: Receives the messages to the page.
     """
 
-    def __init__(self, backend: Session, view: CellView, page: str, *, joggers: dict[str, Jogger], tell: Tell) -> None:
+    def __init__(
+        self, backend: Session, view: CellView, page: str, *, joggers: dict[str, Jogger], send: FrameSender
+    ) -> None:
         self._backend = backend
         self._view = view
         self._page = page
-        self._tell = tell
-        self._jogger = Jogger(backend.bus, taken=joggers, tell=self._on_jog)
+        self._send = send
+        self._jogger = Jogger(backend.bus, taken=joggers, send=self._on_jog)
         self._loop = asyncio.get_running_loop()
         self._take = ShowHandle()
         self._handle: DragHandle | None = None
@@ -89,7 +91,7 @@ class HandleDrag:
         self._take = take
         description = self._backend.latest(f"{take.arm}/description") if take.arm else None
         if isinstance(description, RobotDescription):
-            turns = take.way == "move"
+            turns = take.mode == "move"
             self._handle = DragHandle(frame=description.tool_frame, turns=turns, pulled=self._on_pull(take))
             self._view.give_handle(self._page, self._handle)
         else:
@@ -161,7 +163,7 @@ class HandleDrag:
 
     async def _step(self, take: ShowHandle, target: WorldPose) -> None:
         now = self._now(take.arm)
-        if take.way == "push":
+        if take.mode == "push":
             await self._push(take.arm, _force(now, target))
             return
         if not self._jogger.arm:
@@ -169,7 +171,7 @@ class HandleDrag:
         await self._jogger.go(_velocity(now, target))
 
     async def _rest(self, take: ShowHandle) -> None:
-        if take.way == "move":
+        if take.mode == "move":
             await self._jogger.rest()
             return
         try:
@@ -188,16 +190,16 @@ class HandleDrag:
                 return now
         raise FlexcellError("the pose of the tool is unknown", where=arm)
 
-    def _on_jog(self, news: JogStatus | RefusedFrame) -> None:
-        if isinstance(news, RefusedFrame):
+    def _on_jog(self, status: JogStatus | RefusedFrame) -> None:
+        if isinstance(status, RefusedFrame):
             self._is_refused = True
-            self._tell(news)
+            self._send(status)
 
     def _refuse(self, message: str, hint: str) -> None:
-        self._tell(RefusedFrame(what="jog", message=message, hint=hint))
+        self._send(RefusedFrame(what="jog", message=message, hint=hint))
 
     def _send_status(self) -> None:
-        self._tell(HandleStatus(arm=self._take.arm, way=self._take.way, pulled=self._target is not None))
+        self._send(HandleStatus(arm=self._take.arm, mode=self._take.mode, pulled=self._target is not None))
 
 
 def _velocity(now: WorldPose, target: WorldPose) -> tuple[float, ...]:

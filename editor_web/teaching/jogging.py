@@ -31,11 +31,11 @@ class Jogger:
     """
 
     def __init__(
-        self, bus: JsonBus, *, taken: dict[str, Jogger], tell: Callable[[JogStatus | RefusedFrame], None]
+        self, bus: JsonBus, *, taken: dict[str, Jogger], send: Callable[[JogStatus | RefusedFrame], None]
     ) -> None:
         self._bus = bus
         self._taken = taken
-        self._tell = tell
+        self._send = send
         self._jog: StartJog | None = None
         self._task: asyncio.Task[None] | None = None
 
@@ -88,16 +88,16 @@ class Jogger:
         jog, self._jog = self._jog, None
         if jog is not None:
             self._taken.pop(jog.arm, None)
-            self._tell(JogStatus(arm=""))
+            self._send(JogStatus(arm=""))
 
     def _refuse(self, message: str, hint: str) -> None:
-        self._tell(RefusedFrame(what="jog", message=message, hint=hint))
+        self._send(RefusedFrame(what="jog", message=message, hint=hint))
 
     async def _perform(self, jog: StartJog) -> None:
         goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S}
         if jog.space == "tool":
             goal["frame"] = jog.frame
-        self._tell(JogStatus(arm=jog.arm))
+        self._send(JogStatus(arm=jog.arm))
         try:
             end = await self._bus.perform(f"{jog.arm}/jog_{jog.space}", goal)
             if end.status not in (GoalStatus.SUCCEEDED, GoalStatus.CANCELED):

@@ -61,7 +61,7 @@ class PageSubscriptions:
         self._rows: deque[tuple[float, tuple[float | None, ...]]] = deque()
         self._dropped = 0
         self._seen: dict[str, tuple[str, int]] = {}
-        self._book: UserdataHistory | None = None
+        self._history: UserdataHistory | None = None
         self._goals: dict[str, GoalProgress] | None = None
         self.begun = asyncio.Event()
         """Set while the page subscribes to anything."""
@@ -80,7 +80,7 @@ class PageSubscriptions:
             self._rows.clear()
             self._dropped = 0
         self._seen = {}
-        self._book = None
+        self._history = None
         self._goals = None
         if look.traffic or look.topic or look.fields or look.run or look.goals:
             self.begun.set()
@@ -151,13 +151,13 @@ class PageSubscriptions:
         return [frame]
 
     def _userdata(self, run: str) -> list[DataFrame]:
-        first = self._book is None
+        first = self._history is None
         try:
-            book = self._book = self._book or self._backend.userdata(run)
-            book.read(self._backend.events(run, after=book.seq))
+            userdata = self._history = self._history or self._backend.userdata(run)
+            userdata.read(self._backend.events(run, after=userdata.seq))
         except FlexcellError as error:
             return self._once("run", (run, -1), UserdataFrame(run=run, first=True, scopes={}, problem=error.message))
-        changes = book.changes()
+        changes = userdata.changes()
         if not changes and not first:
             return []
         scopes = {path: userdata_scope(scope) if scope is not None else None for path, scope in changes.items()}

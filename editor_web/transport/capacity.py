@@ -10,7 +10,7 @@ MAX_CONNECTIONS = 512
 COMMAND_RESERVE = 8
 """Number of connections reserved for an operator's commands."""
 _MIN_CONNECTIONS = 16
-_WANTED_DESCRIPTORS = 65_536
+_DESCRIPTORS = 65_536
 # For files, child processes and databases that are opened while the server runs.
 _SPARE_DESCRIPTORS = 12
 _OPEN_DESCRIPTORS = Path("/proc/self/fd")
@@ -20,9 +20,9 @@ _log = logging.getLogger("flexcell.server")
 def raise_descriptor_limit() -> None:
     """Raise the limit of open files of this process as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = _WANTED_DESCRIPTORS if hard == resource.RLIM_INFINITY else min(hard, _WANTED_DESCRIPTORS)
-    if soft != resource.RLIM_INFINITY and soft < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+    soft_limit = _DESCRIPTORS if hard == resource.RLIM_INFINITY else min(hard, _DESCRIPTORS)
+    if soft != resource.RLIM_INFINITY and soft < soft_limit:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft_limit, hard))
 
 
 def connection_limit() -> int:

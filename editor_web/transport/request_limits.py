@@ -24,16 +24,16 @@ def limit_body(receive: Receive) -> Receive:
     """Wrap `receive` of a request so that it rejects a body that is too large (413) or too slow (408)."""
     count = 0
     complete = False
-    began_s: float | None = None
+    started_s: float | None = None
 
     async def counted() -> Message:
-        nonlocal count, complete, began_s
+        nonlocal count, complete, started_s
         if complete:
             return await receive()  # waits for the end of the connection, without a limit
         now_s = asyncio.get_running_loop().time()
-        began_s = now_s if began_s is None else began_s
+        started_s = now_s if started_s is None else started_s
         try:
-            async with asyncio.timeout(BODY_LIMIT_S - (now_s - began_s)):
+            async with asyncio.timeout(BODY_LIMIT_S - (now_s - started_s)):
                 message = await receive()
         except TimeoutError as error:
             raise HTTPException(408, f"the request was not complete after {BODY_LIMIT_S:g} s") from error

@@ -109,24 +109,24 @@ class Archive:
             RecordingError: it is not in the project, cannot be read, is damaged, or is not a recording of a run.
         """
         recording = load_recording(recording_path(self.project, path))
-        told = recording.description
-        executed = self._read(recording.documents, told.behavior)
+        description = recording.description
+        executed = self._read(recording.documents, description.behavior)
         events = tuple(recorded.event for recorded in recording.events)
         last = events[-1] if events else None
         ended = last if isinstance(last, RunEnded) else None
         success = ended is not None and is_success(ended, executed.view.success)
         return ArchivedRun(
             summary=PastRun(
-                id=told.run,
-                behavior=told.behavior,
-                document=told.document,
+                id=description.run,
+                behavior=description.behavior,
+                document=description.document,
                 status=ended.status if ended is not None else "running",
                 outcome=ended.outcome if ended is not None else None,
                 success=success,
                 cause=describe_cause(ended.cause)
                 if ended is not None and ended.cause is not None and not success
                 else "",
-                started_at_s=told.started_unix_s,
+                started_at_s=description.started_unix_s,
                 duration_s=last.time_s if last is not None else 0.0,
                 events=last.seq if last is not None else 0,
             ),

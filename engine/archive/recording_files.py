@@ -118,8 +118,8 @@ def _files(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
 def _described(root: Path, file: Path, status: os.stat_result) -> RecordingFile:
     name = file.relative_to(root).as_posix()
     try:
-        told = read_description(file)
-        run, behavior, started_at_s, problem = told.run, told.behavior, told.started_unix_s, ""
+        description = read_description(file)
+        run, behavior, started_at_s, problem = description.run, description.behavior, description.started_unix_s, ""
     except RecordingError as error:
         run, behavior, started_at_s, problem = "", "", status.st_mtime, error.message
     return RecordingFile(

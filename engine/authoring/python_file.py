@@ -29,17 +29,17 @@ def load_python_behavior(name: str) -> Behavior:
     Raises:
         DocumentError: the file cannot be run, or has no such behavior; names the line.
     """
-    path, _, wanted = name.partition(".py:")
+    path, _, requested = name.partition(".py:")
     file = Path(path if path.endswith(".py") else f"{path}.py")
     start = Position(file=str(file), line=1, column=1)
     if not file.is_file():
         raise DocumentError("there is no such file", where=start, hint="check its path")
     found = {key: value for key, value in vars(_module(file, start)).items() if isinstance(value, Behavior)}
-    if wanted in found:
-        return found[wanted]
-    if wanted:
-        hint = did_you_mean(wanted, found)
-        raise DocumentError(f"this file has no behavior named `{wanted}`", where=start, hint=hint)
+    if requested in found:
+        return found[requested]
+    if requested:
+        hint = did_you_mean(requested, found)
+        raise DocumentError(f"this file has no behavior named `{requested}`", where=start, hint=hint)
     if len(found) != 1:
         message = f"this file has several behaviors: {', '.join(found)}" if found else "this file has no behavior"
         hint = f"select one: {file.name}:NAME" if found else "assign one to a name at the top level"

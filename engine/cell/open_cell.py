@@ -242,7 +242,7 @@ async def _wait_uncancelled(tasks: tuple[asyncio.Task[None], ...]) -> None:
     # A task that suppresses its cancellation is abandoned and named in the log.
     with suppress(NotStopped):
         late = [task for task in tasks if task in pending]
-        await preempt(late, OverduePolicy(tell=_log_overdue, abandon=_log_abandoned, abandon_after_s=_PATIENCE_S))
+        await preempt(late, OverduePolicy(report=_log_overdue, abandon=_log_abandoned, abandon_after_s=_PATIENCE_S))
     if cancelled is not None:
         raise cancelled
 

@@ -38,8 +38,8 @@ def stop(
     raise typer.Exit(stop_cell(state, reason))
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
+def _print_version(requested: bool) -> None:
+    if requested:
         typer.echo(f"flexcell {version('flexcell')}")
         raise typer.Exit
 

@@ -76,8 +76,8 @@ def _line(lines: Element, line: CoverageLine) -> None:
     element = SubElement(lines, "line", attributes)
     if line.branches:
         conditions = SubElement(element, "conditions")
-        for number, way in enumerate(line.branches):
-            coverage = "100%" if way.item.count else "0%"
+        for number, branch in enumerate(line.branches):
+            coverage = "100%" if branch.item.count else "0%"
             SubElement(conditions, "condition", {"number": str(number), "type": "jump", "coverage": coverage})
 
 

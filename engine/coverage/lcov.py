@@ -18,13 +18,13 @@ def _record(file: FileCoverage) -> str:
     rows += [f"FNDA:{node.count},{node.path}" for _, node in nodes]
     rows += [f"FNF:{len(nodes)}", f"FNH:{sum(node.count > 0 for _, node in nodes)}"]
     for line in file.lines:
-        rows += [_branch(line, index, way) for index, way in enumerate(line.branches)]
+        rows += [_branch(line, index, branch) for index, branch in enumerate(line.branches)]
     rows += [f"BRF:{file.branches}", f"BRH:{file.branches_taken}"]
     rows += [f"DA:{line.number},{line.hits}" for line in file.lines]
     rows += [f"LF:{len(file.lines)}", f"LH:{file.lines_covered}", "end_of_record"]
     return "\n".join(rows) + "\n"
 
 
-def _branch(line: CoverageLine, index: int, way: CoverageBranch) -> str:
+def _branch(line: CoverageLine, index: int, branch: CoverageBranch) -> str:
     # `-` means that the branch was never evaluated, because its node was never entered.
-    return f"BRDA:{line.number},0,{index},{way.item.count if way.reached else '-'}"
+    return f"BRDA:{line.number},0,{index},{branch.item.count if branch.reached else '-'}"

@@ -33,17 +33,17 @@ class CoverageLine:
     @property
     def hits(self) -> int:
         """How often its nodes were entered or, without nodes, its exits were taken."""
-        return sum(node.count for node in self.nodes) if self.nodes else sum(way.item.count for way in self.branches)
+        return sum(node.count for node in self.nodes) if self.nodes else sum(each.item.count for each in self.branches)
 
     @property
     def taken(self) -> int:
         """Number of its exits that were taken."""
-        return sum(way.item.count > 0 for way in self.branches)
+        return sum(each.item.count > 0 for each in self.branches)
 
     @property
     def missing(self) -> tuple[CoverageItem, ...]:
         """The items of the line that are not covered."""
-        return tuple(item for item in (*self.nodes, *(way.item for way in self.branches)) if not item.count)
+        return tuple(item for item in (*self.nodes, *(each.item for each in self.branches)) if not item.count)
 
     @property
     def status(self) -> LineStatus:

@@ -19,24 +19,24 @@ def _behavior(coverage: BehaviorCoverage) -> str:
     runs = "1 run" if coverage.runs == 1 else f"{coverage.runs} runs"
     lines = [f"{coverage.behavior} ({coverage.file}), {runs}", ""]
     nodes = [item for item in coverage.items if item.kind == "node"]
-    ways: dict[str, list[CoverageItem]] = {node.path: [] for node in nodes}
+    of_node: dict[str, list[CoverageItem]] = {node.path: [] for node in nodes}
     for item in coverage.items:
         if item.kind != "node":
-            ways[item.path].append(item)
+            of_node[item.path].append(item)
     width = max(len("node"), *(len(node.path) for node in nodes))
     lines.append(f"{'node':<{width}}  {'entered':>7}  {'exits':>7}")
     for node in nodes:
-        out = ways[node.path]
-        taken = sum(way.count > 0 for way in out)
+        out = of_node[node.path]
+        taken = sum(item.count > 0 for item in out)
         lines.append(f"{node.path:<{width}}  {node.count:>7}  {f'{taken}/{len(out)}':>7}")
         lines += [f"    {item.place}: {item.label}" for item in _missing(node, out)]
     lines += ["", *_totals(coverage), ""]
     return "\n".join(lines)
 
 
-def _missing(node: CoverageItem, ways: list[CoverageItem]) -> list[CoverageItem]:
+def _missing(node: CoverageItem, items: list[CoverageItem]) -> list[CoverageItem]:
     """Return the missing items; for a node that was never entered, only the node."""
-    return [way for way in ways if not way.count] if node.count else [node]
+    return [item for item in items if not item.count] if node.count else [node]
 
 
 def _totals(coverage: BehaviorCoverage) -> list[str]:

@@ -34,7 +34,7 @@ ANY_KEY = ""
 """The key of a gap with an unknown key."""
 _MOST_ROUNDS = 4
 _VERSION = ("flexcell",)
-_KEPT_WIRING = ("transitions", "on_error", "out")
+_KEPT_TRANSITIONS = ("transitions", "on_error", "out")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,18 +53,18 @@ def read_partial_behavior(source: DocumentSource, file: Path, left_out: Collecti
         file: Its file.
         left_out: Mappings and lists with unreadable content.
     """
-    sifting = MistakeCollector(repairs={NodeSpec: _with_kind})
-    data = sifting.sift(source.data, BehaviorDocument)
-    followed = [each for each in sifting.mistakes if not _follows(each, left_out)]
-    foreign = [each for each in sifting.mistakes if each.path == _VERSION and each.fault == "value"]
+    collector = MistakeCollector(repairs={NodeSpec: _with_kind})
+    data = collector.sift(source.data, BehaviorDocument)
+    unexplained = [each for each in collector.mistakes if not _follows(each, left_out)]
+    foreign = [each for each in collector.mistakes if each.path == _VERSION and each.fault == "value"]
     # In a document of another version, other mistakes cannot be determined.
-    errors = mistake_errors(source, BehaviorDocument, foreign or followed)
+    errors = mistake_errors(source, BehaviorDocument, foreign or unexplained)
     if foreign or not isinstance(data, dict):
         return PartialBehavior(behavior=None, mistakes=tuple(errors))
-    source = with_corrected_keys(source, sifting.mistakes)
+    source = with_corrected_keys(source, collector.mistakes)
     behavior = _behavior(cast("Plain", data), source, file)
     torn = [DocumentMistake(path=path, fault="value") for path in left_out]
-    gaps = _gaps(behavior, [*sifting.mistakes, *torn])
+    gaps = _gaps(behavior, [*collector.mistakes, *torn])
     for _ in range(_MOST_ROUNDS):
         found = list(islice(rule_violations(behavior), MAX_MISTAKES))
         errors += [each.error for each in found if each.path not in gaps or not each.path]
@@ -98,17 +98,17 @@ def _without(behavior: Behavior, found: Sequence[RuleViolation]) -> Plain:
     """Return the data without rule violations; a node that cannot be interpreted becomes an unknown state."""
     data, nodes = behavior.source.data, dict(behavior.nodes())
     # From the end, as removing a list item shifts the following ones.
-    for breach in reversed(found):
-        here = behavior.data_path(breach.path) if breach.path else ()
-        if breach.excess:
-            data = _changed(data, (*here, *breach.excess), None)
+    for violation in reversed(found):
+        here = behavior.data_path(violation.path) if violation.path else ()
+        if violation.excess:
+            data = _changed(data, (*here, *violation.excess), None)
         else:
-            data = _changed(data, here, _unreadable(nodes[breach.path], cast("Plain", _at(data, here))))
+            data = _changed(data, here, _unreadable(nodes[violation.path], cast("Plain", _at(data, here))))
     return cast("Plain", data)
 
 
 def _unreadable(node: NodeSpec, data: Plain) -> Plain:
-    kept = {key: data[key] for key in _KEPT_WIRING if key in data}
+    kept = {key: data[key] for key in _KEPT_TRANSITIONS if key in data}
     named = {"name": node.own_name} if node.name is not None else {}
     return {**kept, **named, "state": UNREADABLE}
 

@@ -89,9 +89,9 @@ def _describe(state: type[State]) -> StateSignature:
     name = state.state_name or f"{state.__module__}:{state.__qualname__}"
     if not state.outcomes:
         raise _broken(state, "it declares no outcomes", "add `outcomes: ClassVar[tuple[str, ...]] = (…)`")
-    stray = [outcome for outcome in state.success if outcome not in state.outcomes]
-    if stray:
-        raise _broken(state, f"its success names `{stray[0]}`, which is not one of its outcomes", "correct `success`")
+    unknown = [outcome for outcome in state.success if outcome not in state.outcomes]
+    if unknown:
+        raise _broken(state, f"its success names `{unknown[0]}`, which is not one of its outcomes", "correct `success`")
     for outcome, keys in state.unwritten.items():
         if outcome not in state.outcomes or not set(keys) <= set(state.outputs):
             raise _broken(state, f"its `unwritten` names an unknown outcome or key: {outcome}", "correct `unwritten`")

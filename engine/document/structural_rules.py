@@ -58,7 +58,7 @@ def require_structural_rules(behavior: Behavior) -> None:
     Raises:
         DocumentError: the first violation; `where` is its position, `others` are the others.
     """
-    errors = [breach.error for breach in rule_violations(behavior)]
+    errors = [violation.error for violation in rule_violations(behavior)]
     if errors:
         raise combine_mistakes(errors[:MAX_MISTAKES])
 
@@ -83,7 +83,7 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         if not found:
             node.clear_of.add(rules)
         yield from found
-        if all(breach.excess is not None for breach in found):
+        if all(violation.excess is not None for violation in found):
             # Inside a machine that is a leaf of a tree, machine rules apply again.
             in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in _PARTS)
 

@@ -72,8 +72,8 @@ def _hang(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> Faul
 def _fail(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     failure = rule.failure
     cause = Cause(message=failure.message, where=sending.address, kind="SkillFailed")
-    under_way = failure.by == "abort" and failure.after_s > 0
-    sent = sending() if under_way else None
+    aborts_later = failure.by == "abort" and failure.after_s > 0
+    sent = sending() if aborts_later else None
     _apply(rule, sending, scene, f"fails: {failure.message}")
     if sent is not None:
         return _playing(plays.abort_after(sent, failure.after_s, cause), sending, sent)

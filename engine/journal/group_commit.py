@@ -74,9 +74,9 @@ class _Group:
 
 @dataclass(frozen=True, eq=False)
 class CommitWaiter:
-    """A commit on an event loop that waits until the present events of `ledger` are durable."""
+    """A commit on an event loop that waits until the present events of `write_queue` are durable."""
 
-    ledger: RunWriteQueue
+    write_queue: RunWriteQueue
     future: asyncio.Future[None] = field(repr=False)
 
     def notify(self, error: JournalError | None) -> None:
@@ -169,10 +169,10 @@ class GroupCommitWriter:
         with self._lock:
             items = [self.queue.popleft() for _ in range(len(self.queue))]
             waiters = [item for item in items if isinstance(item, CommitWaiter)]
-            taken = {ledger: ledger.take() for ledger in dict.fromkeys(map(_queue_of, items))}
+            taken = {each: each.take() for each in dict.fromkeys(map(_queue_of, items))}
             self._requeue(taken)
-            groups = {ledger: group for ledger, group in taken.items() if group.events or group.world is not None}
-            healthy = [ledger for ledger in groups if ledger.failure is None]
+            groups = {each: group for each, group in taken.items() if group.events or group.world is not None}
+            healthy = [each for each in groups if each.failure is None]
             try:
                 self._write(groups)
             except Exception as error:
@@ -180,15 +180,15 @@ class GroupCommitWriter:
                 self._fail(healthy, _unexpected(error))
             finally:
                 for waiter in waiters:
-                    waiter.notify(self.failure or waiter.ledger.failure)
-                notified = {asking, *(waiter.ledger for waiter in waiters)}
-                for ledger in healthy:
-                    if ledger.failure is not None and ledger not in notified:
-                        ledger.notify(ledger.failure)
+                    waiter.notify(self.failure or waiter.write_queue.failure)
+                notified = {asking, *(waiter.write_queue for waiter in waiters)}
+                for write_queue in healthy:
+                    if write_queue.failure is not None and write_queue not in notified:
+                        write_queue.notify(write_queue.failure)
 
-    def _requeue(self, ledgers: Iterable[RunWriteQueue]) -> None:
+    def _requeue(self, write_queues: Iterable[RunWriteQueue]) -> None:
         """Queue ledgers again that received data while they were emptied: such data queues no ledger itself."""
-        if nonempty := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
+        if nonempty := [each for each in write_queues if each.events or each.worlds]:
             self.queue.extend(nonempty)
 
             self._wake.set()
@@ -201,35 +201,35 @@ class GroupCommitWriter:
 
     def _write(self, groups: dict[RunWriteQueue, _Group]) -> None:
         while True:
-            ready = {ledger: group for ledger, group in groups.items() if ledger.failure is None}
+            ready = {write_queue: group for write_queue, group in groups.items() if write_queue.failure is None}
             if not ready or self.failure is not None:
                 return
             try:
                 self._database.store(
                     [
-                        WriteBatch(ledger.run_id, ledger.epoch, group.events, group.world)
-                        for ledger, group in ready.items()
+                        WriteBatch(write_queue.run_id, write_queue.epoch, group.events, group.world)
+                        for write_queue, group in ready.items()
                     ]
                 )
             except RunRefused as error:
-                refused = next(ledger for ledger in ready if ledger.run_id == error.where)
+                refused = next(write_queue for write_queue in ready if write_queue.run_id == error.where)
                 self._fail([refused], JournalError(error.message, where=self._database.path, hint=error.hint))
                 continue
             except JournalError as error:
                 self._fail(ready, error)
                 return
-            for ledger, group in ready.items():
-                ledger.durable += len(group.events)
+            for write_queue, group in ready.items():
+                write_queue.durable += len(group.events)
             return
 
-    def _fail(self, ledgers: Iterable[RunWriteQueue], error: JournalError) -> None:
+    def _fail(self, write_queues: Iterable[RunWriteQueue], error: JournalError) -> None:
         self.last_failure = error
-        for ledger in ledgers:
-            ledger.fail(error)
+        for write_queue in write_queues:
+            write_queue.fail(error)
 
 
 def _queue_of(item: RunWriteQueue | CommitWaiter) -> RunWriteQueue:
-    return item.ledger if isinstance(item, CommitWaiter) else item
+    return item.write_queue if isinstance(item, CommitWaiter) else item
 
 
 def _unexpected(error: BaseException) -> JournalError:

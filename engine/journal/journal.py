@@ -35,31 +35,31 @@ def journal_path(place: Path | str) -> Path:
 class SqliteRunJournal:
     """The journal of one run, a part of a `Journal`."""
 
-    def __init__(self, ledger: RunWriteQueue, writer: GroupCommitWriter, *, place: Path) -> None:
+    def __init__(self, write_queue: RunWriteQueue, writer: GroupCommitWriter, *, place: Path) -> None:
         self._place = place
-        self._ledger = ledger
+        self._write_queue = write_queue
         self._writer = writer
-        self._events = ledger.events
+        self._events = write_queue.events
 
     @property
     def run_id(self) -> str:
         """The id of the run."""
-        return self._ledger.run_id
+        return self._write_queue.run_id
 
     @property
     def epoch(self) -> int:
         """1 for the engine that started the run, plus 1 for each that resumed it."""
-        return self._ledger.epoch
+        return self._write_queue.epoch
 
     def append(self, event: Event) -> None:
         """Append an event; the next commit of any run, or a timer, encodes and writes it."""
-        ledger, events = self._ledger, self._events
+        write_queue, events = self._write_queue, self._events
         events.append(event)
-        ledger.appended += 1
-        ledger.last_seq = event.seq
+        write_queue.appended += 1
+        write_queue.last_seq = event.seq
         waiting = len(events)
         if waiting == 1:
-            self._writer.queue.append(ledger)
+            self._writer.queue.append(write_queue)
             self._writer.wake_soon()
         elif waiting >= WAKE_AT_EVENTS:
             self._writer.wake()
@@ -76,17 +76,17 @@ class SqliteRunJournal:
     async def apply_backpressure(self) -> None:
         """Return at once, or commit when more than `MAX_PENDING_EVENTS` are not on disk yet."""
         # Those that the writer has taken are in memory too.
-        if self._ledger.appended - self._ledger.durable > MAX_PENDING_EVENTS:
+        if self._write_queue.appended - self._write_queue.durable > MAX_PENDING_EVENTS:
             await self.commit()
 
     def append_world_state(self, state: bytes) -> None:
         """Append the state of the simulated world; the next commit stores it with the events so far."""
-        self._ledger.worlds.append(WorldState(self._ledger.last_seq, state))
-        self._writer.queue.append(self._ledger)
+        self._write_queue.worlds.append(WorldState(self._write_queue.last_seq, state))
+        self._writer.queue.append(self._write_queue)
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
         """Call `listener` on this event loop when events cannot be written and no commit is waiting."""
-        self._ledger.listener, self._ledger.loop = listener, asyncio.get_running_loop()
+        self._write_queue.listener, self._write_queue.loop = listener, asyncio.get_running_loop()
 
     async def commit(self) -> None:
         """Return when all appended events are on disk.
@@ -94,17 +94,17 @@ class SqliteRunJournal:
         Raises:
             JournalError: an event could not be written, now or at an earlier commit; the run must stop.
         """
-        ledger, writer = self._ledger, self._writer
-        if (failure := writer.failure or ledger.failure) is not None:
+        write_queue, writer = self._write_queue, self._writer
+        if (failure := writer.failure or write_queue.failure) is not None:
             raise _again(failure)
-        if ledger.durable == ledger.appended:
+        if write_queue.durable == write_queue.appended:
             return
         if not writer.threaded:
-            writer.flush(asking=ledger)
-            if (failure := writer.failure or ledger.failure) is not None:
+            writer.flush(asking=write_queue)
+            if (failure := writer.failure or write_queue.failure) is not None:
                 raise _again(failure)
             return
-        waiter = CommitWaiter(ledger, asyncio.get_running_loop().create_future())
+        waiter = CommitWaiter(write_queue, asyncio.get_running_loop().create_future())
         writer.queue.append(waiter)
         writer.wake()
         if (failure := writer.failure) is not None:

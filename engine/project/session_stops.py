@@ -26,7 +26,7 @@ class SessionStops:
     def __init__(self, cell: OpenCell, runs: Mapping[str, SessionRun]) -> None:
         self._cell = cell
         self._runs = runs
-        self._under_way: set[asyncio.Future[None]] = set()
+        self._active_stops: set[asyncio.Future[None]] = set()
         self._releases: set[asyncio.Task[None]] = set()
 
     def begin(self) -> None:
@@ -52,7 +52,7 @@ class SessionStops:
         """
         try:
             async with asyncio.timeout(_PATIENCE_S):
-                while pending := {*self._under_way, *self._releases}:
+                while pending := {*self._active_stops, *self._releases}:
                     await asyncio.wait(pending)
         except TimeoutError as error:
             raise ControlError(
@@ -73,20 +73,20 @@ class SessionStops:
     @contextmanager
     def _carried_out(self) -> Generator[None]:
         over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._under_way.add(over)
+        self._active_stops.add(over)
         try:
             yield
         finally:
-            self._under_way.remove(over)
+            self._active_stops.remove(over)
             over.set_result(None)
 
     async def _stop_everything(self, reason: str) -> tuple[asyncio.Task[None], ...]:
         """Stop runs, goals and robots; return the tasks of the runs, which may still be cleaning up."""
-        under_way = [started for started in self._runs.values() if started.result is None]
-        for started in under_way:
+        active_runs = [started for started in self._runs.values() if started.result is None]
+        for started in active_runs:
             started.stop(reason)
         await self._cell.stop()
-        return tuple(started.task for started in under_way if started.task is not None)
+        return tuple(started.task for started in active_runs if started.task is not None)
 
     async def _stopped_by_relay(self, notice: StopNotice) -> None:
         """End all runs and goals; the devices are already stopped, and are released when this returns."""

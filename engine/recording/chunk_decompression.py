@@ -29,16 +29,16 @@ def decompress_chunk(chunk: Chunk, allowance: ReadBudget) -> bytes:
 
 def _unpacked(chunk: Chunk) -> bytes:
     # Request one byte more than declared, to detect excess data.
-    wanted = chunk.uncompressed_size + 1
+    limit = chunk.uncompressed_size + 1
     match chunk.compression:
         case "":
             return chunk.data
         case "zstd":
             reader = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK).stream_reader(chunk.data)
-            return reader.read(wanted)
+            return reader.read(limit)
         case "lz4":
             # It has no types.
             frame: Any = import_module("lz4.frame")
-            return frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=wanted)
+            return frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=limit)
         case other:
             raise ValueError(f"a chunk has the unknown compression {other[:20]!r}")

@@ -162,13 +162,13 @@ def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
     if index is None:
         return None
     content = FileContent(complete=True)
-    wanted = {record.id for record in index if isinstance(record, Channel) and record.topic == topic}
+    channel_ids = {record.id for record in index if isinstance(record, Channel) and record.topic == topic}
     for record in index:
         match record:
             case ChunkIndex():
-                if wanted.intersection(record.message_index_offsets):
+                if channel_ids.intersection(record.message_index_offsets):
                     for found in _records(stream, record.chunk_start_offset, allowance, only=True):
-                        _keep_message(found, wanted, content, allowance)
+                        _keep_message(found, channel_ids, content, allowance)
             case AttachmentIndex() | MetadataIndex():
                 for found in _records(stream, record.offset, allowance, only=True):
                     _keep(found, content, allowance)
@@ -205,8 +205,8 @@ def _verify_data(stream: BinaryIO, end: int) -> None:
     record = stream.read(_DATA_END)
     if record[0] != Opcode.DATA_END:
         raise ValueError("its data has no end")
-    wanted = int.from_bytes(record[_FRAME:], "little")
-    if wanted == 0:
+    expected = int.from_bytes(record[_FRAME:], "little")
+    if expected == 0:
         # The file has no checksum.
         return
     stream.seek(0)
@@ -215,21 +215,21 @@ def _verify_data(stream: BinaryIO, end: int) -> None:
         piece = stream.read(min(end, _PIECE))
         found = zlib.crc32(piece, found)
         end -= len(piece)
-    if found != wanted:
+    if found != expected:
         raise ValueError("the checksum of its data is wrong")
 
 
 def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
     content = FileContent()
-    wanted: set[int] = set()
+    channel_ids: set[int] = set()
     allowance = new_read_budget(stream)
     for record in _records(stream, _MAGIC, allowance):
         match record:
             case Channel():
                 if record.topic == topic:
-                    wanted.add(record.id)
+                    channel_ids.add(record.id)
             case Message():
-                _keep_message(record, wanted, content, allowance)
+                _keep_message(record, channel_ids, content, allowance)
             case Footer():
                 content.complete = stream.read(_MAGIC) == MCAP0_MAGIC
             case _:
@@ -237,8 +237,8 @@ def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
     return content
 
 
-def _keep_message(record: McapRecord, wanted: set[int], content: FileContent, allowance: ReadBudget) -> None:
-    if isinstance(record, Message) and record.channel_id in wanted:
+def _keep_message(record: McapRecord, channel_ids: set[int], content: FileContent, allowance: ReadBudget) -> None:
+    if isinstance(record, Message) and record.channel_id in channel_ids:
         allowance.take_message(len(record.data))
         content.messages.append(record)
 

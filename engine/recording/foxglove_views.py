@@ -87,12 +87,12 @@ def log_line(event: Event, at_ns: int) -> FoxgloveLog | None:
     tag = event.__struct_config__.tag
     if tag not in _LOGGED:
         return None
-    said = event_text(event)
-    if tag == _EXITED and said.cause is None:
+    shown = event_text(event)
+    if tag == _EXITED and shown.cause is None:
         return None
-    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
-    level = _LEVELS.get(said.level, 2)
-    return FoxgloveLog(timestamp=time_of(at_ns), level=level, message=f"{said.text}{why}", name=said.path)
+    why = f": {describe_cause(shown.cause)}" if shown.cause is not None else ""
+    level = _LEVELS.get(shown.level, 2)
+    return FoxgloveLog(timestamp=time_of(at_ns), level=level, message=f"{shown.text}{why}", name=shown.path)
 
 
 def _transforms(poses: FramePoses, at_ns: int) -> FoxgloveFrameTransforms:

@@ -88,12 +88,12 @@ class IndexedRecording:
                 if stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
                     raise ValueError("it is not an MCAP file")
                 new_read_budget(stream)
-                moments = cls(path, stream)
-                moments._begin()
+                opened = cls(path, stream)
+                opened._begin()
             except BaseException:
                 stream.close()
                 raise
-        return moments
+        return opened
 
     def __enter__(self) -> Self:
         return self
@@ -144,8 +144,8 @@ class IndexedRecording:
             if track is None:
                 return None
             # Past all times that fit, everything has been.
-            wanted_ns = self._zero_ns + round(min(max(time_s, -1e9), 1e9) * 1e9)
-            row = bisect_right(track.times_ns, wanted_ns) - 1
+            at_ns = self._zero_ns + round(min(max(time_s, -1e9), 1e9) * 1e9)
+            row = bisect_right(track.times_ns, at_ns) - 1
             return self._stored(track, row) if row >= 0 else None
 
     def _begin(self) -> None:

@@ -76,9 +76,9 @@ class TopicTap:
         for topic, subscription in self._subscriptions:
             subscription.close()
             try:
-                newest = topic.latest
-                if newest is not None and newest != self._recorded[topic.name].last:
-                    self._write(topic.name, newest)
+                message = topic.latest
+                if message is not None and message != self._recorded[topic.name].last:
+                    self._write(topic.name, message)
             except Exception:
                 # As above; the run has ended, and the other topics have last messages too.
                 _log.exception("the last message of topic %s is not recorded", topic.name)

@@ -18,17 +18,17 @@ class RecordedEntrySchedule:
         timetable: Hands them out.
     """
 
-    def __init__(self, story: Sequence[RecordedEvent], timetable: RecordedSchedule) -> None:
+    def __init__(self, expected: Sequence[RecordedEvent], timetable: RecordedSchedule) -> None:
         self._timetable = timetable
-        self._moments = {
+        self._instants = {
             (each.event.path, each.event.visit): RecordedInstant(place, each.at_s)
-            for place, each in enumerate(story)
+            for place, each in enumerate(expected)
             if isinstance(each.event, NodeEntered)
         }
 
     def expect(self, path: str, visit: int, wake: Callable[[], None]) -> Callable[[], None]:
         """Call `wake` when the node at `path` is due to be entered the `visit`-th time; returns what forgets that."""
-        moment = self._moments.get((path, visit))
+        moment = self._instants.get((path, visit))
         if moment is None:
             return lambda: None
         due = self._timetable.expect(moment.place, moment.at_s, wake)

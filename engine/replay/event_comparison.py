@@ -40,8 +40,8 @@ class EventComparison(Protocol):
 class TotalOrderComparison:
     """Compares every event in order and with its time; for recordings on the virtual clock."""
 
-    def __init__(self, story: Sequence[RecordedEvent]) -> None:
-        self._story = story
+    def __init__(self, expected: Sequence[RecordedEvent]) -> None:
+        self._expected = expected
         self._met = 0
 
     @property
@@ -52,11 +52,11 @@ class TotalOrderComparison:
     @property
     def done(self) -> bool:
         """True when every recorded event has occurred."""
-        return self._met == len(self._story)
+        return self._met == len(self._expected)
 
     def take(self, event: Event) -> ReplayDifference | None:
         """Compare the next event of the replay."""
-        recorded = self._story[self._met].event if not self.done else None
+        recorded = self._expected[self._met].event if not self.done else None
         if recorded is not None and _is_same(recorded, event) and _is_same_time(recorded, event):
             self._met += 1
             return None
@@ -66,10 +66,10 @@ class TotalOrderComparison:
         """Return the first recorded event that has not occurred; None if all have."""
         if self.done:
             return None
-        return event_difference(self._story[self._met].event, None, before=self._before(), why=why)
+        return event_difference(self._expected[self._met].event, None, before=self._before(), why=why)
 
     def _before(self) -> list[Event]:
-        return [each.event for each in self._story[max(0, self._met - CONTEXT) : self._met]]
+        return [each.event for each in self._expected[max(0, self._met - CONTEXT) : self._met]]
 
 
 class PathOrderComparison:
@@ -78,10 +78,10 @@ class PathOrderComparison:
     Between two branches the order of real time is chance, and so is every time.
     """
 
-    def __init__(self, story: Sequence[RecordedEvent]) -> None:
+    def __init__(self, expected: Sequence[RecordedEvent]) -> None:
         self._due: dict[str, deque[Event]] = defaultdict(deque)
-        self._story = story
-        for each in story:
+        self._expected = expected
+        for each in expected:
             self._due[_path(each.event)].append(each.event)
         self._met = 0
         self._last: dict[str, deque[Event]] = defaultdict(lambda: deque(maxlen=CONTEXT))
@@ -94,7 +94,7 @@ class PathOrderComparison:
     @property
     def done(self) -> bool:
         """True when every recorded event has occurred."""
-        return self._met == len(self._story)
+        return self._met == len(self._expected)
 
     def take(self, event: Event) -> ReplayDifference | None:
         """Compare the next event of the replay."""

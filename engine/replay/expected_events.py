@@ -55,22 +55,22 @@ def replayed_events(recording: Recording) -> tuple[RecordedEvent, ...]:
     Raises:
         RecordingError: this run cannot be replayed from its start.
     """
-    story = tuple(each for each in recording.events if is_replayed(each.event))
-    if not story:
+    expected = tuple(each for each in recording.events if is_replayed(each.event))
+    if not expected:
         raise RecordingError("this recording contains no events", where=recording.path, hint="record it again")
-    if not isinstance(story[0].event, RunStarted):
+    if not isinstance(expected[0].event, RunStarted):
         raise RecordingError(
             "this recording does not begin with the start of its run", where=recording.path, hint="record it again"
         )
-    for each in story:
+    for each in expected:
         _require_replayable(each.event, recording)
-    return story
+    return expected
 
 
-def interventions(story: Sequence[RecordedEvent], supervision: RunOptions) -> Iterator[Intervention]:
+def interventions(expected: Sequence[RecordedEvent], supervision: RunOptions) -> Iterator[Intervention]:
     """Iterate over external interventions, without the run's own reactions to them."""
     lost_s: float | None = None
-    for place, each in enumerate(story):
+    for place, each in enumerate(expected):
         event = each.event
         if isinstance(event, OperatorChanged):
             lost_s = each.at_s if event.status == "lost" else None
@@ -81,7 +81,7 @@ def interventions(story: Sequence[RecordedEvent], supervision: RunOptions) -> It
         if lost_s is not None and _is_loss(event, each.at_s - lost_s, supervision):
             lost_s = None
             continue
-        yield Intervention(place, each.at_s, event, _failure(event, story[-1].event))
+        yield Intervention(place, each.at_s, event, _failure(event, expected[-1].event))
 
 
 def _failure(event: OutsideEvent, end: Event) -> Cause | None:

@@ -45,13 +45,13 @@ _EFFORT = 20_000
 
 
 def search_order(
-    first: ReplayRun, attempt: Callable[[Mapping[int, int]], ReplayRun], story: Sequence[RecordedEvent]
+    first: ReplayRun, attempt: Callable[[Mapping[int, int]], ReplayRun], expected: Sequence[RecordedEvent]
 ) -> ReplayRun:
     """Return the attempt with the most equal events, beginning with `first`; deterministic."""
     best = first
-    left = max(1, _EFFORT // len(story))
-    while not best.same and best.met < len(story):
-        for turns in _variants(best, story):
+    left = max(1, _EFFORT // len(expected))
+    while not best.same and best.met < len(expected):
+        for turns in _variants(best, expected):
             left -= 1
             tried = attempt(turns)
             if tried.same or tried.met > best.met:
@@ -64,17 +64,17 @@ def search_order(
     return best
 
 
-def _variants(best: ReplayRun, story: Sequence[RecordedEvent]) -> Iterator[Mapping[int, int]]:
+def _variants(best: ReplayRun, expected: Sequence[RecordedEvent]) -> Iterator[Mapping[int, int]]:
     """Iterate over other orders of the responses at the instant at which an attempt failed.
 
     Responses are moved one after the other, the last one first, then the last few together.
     """
-    instant_s = story[best.met].at_s
+    instant_s = expected[best.met].at_s
     places: list[int] = []
     for place in range(best.met, -1, -1):
-        if abs(story[place].at_s - instant_s) > _INSTANT_S or len(places) == _MOST_ANSWERS:
+        if abs(expected[place].at_s - instant_s) > _INSTANT_S or len(places) == _MOST_ANSWERS:
             break
-        if isinstance(story[place].event, _ANSWERS):
+        if isinstance(expected[place].event, _ANSWERS):
             places.append(place)
     for turns in (BEFORE_CANCEL, *range(1, _MOST_TURNS + 1)):
         for place in places:

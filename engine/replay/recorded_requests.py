@@ -56,11 +56,11 @@ class RecordedRead:
 class RecordedRequests:
     """All requests of a recording; each is used once, in the order of its path."""
 
-    def __init__(self, story: Sequence[RecordedEvent]) -> None:
+    def __init__(self, expected: Sequence[RecordedEvent]) -> None:
         self._requests: dict[str, list[RecordedRequest]] = defaultdict(list)
         self._reads: dict[tuple[str, str], deque[RecordedRead]] = defaultdict(deque)
         self._taken: dict[str, int] = defaultdict(int)
-        self._index(story)
+        self._index(expected)
 
     def take(self, path: str) -> RecordedRequest | None:
         """Return the next request of a path; None if the recording has no more."""
@@ -78,10 +78,10 @@ class RecordedRequests:
         """Return a message to the queue of the next read: a cancelled read is not in the recording."""
         self._reads[read.event.path, read.event.topic].appendleft(read)
 
-    def _index(self, story: Iterable[RecordedEvent]) -> None:
+    def _index(self, expected: Iterable[RecordedEvent]) -> None:
         open_requests: dict[str, RecordedRequest] = {}
         ended: dict[str, RecordedRequest] = {}
-        for place, each in enumerate(story):
+        for place, each in enumerate(expected):
             moment = RecordedInstant(place, each.at_s)
             match each.event:
                 case ServiceCalled() as event:

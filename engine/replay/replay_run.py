@@ -55,20 +55,22 @@ class ReplayRun:
         self,
         recording: Recording,
         plan: Plan,
-        story: Sequence[RecordedEvent],
+        expected: Sequence[RecordedEvent],
         turns: Mapping[int, int],
         versions: Mapping[int, Plan] = NO_VERSIONS,
     ) -> None:
         self._versions = versions
         self._recording = recording
         self._plan = plan
-        self._story = story
+        self._expected = expected
         self.turns = turns
         self._exact = recording.description.clock == "virtual"
-        self._interventions = tuple(interventions(story, recording.description.supervision))
+        self._interventions = tuple(interventions(expected, recording.description.supervision))
         for each in self._interventions:
             require_known(each.event)
-        self._comparison: EventComparison = TotalOrderComparison(story) if self._exact else PathOrderComparison(story)
+        self._comparison: EventComparison = (
+            TotalOrderComparison(expected) if self._exact else PathOrderComparison(expected)
+        )
         self.difference: ReplayDifference | None = None
         self.events: list[Event] = []
         self._commands: deque[Intervention] = deque()
@@ -95,11 +97,11 @@ class ReplayRun:
             by_place=self._exact,
             resolution_s=self._recording.resolution_s,
             turns=self.turns,
-            until_s=self._story[-1].at_s + (_PATIENCE_S if self._exact else _REAL_PATIENCE_S),
+            until_s=self._expected[-1].at_s + (_PATIENCE_S if self._exact else _REAL_PATIENCE_S),
             on_standstill=self._stand_still,
         )
         self._port = ReplayPort(
-            RecordedRequests(self._story), RecordedEntrySchedule(self._story, self._timetable), self._timetable
+            RecordedRequests(self._expected), RecordedEntrySchedule(self._expected, self._timetable), self._timetable
         )
         self._run = Run(
             self._plan,
@@ -125,8 +127,8 @@ class ReplayRun:
 
     def _intervene_first(self) -> None:
         """Do at once what was done before the first node was performed; the rest when it is due."""
-        begun = (place for place, each in enumerate(self._story) if not isinstance(each.event, _BEFORE))
-        first = next(begun, len(self._story))
+        begun = (place for place, each in enumerate(self._expected) if not isinstance(each.event, _BEFORE))
+        first = next(begun, len(self._expected))
         for each in self._interventions:
             if each.place > first:
                 self._timetable.expect(each.place, each.at_s, lambda each=each: self._command(each))

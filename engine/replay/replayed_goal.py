@@ -76,11 +76,11 @@ class ReplayedGoal:
         self._resumes += 1
         await self._confirmed(self._recorded.resumed if self._recorded is not None else [], self._resumes)
 
-    async def _confirmed(self, moments: list[RecordedInstant], number: int) -> None:
-        if number > len(moments):
+    async def _confirmed(self, instants: list[RecordedInstant], number: int) -> None:
+        if number > len(instants):
             await self._ended(self._confirmations)
             return
-        moment = moments[number - 1]
+        moment = instants[number - 1]
         waiter = self._waiter(self._confirmations)
         due = self._timetable.expect(moment.place, moment.at_s, lambda: wake_waiter(waiter))
         try:

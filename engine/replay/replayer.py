@@ -47,20 +47,20 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
         DocumentError: the behavior cannot be executed with the recorded parameters and inputs.
     """
     started_s = perf_counter()
-    story = replayed_events(recording)
+    expected = replayed_events(recording)
     plan = new_plan(_executed(recording, behavior), catalogue)
-    versions = dict(_versions(story, plan, catalogue))
+    versions = dict(_versions(expected, plan, catalogue))
     if behavior is not None and versions:
         raise RecordingError("a run whose behavior was changed is replayed with its own versions only")
 
     def attempt(turns: Mapping[int, int]) -> ReplayRun:
-        again = ReplayRun(recording, plan, story, turns, versions)
+        again = ReplayRun(recording, plan, expected, turns, versions)
         ReplayLoop().run_main(again.run())
         return again
 
     again = attempt({})
     if recording.description.clock == "virtual":
-        again = search_order(again, attempt, story)
+        again = search_order(again, attempt, expected)
     return ReplayReport(
         recording=recording,
         difference=again.difference,
@@ -70,9 +70,9 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
     )
 
 
-def _versions(story: Sequence[RecordedEvent], plan: Plan, catalogue: Catalogue) -> Iterator[tuple[int, Plan]]:
+def _versions(expected: Sequence[RecordedEvent], plan: Plan, catalogue: Catalogue) -> Iterator[tuple[int, Plan]]:
     """Go through what took over in hot changes, by the number of the event; the same stands in for its nodes."""
-    for each in story:
+    for each in expected:
         if isinstance(each.event, BehaviorChanged) and (changed := changed_behavior(each.event)) is not None:
             yield each.event.seq, new_plan(changed.with_substitutes(plan.substitutes), catalogue)
 

@@ -382,11 +382,11 @@ class Run:
             self._log.started(self.plan, self.parameters, self._inputs, seed=self.seed, virtual=virtual)
             if checkpoint is not None:
                 self._log.started_from(checkpoint)
-        undoing = checkpoint.undoing if checkpoint is not None and self._is_resumed else ""
-        if undoing:
+        stepping_back = checkpoint.stepping_back if checkpoint is not None and self._is_resumed else ""
+        if stepping_back:
             message = "the engine died while a step back was undoing this state; the run starts paused: step back again"
-            self._recorder.log(undoing, message, level="warning")
-        if self._supervision.start_paused or undoing:
+            self._recorder.log(stepping_back, message, level="warning")
+        if self._supervision.start_paused or stepping_back:
             self._control.pause()
 
     async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:

@@ -46,10 +46,10 @@ async def request_step_back(
     control.require_still()
     if _paused_position(execution) != position or plan() is not behavior:
         raise ControlError("the run has continued meanwhile", where=step.cursor, hint="request the step back again")
-    step.trail.read(later)
+    step.undo_log.read(later)
     undone = tuple(each.path for each in step.undone)
-    undoing = StepBackExecutor(step=step, execution=execution)
-    control.step_back(step.cursor, step.node, step.target, undoing.carry_out)
+    stepping_back = StepBackExecutor(step=step, execution=execution)
+    control.step_back(step.cursor, step.node, step.target, stepping_back.carry_out)
     return undone
 
 
@@ -70,7 +70,7 @@ class StepBackExecutor:
 
     @cached_property
     def _take_event(self) -> Callable[[Event], None]:
-        return self.step.trail.take
+        return self.step.undo_log.take
 
     async def carry_out(self, scope: Scope) -> NodeExit | None:
         """Return the exit of the node to the one before it; None where it waits before its own entry.
@@ -149,7 +149,7 @@ class StepBackExecutor:
     def _former_values(self) -> list[FormerValue]:
         step = self.step
         values: list[FormerValue] = []
-        for scope, key, writer in step.trail.written_by((step.target, step.node), step.since):
+        for scope, key, writer in step.undo_log.written_by((step.target, step.node), step.since):
             if writer:
                 message = f"{key} keeps the value that {writer} has written since"
                 self.execution.recorder.log(step.target, message, level="warning")

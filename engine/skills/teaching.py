@@ -99,17 +99,18 @@ class TriggerStatus(Message, frozen=True, kw_only=True):
     fault: str = ""
 
 
-class TeachStatus(Message, frozen=True, kw_only=True):
+class TeachStatus(Message, frozen=True, kw_only=True, rename={"message": "said"}):
     """The status of the Helping Hand, also the latest value of `teach/status`.
 
-    `recording` and `guided` are names of robots; `said` is its last message, such as why a capture was refused.
+    `recording` and `guided` are names of robots; `message`, in JSON `said`, is the last thing that it reported, such as
+    why a capture was refused.
     """
 
     triggers: tuple[TriggerStatus, ...]
     captures: tuple[CaptureSummary, ...]
     recording: tuple[str, ...]
     guided: tuple[str, ...]
-    said: str = ""
+    message: str = ""
 
 
 class ReadTeachStatus(Service[TeachStatus], frozen=True, kw_only=True):

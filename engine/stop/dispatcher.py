@@ -76,7 +76,7 @@ class StopDispatcher:
         self._signals = signals
         self._descriptors: deque[int] = deque()
         self._lines: dict[str, _Line] = {}
-        self._newest = StopNotice(stop=0, reason="", source="engine")
+        self._latest = StopNotice(stop=0, reason="", source="engine")
         self._since_s = 0.0
         self._probes = 0
         self._answered = 0
@@ -99,7 +99,7 @@ class StopDispatcher:
     def stop(self, reason: str, source: _Source) -> int:
         """Send the stop to every line and the engine, and return its number."""
         self._since_s = self._loop.time()
-        notice = self._newest = StopNotice(stop=self._newest.stop + 1, reason=reason, source=source)
+        notice = self._latest = StopNotice(stop=self._latest.stop + 1, reason=reason, source=source)
         for line in self._lines.values():
             self._send_to_line(line, notice)
         if source != "engine":
@@ -112,13 +112,13 @@ class StopDispatcher:
         number = self.stop(reason, source)
         await self._until(lambda: self._engine_informed, self._since_s + ENGINE_TIMEOUT_S)
         await self._until(
-            lambda: self.status().acknowledged or self._newest.stop != number, self._since_s + ACKNOWLEDGE_S
+            lambda: self.status().acknowledged or self._latest.stop != number, self._since_s + ACKNOWLEDGE_S
         )
         return self.status()
 
     def status(self) -> StopStatus:
         """Return the status of the newest stop."""
-        number = self._newest.stop
+        number = self._latest.stop
         devices = tuple(
             DeviceStop(
                 name=line.device,
@@ -131,7 +131,7 @@ class StopDispatcher:
         engine = "ended" if self._engine_ended else ("informed" if self._engine_informed else "silent")
         return StopStatus(
             stop=number,
-            reason=self._newest.reason,
+            reason=self._latest.reason,
             acknowledged=number > 0 and all(device.acknowledged or not device.connected for device in devices),
             at_rest=number > 0 and all(device.at_rest or not device.connected for device in devices),
             engine=engine,

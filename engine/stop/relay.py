@@ -97,9 +97,9 @@ class StopRelay:
         """Why the relay has ended; empty while it works."""
         return self._lost_reason
 
-    def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell`, on the event loop, when the relay has ended and when it is reconnected."""
-        self._when_connection_changes.append(tell)
+    def when_connection_changes(self, callback: Callable[[], None]) -> None:
+        """Call `callback`, on the event loop, when the relay has ended and when it is reconnected."""
+        self._when_connection_changes.append(callback)
 
     async def reconnect(self) -> str:
         """Start the relay's process again; devices need new lines, so they are reconnected afterwards.

@@ -304,8 +304,8 @@ def _lead_on(node: Node, following: str) -> None:
     }
 
 
-def _free_name(wanted: str, taken: Mapping[str, Node]) -> str:
-    base = re.sub(r"[^a-z0-9_]+", "_", wanted)[:58].strip("_")
+def _free_name(preferred: str, taken: Mapping[str, Node]) -> str:
+    base = re.sub(r"[^a-z0-9_]+", "_", preferred)[:58].strip("_")
     number, name = 1, base
     while name in taken or name in ("finished", "missed", "blocked", "failed"):
         number += 1

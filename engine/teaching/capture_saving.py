@@ -78,10 +78,10 @@ async def _value(bus: SkillBus, capture: Capture, form: CaptureForm) -> tuple[Me
 def _model(bus: SkillBus, robot: str) -> str:
     """Return the model of a robot; empty if it does not report one."""
     try:
-        said = bus.find_topic(f"{robot}/description").latest
+        latest = bus.find_topic(f"{robot}/description").latest
     except BusError:
         return ""
-    return said.model if isinstance(said, RobotDescription) else ""
+    return latest.model if isinstance(latest, RobotDescription) else ""
 
 
 async def _pose(bus: SkillBus, capture: Capture) -> Pose:

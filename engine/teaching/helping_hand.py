@@ -96,7 +96,7 @@ class HelpingHand:
         self._guides: dict[str, GoalHandle[Any, Any]] = {}
         self._due: asyncio.Queue[tuple[Trigger, Callable[[], Any]]] = asyncio.Queue()
         self._worker: asyncio.Task[None] | None = None
-        self._said = ""
+        self._message = ""
         self._status = bus.topic(STATUS, TeachStatus)
 
     async def __aenter__(self) -> Self:
@@ -153,13 +153,13 @@ class HelpingHand:
             captures=tuple(capture.summary for capture in self._buffer.captures),
             recording=tuple(self._recordings),
             guided=tuple(robot for robot, guide in self._guides.items() if not guide.finished),
-            said=self._said,
+            message=self._message,
         )
 
     def fired(self, trigger: Trigger, edge: ButtonEdge) -> None:
         """Execute the action of a trigger; `edge` is the change of its button."""
         held = trigger.trig_type == "hold"
-        wanted = ButtonEdge.RELEASED if trigger.trig_type == "falling_edge" else ButtonEdge.PRESSED
+        firing_edge = ButtonEdge.RELEASED if trigger.trig_type == "falling_edge" else ButtonEdge.PRESSED
         if trigger.trig_callback in _RECORDS:
             robot = self._robot_of(trigger)
             if robot is None:
@@ -167,9 +167,9 @@ class HelpingHand:
             running = robot in self._recordings
             if held and edge is ButtonEdge.RELEASED:
                 self._end_recording(robot, of=trigger)
-            elif edge is wanted and not (held and running):
+            elif edge is firing_edge and not (held and running):
                 self._end_recording(robot) if running else self._begin_recording(robot, trigger)
-        elif edge is wanted:
+        elif edge is firing_edge:
             self._due.put_nowait((trigger, lambda: self._do(trigger)))
         elif held and trigger.trig_callback == "grav_comp":
             self._due.put_nowait((trigger, lambda: self._guide(trigger, on=False)))
@@ -292,7 +292,7 @@ class HelpingHand:
         self._listening = []
 
     def _say(self, words: str) -> None:
-        self._said = words
+        self._message = words
         _log.info("%s", words)
         self._publish_status()
 

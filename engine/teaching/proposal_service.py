@@ -68,8 +68,8 @@ def _described(bus: SkillBus) -> dict[str, RobotDescription]:
     """Return the descriptions of the robots of a bus, by name."""
     ending = "/description"
     topics = sorted(row.name for row in bus.listing() if row.kind == "topic" and row.name.endswith(ending))
-    said = {name.removesuffix(ending): bus.find_topic(name).latest for name in topics}
-    return {name: one for name, one in said.items() if isinstance(one, RobotDescription)}
+    latest = {name.removesuffix(ending): bus.find_topic(name).latest for name in topics}
+    return {name: one for name, one in latest.items() if isinstance(one, RobotDescription)}
 
 
 def _kind_of(mechanism: str) -> ToolName:

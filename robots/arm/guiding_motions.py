@@ -48,18 +48,18 @@ class GuidingMotions:
             self._check_record(goal, handle)
         runner.accept(handle)
         demonstration = DemonstrationRecorder(runner, handle, sample_s=goal.sample_s)
-        countdown: list[StreamDeadline] = []
+        deadlines: list[StreamDeadline] = []
         sampling: list[asyncio.Task[None]] = []
 
         def start() -> MotionStream:
             self._stream = stream = runner.port.guide(damping=goal.damping)
-            countdown.append(StreamDeadline(stream, handle, clock=runner.clock, duration_s=goal.duration_s))
+            deadlines.append(StreamDeadline(stream, handle, clock=runner.clock, duration_s=goal.duration_s))
             if goal.record:
                 sampling.append(asyncio.create_task(demonstration.run(), name=f"demonstration on {runner.name}"))
             return stream
 
         def publish_feedback(stream: MotionStream) -> None:
-            countdown[0].look()
+            deadlines[0].look()
             if demonstration.full:
                 stream.finish()
             handle.feedback(
@@ -70,7 +70,7 @@ class GuidingMotions:
             ended = await runner.carry_out(start, handle, publish_feedback, mode="guiding")
         finally:
             self._stream = None
-            for count in countdown:
+            for count in deadlines:
                 count.close()
             for task in sampling:
                 task.cancel()

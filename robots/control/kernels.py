@@ -51,11 +51,11 @@ def interpolate_setpoint(
 
 
 @compiled(f"void({_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
-def pose_error(wanted_xyz: Array, wanted_xyzw: Array, xyz: Array, xyzw: Array, error: Array) -> None:
+def pose_error(target_xyz: Array, target_xyzw: Array, xyz: Array, xyzw: Array, error: Array) -> None:
     """Write the error of a pose against the wanted one: translation and rotation vector (6,), in the axes of both."""
     for axis in range(3):
-        error[axis] = wanted_xyz[axis] - xyz[axis]
-    ax, ay, az, aw = wanted_xyzw[0], wanted_xyzw[1], wanted_xyzw[2], wanted_xyzw[3]
+        error[axis] = target_xyz[axis] - xyz[axis]
+    ax, ay, az, aw = target_xyzw[0], target_xyzw[1], target_xyzw[2], target_xyzw[3]
     bx, by, bz, bw = -xyzw[0], -xyzw[1], -xyzw[2], xyzw[3]
     error[3] = aw * bx + ax * bw + ay * bz - az * by
     error[4] = aw * by + ay * bw + az * bx - ax * bz

@@ -15,7 +15,7 @@ from robots.port import Array, MotionEnd, MotionReport, Tolerance
 _REST_RAD_S = 0.01
 _REST_S = 0.02
 # After a failure the set point moves to the measured joints within this time, so that the arm presses on nothing.
-_GIVE_WAY_S = 0.1
+_YIELD_S = 0.1
 _STILL_MOVING_AFTER_S = 3.0
 
 
@@ -50,14 +50,14 @@ class MotionExecutor:
         self._following: _ActiveMotion | None = None
         self._rest_s = 0.0
         self.pace = 1.0
-        self._give_way: tuple[Array, Array, float] | None = None
+        self._yielding: tuple[Array, Array, float] | None = None
         self.position = np.zeros(len(joints))
         self.velocity = np.zeros(len(joints))
         self.acceleration = np.zeros(len(joints))
 
     def initialize(self, position: Array) -> None:
         """Hold `position`; drops the active motion."""
-        self._following, self._give_way, self._rest_s = None, None, 0.0
+        self._following, self._yielding, self._rest_s = None, None, 0.0
         self.position[:] = position
         self._stand_still()
 
@@ -75,7 +75,7 @@ class MotionExecutor:
     def leads(self) -> bool:
         """False while the set point follows the arm, as in guiding."""
         following = self._following
-        return following is None or self._give_way is not None or following.generator.leads
+        return following is None or self._yielding is not None or following.generator.leads
 
     def start(self, number: int, generator: MotionGenerator, tolerance: Tolerance) -> None:
         """Start a motion; the generator starts at the set point and no other motion is active."""
@@ -131,7 +131,7 @@ class MotionExecutor:
         following = self._following
         if following is None:
             return ()
-        if self._give_way is not None:
+        if self._yielding is not None:
             self._yield(step_s)
         else:
             target = 0.0 if following.hold or following.ending is not None else self.pace
@@ -206,11 +206,11 @@ class MotionExecutor:
         self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         ending = following.ending or MotionEnd.CANCELED
-        if ending is MotionEnd.FAILED and self._give_way is None:
-            self._give_way = (self.position.copy(), position.copy(), 0.0)
+        if ending is MotionEnd.FAILED and self._yielding is None:
+            self._yielding = (self.position.copy(), position.copy(), 0.0)
             return ()
         following.waited_s += step_s
-        if self._give_way is not None and self._give_way[2] < 1.0:
+        if self._yielding is not None and self._yielding[2] < 1.0:
             return ()
         if at_rest:
             if following.stop_cause and not following.reason:
@@ -223,17 +223,17 @@ class MotionExecutor:
         return ()
 
     def _yield(self, step_s: float) -> None:
-        assert self._give_way is not None
-        start, target, share = self._give_way
-        share = min(1.0, share + step_s / _GIVE_WAY_S)
-        self._give_way = (start, target, share)
+        assert self._yielding is not None
+        start, target, share = self._yielding
+        share = min(1.0, share + step_s / _YIELD_S)
+        self._yielding = (start, target, share)
         self.position[:] = start + share * (target - start)
         self._stand_still()
 
     def _finish(
         self, following: _ActiveMotion, end: MotionEnd, reason: str, *, at_rest: bool = True
     ) -> tuple[AnyMotionEvent, ...]:
-        self._following, self._give_way = None, None
+        self._following, self._yielding = None, None
         self._stand_still()
         generator = following.generator
         return (

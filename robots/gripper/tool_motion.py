@@ -30,7 +30,9 @@ class ToolMotion:
             self._motion.cancel()
             await self._motion.report()
 
-    async def carry_out(self, start: Callable[[], Motion], handle: ActiveGoal[Any], tell: Callable[[], None]) -> None:
+    async def carry_out(
+        self, start: Callable[[], Motion], handle: ActiveGoal[Any], publish: Callable[[], None]
+    ) -> None:
         """Start a motion and return when it has ended at rest, also when cancelled.
 
         Raises:
@@ -42,6 +44,6 @@ class ToolMotion:
             raise SkillFailed(f"{self._words} did not start", where=handle.address) from error
         self._motion = motion
         try:
-            await supervise_goal(motion, handle, tell=tell, device=self._device, words=self._words)
+            await supervise_goal(motion, handle, publish=publish, device=self._device, words=self._words)
         finally:
             self._motion = None

@@ -108,10 +108,10 @@ def _clamped_slopes(knots: Array, dt_s: float) -> Array:
 
 
 def _intervals(line: _Line, duration_s: float) -> int:
-    wanted = max(
+    knots = max(
         duration_s / KNOT_S,
         PEAK_SPEED * line.distance_m / KNOT_M,
         PEAK_SPEED * line.angle_rad / KNOT_RAD,
         FEWEST_KNOTS,
     )
-    return min(MOST_KNOTS, math.ceil(wanted))
+    return min(MOST_KNOTS, math.ceil(knots))

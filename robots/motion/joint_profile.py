@@ -23,7 +23,7 @@ _SAMPLE_S = 0.002
 _MOST_SAMPLES = 20_000
 # The interpolation between two samples may overshoot the velocity at a corner of the trapezoid.
 _VELOCITY_SHARE = 0.995
-_NO_WAY_RAD = 1e-9
+_NO_MOTION_RAD = 1e-9
 # At lower speeds a motion would take days.
 _SLOWEST_SHARE = 1e-5
 _NO_SHARE = 1e-12
@@ -53,7 +53,7 @@ def plan_joints(
     if not _SLOWEST_SHARE <= speed <= 1.0:
         raise RobotError(f"the speed cannot be {speed:g}", hint=f"give a share from {_SLOWEST_SHARE:g} to 1")
     farthest = float(np.abs(goal - start).max())
-    if farthest < _NO_WAY_RAD:
+    if farthest < _NO_MOTION_RAD:
         return _resting(start, goal)
     shares = np.abs(goal - start) / farthest
     request = profiles.InputParameter(1)

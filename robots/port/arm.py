@@ -59,8 +59,8 @@ class ArmPort(Protocol):
         """Reason of the reflex stop (joint or force, amount, contact); empty without one."""
         ...
 
-    def when_reflex(self, tell: Callable[[str], None]) -> None:
-        """Call `tell` with the reason, on the event loop, at every reflex stop, also between motions."""
+    def when_reflex(self, callback: Callable[[str], None]) -> None:
+        """Call `callback` with the reason, on the event loop, at every reflex stop, also between motions."""
         ...
 
     def sample(self) -> ArmSample:

@@ -31,7 +31,7 @@ class CameraProcess:
         """The process id, 0 while there is none."""
         return self._worker.pid if self._worker is not None else 0
 
-    async def start(self, sight: PerceptionSetup) -> None:
+    async def start(self, setup: PerceptionSetup) -> None:
         """Start the process and wait until it is ready.
 
         Raises:
@@ -44,7 +44,7 @@ class CameraProcess:
         try:
             await worker.start()
             async with asyncio.timeout(_START_S):
-                ready = await asyncio.shield(worker.ask(sight).answer)
+                ready = await asyncio.shield(worker.ask(setup).answer)
         except TimeoutError as error:
             self.end()
             raise RobotError(f"the camera process was not ready within {_START_S:g} s", hint=_HINT) from error

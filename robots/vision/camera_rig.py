@@ -29,14 +29,14 @@ class CameraRig:
         CellError: the cell cannot be built, or the rendering method set in the environment is unavailable.
     """
 
-    def __init__(self, sight: PerceptionSetup, *, repeatable: bool) -> None:
-        self._sight = sight
-        self._cameras = {camera.name: camera for camera in sight.cameras}
-        self._cell = PhysicsCopy(sight.scene)
-        self._depth = new_depth_renderer(self._cell, sight.cameras, box=sight.box, repeatable=repeatable)
-        self._detector = PartDetector(self._cell, sight.scene.parts, seed=sight.seed)
-        self._mapper = OccupancyMapper(sight.box, sight.scene.arms) if sight.box is not None else None
-        self.know(KnownGeometry(obstacles=known_obstacles(sight.scene)))
+    def __init__(self, setup: PerceptionSetup, *, repeatable: bool) -> None:
+        self._setup = setup
+        self._cameras = {camera.name: camera for camera in setup.cameras}
+        self._cell = PhysicsCopy(setup.scene)
+        self._depth = new_depth_renderer(self._cell, setup.cameras, box=setup.box, repeatable=repeatable)
+        self._detector = PartDetector(self._cell, setup.scene.parts, seed=setup.seed)
+        self._mapper = OccupancyMapper(setup.box, setup.scene.arms) if setup.box is not None else None
+        self.know(KnownGeometry(obstacles=known_obstacles(setup.scene)))
 
     @property
     def words(self) -> str:
@@ -67,7 +67,7 @@ class CameraRig:
         mapped_s = time.perf_counter()
         return PerceptionResult(
             grid=grid,
-            images=tuple(image for image in images if image.camera in look.wanted),
+            images=tuple(image for image in images if image.camera in look.returned),
             detections=tuple(self._found(self._cameras[name], look.time_s) for name in look.detecting),
             render_s=rendered_s - started_s,
             map_s=mapped_s - rendered_s,
@@ -75,8 +75,8 @@ class CameraRig:
 
     def warm(self) -> None:
         """Compile and load everything that the first request needs; the map stays empty."""
-        home = {arm.name: ArmConfiguration(joints=arm.robot().home_rad) for arm in self._sight.scene.arms}
-        images = [self._image(camera, 0.0) for camera in self._sight.cameras]
+        home = {arm.name: ArmConfiguration(joints=arm.robot().home_rad) for arm in self._setup.scene.arms}
+        images = [self._image(camera, 0.0) for camera in self._setup.cameras]
         if self._mapper is not None:
             self._mapper.update(images, MeasuredState(time_s=0.0, arms=home))
             self._mapper.forget()
@@ -106,5 +106,5 @@ class CameraRig:
             intrinsics=self._depth.intrinsics(camera),
             time_s=time_s,
             frame=frame_number(camera, time_s),
-            seed=self._sight.seed,
+            seed=self._setup.seed,
         )

@@ -29,15 +29,15 @@ def cell_cameras(
         return None
     _check_labels(document)
     check_depth_setting()
-    sight = PerceptionSetup(
+    setup = PerceptionSetup(
         scene=scene,
         cameras=tuple(camera_of(name, camera) for name, camera in document.cameras.items()),
         box=voxel_box(document.occupancy) if document.occupancy is not None else None,
         seed=seed or 0,
     )
     if isinstance(world.host, LockstepHost):
-        return LockstepPerception(sight, world=world)
-    return RealTimePerception(sight, world=world)
+        return LockstepPerception(setup, world=world)
+    return RealTimePerception(setup, world=world)
 
 
 def _check_labels(document: CellDocument) -> None:

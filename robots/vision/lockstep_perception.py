@@ -33,17 +33,17 @@ class LockstepPerception(PerceptionDevice):
     The computing times in `OccupancyState` are 0 here, as they would differ between runs.
     """
 
-    def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
-        step_s = sight.scene.step_s
+    def __init__(self, setup: PerceptionSetup, *, world: SimWorld) -> None:
+        step_s = setup.scene.step_s
         self._steps = 0
-        super().__init__(sight, world=world, now_s=lambda: self._steps * step_s)
-        self._every = {camera.name: max(1, round(1.0 / (camera.rate_hz * step_s))) for camera in sight.cameras}
+        super().__init__(setup, world=world, now_s=lambda: self._steps * step_s)
+        self._every = {camera.name: max(1, round(1.0 / (camera.rate_hz * step_s))) for camera in setup.cameras}
         # Common divisor of all periods: nothing can be due in between.
         self._tick = math.gcd(*self._every.values())
         self._later = max(1, round(PROCESSING_S / step_s))
         self._coming: tuple[int, PerceptionResult] | None = None
         self._eye: _CameraRig | None = None
-        self._told_known = self.known
+        self._sent_known = self.known
         world.each_step(self._after_step, busy=lambda: self.needed or self._coming is not None)
 
     async def __aenter__(self) -> Self:
@@ -65,7 +65,7 @@ class LockstepPerception(PerceptionDevice):
         notified = False
         if self._coming is not None and self._steps >= self._coming[0] + self._later:
             (taken, seen), self._coming = self._coming, None
-            self.take_result(seen, looked_at_s=taken * self.sight.scene.step_s)
+            self.take_result(seen, looked_at_s=taken * self.setup.scene.step_s)
             notified = True
         if self._steps % self._tick == 0 and self.needed:
             notified = self._look_if_due() or notified
@@ -73,11 +73,11 @@ class LockstepPerception(PerceptionDevice):
 
     def _look_if_due(self) -> bool:
         """Render if due; return whether a failure was reported."""
-        due = tuple(camera for camera in self.sight.cameras if self._steps % self._every[camera.name] == 0)
+        due = tuple(camera for camera in self.setup.cameras if self._steps % self._every[camera.name] == 0)
         if due and self._coming is not None:
             self.dropped += 1
         elif due:
-            order = self.next_look(due, now_s=self._steps * self.sight.scene.step_s)
+            order = self.next_look(due, now_s=self._steps * self.setup.scene.step_s)
             try:
                 self._coming = (self._steps, self._look(order)) if order is not None else None
             except CellError as error:
@@ -91,9 +91,9 @@ class LockstepPerception(PerceptionDevice):
             # Imported here: it loads the compiled kernels and coal.
             from robots.vision.camera_rig import CameraRig
 
-            self._eye = CameraRig(self.sight, repeatable=True)
+            self._eye = CameraRig(self.setup, repeatable=True)
             self.set_rendering(self._eye.words)
-        if self.known is not None and self.known is not self._told_known:
+        if self.known is not None and self.known is not self._sent_known:
             self._eye.know(self.known)
-            self._told_known = self.known
+            self._sent_known = self.known
         return msgspec.structs.replace(self._eye.look(order), render_s=0.0, map_s=0.0)

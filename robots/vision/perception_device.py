@@ -37,12 +37,12 @@ class PerceptionDevice:
 
     name = "cell/cameras"
 
-    def __init__(self, sight: PerceptionSetup, *, world: SimWorld, now_s: Callable[[], float]) -> None:
-        self.sight = sight
+    def __init__(self, setup: PerceptionSetup, *, world: SimWorld, now_s: Callable[[], float]) -> None:
+        self.setup = setup
         self._world = world
-        slowest_s = max(1.0 / camera.rate_hz for camera in sight.cameras)
+        slowest_s = max(1.0 / camera.rate_hz for camera in setup.cameras)
         self.map = LiveOccupancyMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
-        self.detections = DetectionService(sight.cameras)
+        self.detections = DetectionService(setup.cameras)
         self.known: KnownGeometry | None = None
         self.status = DeviceStatus.DISCONNECTED
         self.dropped = 0
@@ -109,9 +109,9 @@ class PerceptionDevice:
         if self._world.lost_reason:
             return None
         detecting = self.detections.due(due, now_s=now_s)
-        wanted = self._requested_depths()
-        is_mapped = self.sight.box is not None and self._needs_images
-        names = tuple(camera.name for camera in due if is_mapped or camera.name in wanted)
+        requested = self._requested_depths()
+        is_mapped = self.setup.box is not None and self._needs_images
+        names = tuple(camera.name for camera in due if is_mapped or camera.name in requested)
         if not names and not detecting:
             return None
         image = self._world.host.image()
@@ -122,7 +122,7 @@ class PerceptionDevice:
             time_s=round(float(image[0])) * self._world.host.summary.step_s,
             state=image,
             cameras=names,
-            wanted=tuple(name for name in wanted if name in names),
+            returned=tuple(name for name in requested if name in names),
             detecting=detecting,
             forget=forget,
         )
@@ -181,13 +181,13 @@ class PerceptionDevice:
 
     def register(self, bus: SkillBus) -> None:
         """Publish the list of cameras; map, images and detections are published while they have subscribers."""
-        if self.sight.box is not None:
+        if self.setup.box is not None:
             self._grids = bus.topic("cell/occupancy", OccupancyGrid)
             self._states = bus.topic("cell/occupancy_state", OccupancyState)
             self._states.provide(self._state)
             self.map.subscribe(self._publish_state)
         self.detections.register(bus)
-        for camera in self.sight.cameras:
+        for camera in self.setup.cameras:
             self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
             bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(
                 CameraInfo(

@@ -25,7 +25,7 @@ class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True, tag="setup"):
 
 
 class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
-    """A request for images of `cameras` at world time `time_s`; `wanted` are those whose images are returned too.
+    """A request for images of `cameras` at world time `time_s`; `returned` are those whose images are returned too.
 
     The cameras in `detecting` also detect objects. `state` is as `WorldHost.image`. With `forget` the map
     restarts with these images.
@@ -34,7 +34,7 @@ class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
     time_s: float
     state: Array
     cameras: tuple[str, ...]
-    wanted: tuple[str, ...] = ()
+    returned: tuple[str, ...] = ()
     detecting: tuple[str, ...] = ()
     forget: bool = False
 

@@ -25,12 +25,12 @@ class RealTimePerception(PerceptionDevice):
     If the process dies or hangs, the map is stale, with the reason, until the first result of a new process.
     """
 
-    def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
-        super().__init__(sight, world=world, now_s=lambda: asyncio.get_running_loop().time())
+    def __init__(self, setup: PerceptionSetup, *, world: SimWorld) -> None:
+        super().__init__(setup, world=world, now_s=lambda: asyncio.get_running_loop().time())
         self._process = CameraProcess()
         self._task: asyncio.Task[None] | None = None
-        self._fastest_s = min(1.0 / camera.rate_hz for camera in sight.cameras)
-        self._due_s = dict.fromkeys((camera.name for camera in sight.cameras), 0.0)
+        self._fastest_s = min(1.0 / camera.rate_hz for camera in setup.cameras)
+        self._due_s = dict.fromkeys((camera.name for camera in setup.cameras), 0.0)
 
     @property
     def pid(self) -> int:
@@ -59,7 +59,7 @@ class RealTimePerception(PerceptionDevice):
         pause_s = _FIRST_PAUSE_S
         while True:
             try:
-                await self._process.start(self.sight)
+                await self._process.start(self.setup)
                 self.set_rendering(self._process.words)
                 self._has_started()
                 self.restart_revisions()
@@ -101,7 +101,7 @@ class RealTimePerception(PerceptionDevice):
 
     def _due(self, now_s: float) -> tuple[CameraSpec, ...]:
         found: list[CameraSpec] = []
-        for camera in self.sight.cameras:
+        for camera in self.setup.cameras:
             # A quarter of a period early is on time: timers are irregular.
             if now_s >= self._due_s[camera.name] - 0.25 / camera.rate_hz:
                 self._due_s[camera.name] = max(self._due_s[camera.name], now_s - 0.5 / camera.rate_hz)

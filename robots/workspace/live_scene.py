@@ -258,8 +258,8 @@ class LiveScene:
         scene = self.whole()
         for name, held in tuple(self._held.items()):
             if held.touches:
-                nearby = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
-                self._held[name] = msgspec.structs.replace(held, touches=held.touches & nearby)
+                close_names = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
+                self._held[name] = msgspec.structs.replace(held, touches=held.touches & close_names)
         for name, released in tuple(self._let_go.items()):
             links = released.links & links_near_part(scene, name, released.arm, within_m=SEPARATED_M)
             if links:

@@ -25,13 +25,11 @@ def names_near_held_part(
     """
     held = next(one for one in scene.attached if one.name == part)
     arm = scene.arm(held.arm)
-    wanted = set(among) if among is not None else None
+    names = set(among) if among is not None else None
     reduced = msgspec.structs.replace(
         scene,
-        arms=tuple(
-            one for one in scene.arms if one.name == arm.name or wanted is None or _has_link_of(one.name, wanted)
-        ),
-        obstacles=tuple(o for o in scene.obstacles if wanted is None or o.name in wanted),
+        arms=tuple(one for one in scene.arms if one.name == arm.name or names is None or _has_link_of(one.name, names)),
+        obstacles=tuple(o for o in scene.obstacles if names is None or o.name in names),
         attached=(held,),
         allowed=(),
     )

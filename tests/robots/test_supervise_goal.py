@@ -31,7 +31,7 @@ def new_goal() -> ActiveGoal[str]:
 async def attended(motion: FakeMotion, goal: ActiveGoal[str]) -> None:
     """Attend with the words of an arm."""
     await supervise_goal(
-        motion, goal, tell=lambda: goal.feedback(f"{motion.progress:.2f}"), device="left", words="the arm"
+        motion, goal, publish=lambda: goal.feedback(f"{motion.progress:.2f}"), device="left", words="the arm"
     )
 
 

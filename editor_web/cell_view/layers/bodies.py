@@ -51,23 +51,23 @@ class BodyLayer:
         self._ways: Mapping[str, PathPreview] = {}
         self._marked: frozenset[str] = frozenset()
 
-    def draw(self, newest: LatestMessages) -> None:
+    def draw(self, latest: LatestMessages) -> None:
         """Draw the changes."""
-        scene, poses, arms = newest.scene, newest.frames, frozenset(newest.descriptions)
+        scene, poses, arms = latest.scene, latest.frames, frozenset(latest.descriptions)
         if scene is not None and (scene is not self._scene or arms != self._arms):
             self._scene, self._arms, self._poses = scene, arms, None
             self._ways, self._marked = {}, frozenset()
             with self._server.atomic():
-                self._build(scene, newest)
+                self._build(scene, latest)
         if poses is not None and poses is not self._poses:
             self._poses = poses
             self._move(poses_by_frame(poses))
-        if newest.ways is not self._ways:
-            self._ways = newest.ways
-            self._mark(bodies_in_contact(newest.ways, {name for name, _, _ in self._shapes}))
+        if latest.ways is not self._ways:
+            self._ways = latest.ways
+            self._mark(bodies_in_contact(latest.ways, {name for name, _, _ in self._shapes}))
 
-    def _build(self, scene: SceneDescription, newest: LatestMessages) -> None:
-        known = poses_by_frame(newest.frames)
+    def _build(self, scene: SceneDescription, latest: LatestMessages) -> None:
+        known = poses_by_frame(latest.frames)
         for handle in (each for of_name in self._frames.values() for each in of_name):
             handle.remove()
         self._frames, self._drawn, self._shapes = {}, {}, []
@@ -87,7 +87,7 @@ class BodyLayer:
             is_link = geometry.frame.partition("/")[0] in self._arms
             name = geometry.frame if is_link else geometry.name.partition("/")[0]
             self._shapes.append((name, shape, colour_of(geometry)))
-        self._add_axes(newest, known)
+        self._add_axes(latest, known)
 
     def _mark(self, names: frozenset[str]) -> None:
         """Colour the bodies that would collide on a blocked path, and restore the colours of the others."""
@@ -102,9 +102,9 @@ class BodyLayer:
     def _node(self, frame: str) -> str:
         return body_node(frame, self._arms, under=self._under)
 
-    def _add_axes(self, newest: LatestMessages, known: Mapping[str, WorldPose]) -> None:
+    def _add_axes(self, latest: LatestMessages, known: Mapping[str, WorldPose]) -> None:
         """Show the frames of the world, the tools and the parts."""
-        tools = {each.tool_frame for each in newest.descriptions.values()}
+        tools = {each.tool_frame for each in latest.descriptions.values()}
         for name in ("world", *(n for n in known if n in tools or "/" not in n)):
             node = f"{root_of('frames', under=self._under)}/{name.replace('/', '.')}"
             handle = self._server.scene.add_frame(node, axes_length=_AXES_M, axes_radius=_AXES_M / 25)

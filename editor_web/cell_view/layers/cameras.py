@@ -64,15 +64,15 @@ class CameraLayer:
         self._root = root_of("cameras", under=under)
         self._cameras: dict[str, _Camera] = {}
 
-    def draw(self, newest: LatestMessages, now_s: float) -> float | None:
+    def draw(self, latest: LatestMessages, now_s: float) -> float | None:
         """Draw the changes; return the time of the next call if it is too early now."""
         due: list[float] = []
-        for name in {**newest.cameras, **newest.depths}:
+        for name in {**latest.cameras, **latest.depths}:
             camera = self._cameras.setdefault(name, _Camera(self._server, name, node=f"{self._root}/{name}"))
-            detections = newest.detections.get(name)
-            if detections is not None and not is_fresh(detections, newest.frames):
+            detections = latest.detections.get(name)
+            if detections is not None and not is_fresh(detections, latest.frames):
                 detections = None
-            next_s = camera.draw(newest.cameras.get(name), newest.depths.get(name), detections, now_s)
+            next_s = camera.draw(latest.cameras.get(name), latest.depths.get(name), detections, now_s)
             if next_s is not None:
                 due.append(next_s)
         return min(due, default=None)

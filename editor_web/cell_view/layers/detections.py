@@ -58,14 +58,14 @@ class DetectionLayer:
         self._root = root_of("detections", under=under)
         self._cameras: dict[str, _Boxes] = {}
 
-    def draw(self, newest: LatestMessages) -> None:
+    def draw(self, latest: LatestMessages) -> None:
         """Draw the changes."""
-        several = len(newest.detections) > 1
-        for row, (name, detections) in enumerate(newest.detections.items()):
+        several = len(latest.detections) > 1
+        for row, (name, detections) in enumerate(latest.detections.items()):
             if name not in self._cameras:
                 self._cameras[name] = _Boxes(self._server, f"{self._root}/{name}", row=row)
             by = f" · {name}" if several else ""
-            self._cameras[name].draw(detections if is_fresh(detections, newest.frames) else None, by=by)
+            self._cameras[name].draw(detections if is_fresh(detections, latest.frames) else None, by=by)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from engine.skills.planning_scene import HeldPart, PlanningSceneState
 _log = logging.getLogger("flexcell.cell_view")
 _OBSTACLE: Rgb = (217, 119, 6)
 _HELD: Rgb = (124, 58, 237)
-_IN_THE_WAY: Rgb = (220, 38, 38)
+_BLOCKING: Rgb = (220, 38, 38)
 _OPACITY = 0.35
 
 
@@ -48,9 +48,9 @@ class ObstacleLayer:
         self._held: list[tuple[HeldPart, viser.FrameHandle]] = []
         self._poses: FramePoses | None = None
 
-    def draw(self, newest: LatestMessages) -> None:
+    def draw(self, latest: LatestMessages) -> None:
         """Draw the changes."""
-        state, scene, ways = newest.planning_scene, newest.scene, newest.ways
+        state, scene, ways = latest.planning_scene, latest.scene, latest.ways
         if state is None:
             return
         read = self._read
@@ -62,19 +62,19 @@ class ObstacleLayer:
                 self._drawn, self._poses = shown, None
                 with self._server.atomic():
                     self._build(shown)
-        if self._held and newest.frames is not None and newest.frames is not self._poses:
-            self._poses = newest.frames
-            self._carry(newest.frames)
+        if self._held and latest.frames is not None and latest.frames is not self._poses:
+            self._poses = latest.frames
+            self._carry(latest.frames)
 
     def _build(self, shown: _Shown) -> None:
         for root in self._roots:
             root.remove()
         self._roots = []
         for each in shown.obstacles:
-            colour = _IN_THE_WAY if each.name in shown.blocking else _OBSTACLE
+            colour = _BLOCKING if each.name in shown.blocking else _OBSTACLE
             self._add(each.name, each.solids, each.pose, colour)
         self._held = [
-            (part, self._add(part.name, part.solids, part.pose, _IN_THE_WAY if part.name in shown.blocking else _HELD))
+            (part, self._add(part.name, part.solids, part.pose, _BLOCKING if part.name in shown.blocking else _HELD))
             for part in shown.held
         ]
 

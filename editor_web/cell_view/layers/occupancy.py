@@ -60,9 +60,9 @@ class VoxelLayer:
         self._handle: viser.PointCloudHandle | None = None
         self._next_s = 0.0
 
-    def draw(self, newest: LatestMessages, now_s: float) -> float | None:
+    def draw(self, latest: LatestMessages, now_s: float) -> float | None:
         """Draw the changes; return the time of the next call if it is too early now."""
-        grid, state = newest.occupancy, newest.occupancy_state
+        grid, state = latest.occupancy, latest.occupancy_state
         is_stale = state is not None and state.stale_reason != ""
         if grid is None or (self._drawn is not None and self._drawn[0] is grid and self._drawn[1] == is_stale):
             return None

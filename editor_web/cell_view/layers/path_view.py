@@ -42,14 +42,14 @@ class PathLayer:
         self._root = root_of("ways", under=under)
         self._arms: dict[str, _ArmPathDrawing] = {}
 
-    def draw(self, newest: LatestMessages, now_s: float, *, is_shown: bool) -> float | None:
+    def draw(self, latest: LatestMessages, now_s: float, *, is_shown: bool) -> float | None:
         """Draw the changes; return the time of the next call if a ghost moves and is shown."""
         due: list[float] = []
-        for name, preview in newest.ways.items():
+        for name, preview in latest.ways.items():
             if name not in self._arms:
                 self._arms[name] = _ArmPathDrawing(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
             drawing = self._arms[name]
-            drawing.draw(preview, newest, now_s)
+            drawing.draw(preview, latest, now_s)
             if is_shown and (next_s := drawing.animate(now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
@@ -62,7 +62,7 @@ class GhostLayer:
         self._server = server
         self._arms: dict[tuple[str, int], _ArmPathDrawing] = {}
 
-    def draw(self, shown: GhostPreviews, newest: LatestMessages, now_s: float) -> float | None:
+    def draw(self, shown: GhostPreviews, latest: LatestMessages, now_s: float) -> float | None:
         """Draw the changes; return the time of the next call if a ghost moves."""
         due: list[float] = []
         for key, preview in shown.items():
@@ -70,7 +70,7 @@ class GhostLayer:
                 name, place = key
                 colours = {"proposed": _PLACE_COLOURS[place % len(_PLACE_COLOURS)]}
                 self._arms[key] = _ArmPathDrawing(self._server, name, node=f"{TAUGHT}/{name}.{place}", colours=colours)
-            self._arms[key].draw(preview, newest, now_s)
+            self._arms[key].draw(preview, latest, now_s)
             if (next_s := self._arms[key].animate(now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
@@ -84,13 +84,13 @@ class _ArmPathDrawing:
         self._name = name
         self._arm: tuple[SceneDescription | None, RobotDescription | None] | None = None
         self._preview: PathPreview | None = None
-        self._began_s = 0.0
+        self._started_s = 0.0
         self._next_s = 0.0
         self._line: tuple[viser.LineSegmentsHandle, viser.IcosphereHandle] | None = None
         self._ghost: _Ghost | None = None
 
-    def draw(self, preview: PathPreview, newest: LatestMessages, now_s: float) -> None:
-        scene, description = newest.scene, newest.descriptions.get(self._name)
+    def draw(self, preview: PathPreview, latest: LatestMessages, now_s: float) -> None:
+        scene, description = latest.scene, latest.descriptions.get(self._name)
         is_another_arm = self._arm is None or self._arm[0] is not scene or self._arm[1] is not description
         if preview is self._preview and not is_another_arm:
             return
@@ -100,9 +100,9 @@ class _ArmPathDrawing:
             self._draw_line(preview)
             if is_another_arm:
                 self._drop_ghost()
-            self._draw_ghost(preview, newest)
+            self._draw_ghost(preview, latest)
         if is_another_path:
-            self._began_s = now_s
+            self._started_s = now_s
         self._next_s = now_s
 
     def animate(self, now_s: float) -> float | None:
@@ -112,7 +112,7 @@ class _ArmPathDrawing:
             return None
         if now_s >= self._next_s:
             self._next_s = now_s + PERIOD_S
-            share = ((now_s - self._began_s) % (TRAVEL_S + REST_S)) / TRAVEL_S
+            share = ((now_s - self._started_s) % (TRAVEL_S + REST_S)) / TRAVEL_S
             with self._server.atomic():
                 ghost.place(preview.joint_names, interpolate_joints(preview.joints, min(share, 1.0)))
         return self._next_s
@@ -140,26 +140,26 @@ class _ArmPathDrawing:
             ),
         )
 
-    def _draw_ghost(self, preview: PathPreview, newest: LatestMessages) -> None:
+    def _draw_ghost(self, preview: PathPreview, latest: LatestMessages) -> None:
         colour = self._colours.get(preview.state)
         if colour is None or not preview.joints:
             if self._ghost is not None:
                 self._ghost.root.visible = False
             return
         if self._ghost is None:
-            self._ghost = self._new_ghost(newest)
+            self._ghost = self._new_ghost(latest)
         if self._ghost is not None:
-            self._ghost.update_tool(newest)
+            self._ghost.update_tool(latest)
             self._ghost.place(preview.joint_names, preview.joints[-1])
             self._ghost.paint(colour)
             self._ghost.root.visible = True
 
-    def _new_ghost(self, newest: LatestMessages) -> _Ghost | None:
-        description = newest.descriptions.get(self._name)
-        if newest.scene is None or description is None:
+    def _new_ghost(self, latest: LatestMessages) -> _Ghost | None:
+        description = latest.descriptions.get(self._name)
+        if latest.scene is None or description is None:
             return None
         try:
-            return _Ghost(self._server, f"{self._node}/ghost", newest.scene, description)
+            return _Ghost(self._server, f"{self._node}/ghost", latest.scene, description)
         except (FlexcellError, ValueError) as error:
             # The line alone still shows the path.
             _log.warning("the ghost of %s is not drawn: %s", self._name, error)
@@ -193,10 +193,10 @@ class _Ghost:
                 self._frames[link] = server.scene.add_frame(below, show_axes=False)
             self._bodies.append(add_geometry(server, f"{below}/{index}", geometry, opacity=_OPACITY))
 
-    def update_tool(self, newest: LatestMessages) -> None:
+    def update_tool(self, latest: LatestMessages) -> None:
         """Take over the current pose of the tool's fingers."""
         prefix = f"{self._arm}/"
-        poses = poses_by_frame(newest.frames).items()
+        poses = poses_by_frame(latest.frames).items()
         self._seen = {
             name.removeprefix(prefix): matrix_of_pose(pose) for name, pose in poses if name.startswith(prefix)
         }

@@ -26,15 +26,15 @@ class SceneLayers:
         self._cameras = CameraLayer(canvas, under=under)
         self._detections = DetectionLayer(canvas, under=under)
 
-    def all(self, newest: LatestMessages, shown: frozenset[LayerGroup]) -> float | None:
+    def all(self, latest: LatestMessages, shown: frozenset[LayerGroup]) -> float | None:
         """Draw the changes; return the monotonic time at which to draw again without a new message."""
         now_s = time.monotonic()
-        self._bodies.draw(newest)
-        self._obstacles.draw(newest)
-        self._detections.draw(newest)
+        self._bodies.draw(latest)
+        self._obstacles.draw(latest)
+        self._detections.draw(latest)
         due = (
-            self._ways.draw(newest, now_s, is_shown="ways" in shown),
-            self._voxels.draw(newest, now_s),
-            self._cameras.draw(newest, now_s),
+            self._ways.draw(latest, now_s, is_shown="ways" in shown),
+            self._voxels.draw(latest, now_s),
+            self._cameras.draw(latest, now_s),
         )
         return min((each for each in due if each is not None), default=None)

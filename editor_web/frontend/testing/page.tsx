@@ -161,11 +161,11 @@ export function control(told: Partial<ControlView> = {}): ControlView {
 }
 
 export function node(told: Partial<NodeLive> = {}): NodeLive {
-  return { status: 'active', visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', followed: '', plan: null, ...told }
+  return { status: 'active', visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', last_transition: '', plan: null, ...told }
 }
 
 export function robot(told: Partial<RobotLive> = {}): RobotLive {
-  return { name: 'left', mode: 'idle', activity: '', error: '', speed_override: 1, controller: '', way: null, ...told }
+  return { name: 'left', mode: 'idle', activity: '', error: '', speed_override: 1, controller: '', path: null, ...told }
 }
 
 /** What a node waits for at its end: the answer to its outcome. */

@@ -141,7 +141,7 @@ class TypeInference:
         """Record the types that a site writes; return whether they are new."""
         written = self._written.setdefault(site.key, [])
         bit = 1 << site.number
-        news = False
+        is_new = False
         for found in kinds:
             kind = found if len(written) < _MOST_CONSTANTS else without_value(found)
             index = next(
@@ -149,9 +149,9 @@ class TypeInference:
             )
             if index == len(written):
                 written.append((kind, 0))
-            news = news or not written[index][1] & bit
+            is_new = is_new or not written[index][1] & bit
             written[index] = (kind, written[index][1] | bit)
-        return news
+        return is_new
 
     def _declared(self, site: DefinitionSite) -> InferredTypes | None:
         """Return the types of a site that does not depend on other sites; None for others."""

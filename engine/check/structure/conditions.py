@@ -180,11 +180,11 @@ def _still_open(rules: Sequence[_Open], name: str, outcome: str) -> list[_Open] 
     """Return the rules that can still hold after a child has ended with `outcome`; None if one holds."""
     still_open: list[_Open] = []
     for rule in rules:
-        wanted = rule.when.get(name)
-        if wanted is None:
+        expected = rule.when.get(name)
+        if expected is None:
             still_open.append(rule)
             continue
-        needed = rule.needed - (wanted == outcome)
+        needed = rule.needed - (expected == outcome)
         if needed == 0:
             return None
         if needed < rule.undecided:

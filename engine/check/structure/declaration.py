@@ -36,9 +36,9 @@ def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
     reached = subject.possible(subject.nodes["root"])
     if reached is None:
         return
-    leaving = {*reached, *subject.targets["root"].values()}
+    destinations = {*reached, *subject.targets["root"].values()}
     for index, outcome in enumerate(declared):
-        if outcome not in leaving:
+        if outcome not in destinations:
             position = subject.behavior.source.position(("outcomes", index))
             message = f"nothing leads to the outcome `{outcome}`"
             hint = "remove it, or add a transition to it"

@@ -175,9 +175,9 @@ def _loops(leads: Mapping[str, Sequence[str]]) -> Iterator[list[str]]:
 
 
 def _cycle(part: Sequence[str], members: set[str], leads: Mapping[str, Sequence[str]]) -> list[str]:
-    trail = [part[0]]
+    visited = [part[0]]
     while True:
-        onward = next((to for to in leads[trail[-1]] if to in members), trail[0])
-        if onward in trail:
-            return trail[trail.index(onward) :]
-        trail.append(onward)
+        onward = next((to for to in leads[visited[-1]] if to in members), visited[0])
+        if onward in visited:
+            return visited[visited.index(onward) :]
+        visited.append(onward)

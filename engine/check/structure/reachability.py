@@ -37,9 +37,9 @@ def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> I
         for target in following:
             comes_from.setdefault(target, []).append(name)
     ends = [target for target in comes_from if target not in leads]
-    leaving = _reachable(ends, comes_from)
+    can_end = _reachable(ends, comes_from)
     # States without transitions are reported as unconnected; a trap has transitions but no exit.
-    trap = [name for name in leads if name in reached and name not in leaving and leads[name]]
+    trap = [name for name in leads if name in reached and name not in can_end and leads[name]]
     if trap:
         shown = ", ".join(f"`{name}`" for name in trap[:5])
         message = f"from {shown}{' and others' if len(trap) > 5 else ''} no outcome of this machine can be reached"

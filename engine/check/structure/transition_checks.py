@@ -65,13 +65,13 @@ def _check_known(
 
 def _check_machine(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     siblings = placed.node.children
-    leaving = _machine_outcomes(subject, placed)
+    outcomes = _machine_outcomes(subject, placed)
     for child in subject.children(placed):
-        if leaving is not None and child.name in leaving:
+        if outcomes is not None and child.name in outcomes:
             message = f"`{child.name}` is both a state and an outcome of this machine"
             yield subject.finding("ambiguous-target", message, child.path, hint="rename the state")
     for child in subject.children(placed):
-        yield from _check_targets(subject, child, siblings, leaving)
+        yield from _check_targets(subject, child, siblings, outcomes)
         yield from _check_outcomes(subject, child)
 
 
@@ -83,13 +83,13 @@ def _machine_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[s
 
 
 def _check_targets(
-    subject: AnalyzedBehavior, child: NodeAt, siblings: Mapping[str, NodeSpec], leaving: Collection[str] | None
+    subject: AnalyzedBehavior, child: NodeAt, siblings: Mapping[str, NodeSpec], outcomes: Collection[str] | None
 ) -> Iterator[Finding]:
     for keys, target in subject.targets[child.path].items():
-        if leaving is None or target in siblings or target in leaving:
+        if outcomes is None or target in siblings or target in outcomes:
             continue
         message = f"`{target}` is neither a state nor an outcome of this machine"
-        hint = did_you_mean(target, {*siblings, *leaving})
+        hint = did_you_mean(target, {*siblings, *outcomes})
         yield subject.finding("unknown-target", message, child.path, *keys, hint=hint)
 
 

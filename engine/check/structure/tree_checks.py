@@ -73,9 +73,9 @@ def _check_restarts(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
     parallel = placed.node.parallel
     if not isinstance(parallel, ParallelSpec) or parallel.counts or parallel.synchronise or parallel.policy == "one":
         return
-    wanted = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
+    needed = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
     ends = InstantOutcomes(subject).ends
-    slow = [f"`{child.name}`" for child in wanted if not ends[child.path]]
+    slow = [f"`{child.name}`" for child in needed if not ends[child.path]]
     if len(slow) > 1:
         message = f"{', '.join(slow[:3])} take time and must succeed in the same tick; until then they restart"
         hint = "remove `synchronise: false`: a child that has succeeded then waits for the others"

@@ -213,6 +213,6 @@ def _print_events(console: Console, title: str, events: Sequence[Event]) -> None
 
 
 def _event_line(event: Event) -> str:
-    said = event_text(event)
-    why = f": {describe_cause(said.cause)}" if said.cause is not None else ""
-    return f"{said.path}  {said.text}{why}" if said.path else f"{said.text}{why}"
+    shown = event_text(event)
+    why = f": {describe_cause(shown.cause)}" if shown.cause is not None else ""
+    return f"{shown.path}  {shown.text}{why}" if shown.path else f"{shown.text}{why}"

@@ -184,5 +184,5 @@ def _show(teach_status: TeachStatus, *, json: bool) -> None:
         console.print(f"{name} is being recorded")
     for name in teach_status.guided:
         console.print(f"{name} is being guided by hand")
-    if teach_status.said:
-        console.print(teach_status.said)
+    if teach_status.message:
+        console.print(teach_status.message)

@@ -36,12 +36,12 @@ class ProgressPrinter:
         return step.path not in self._reducer.state.containers
 
     def _print_line(self, event: Event, change: RunStateChange) -> None:
-        said = event_text(event, duration_s=change.duration_s)
-        node = f"{escape(said.path)}  " if said.path else ""
+        shown = event_text(event, duration_s=change.duration_s)
+        node = f"{escape(shown.path)}  " if shown.path else ""
         # The causes of a node are printed once, with the result of the run.
-        why = f": {describe_cause(said.cause)}" if said.cause is not None and isinstance(event, GoalFinished) else ""
-        style = "green" if change.step is not None and said.level == "info" else _STYLES.get(said.level, "default")
-        line = f"[dim]{event.time_s:9.3f} s[/]  {node}[{style}]{escape(said.text + why)}[/]"
+        why = f": {describe_cause(shown.cause)}" if shown.cause is not None and isinstance(event, GoalFinished) else ""
+        style = "green" if change.step is not None and shown.level == "info" else _STYLES.get(shown.level, "default")
+        line = f"[dim]{event.time_s:9.3f} s[/]  {node}[{style}]{escape(shown.text + why)}[/]"
         self._console.print(line, soft_wrap=True, highlight=False)
 
 

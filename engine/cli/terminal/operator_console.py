@@ -26,7 +26,7 @@ from engine.suggestions import did_you_mean
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
 _RESTING = frozenset({"gate", "pause_confirmed", "run_ended"})
 """The tags of the events after which a run may rest."""
-_SAID = frozenset({"outcome_requested", "gate", "pause_confirmed", "stepped_back", "operator"})
+_PRINTED = frozenset({"outcome_requested", "gate", "pause_confirmed", "stepped_back", "operator"})
 """The tags of the events that an operator is told."""
 
 
@@ -71,7 +71,7 @@ class OperatorConsole:
         self._input = LineInput(known, line=self.execute_line, end=self._on_input_end)
         self._waiting: asyncio.Task[None] | None = None
         self._stepping_back: asyncio.Task[None] | None = None
-        self._rests = asyncio.Event()
+        self._settled = asyncio.Event()
 
     def __enter__(self) -> Self:
         self.run.watch(self._show)
@@ -132,12 +132,12 @@ class OperatorConsole:
 
     async def _until_rest(self) -> None:
         while not self.run.ended:
-            self._rests.clear()
+            self._settled.clear()
             # A node that was just released must not count as resting.
             await self.run.control.settled()
             if self._at_rest():
                 break
-            await self._rests.wait()
+            await self._settled.wait()
         self._input.release()
 
     def _at_rest(self) -> bool:
@@ -148,17 +148,17 @@ class OperatorConsole:
     def _show(self, event: Event) -> None:
         tag = event.__struct_config__.tag
         if tag in _RESTING:
-            self._rests.set()
-        if tag not in _SAID:
+            self._settled.set()
+        if tag not in _PRINTED:
             return
-        said = event_text(event)
-        path, cause = said.path, said.cause
-        line = f"{path} {said.text}" if path else said.text
+        shown = event_text(event)
+        path, cause = shown.path, shown.cause
+        line = f"{path} {shown.text}" if path else shown.text
         if tag == "outcome_requested":
             line = f"? {line}: answer {path} | force {path} OUTCOME | repeat {path}"
         elif cause is not None:
             line = f"{line}: {describe_cause(cause)}"
-        elif tag == "operator" and said.level == "warning":
+        elif tag == "operator" and shown.level == "warning":
             actions = {"hold": "the run pauses", "continue": "the run continues", "stop": "the run stops"}
             line = f"the input ended, {line}: {actions[self._policy.loss_policy]}"
         elif tag == "operator":

@@ -55,11 +55,11 @@ class OperatorOptions:
         """
         if self.autonomy is not None and not (self.operator or self.demand):
             sys.stderr.write("flexcell: --autonomy has no effect without --operator or --demand-operator\n")
-        wanted = (self.operator or self.breakpoints) and not is_python_name(str(file))
+        uses_breakpoints = (self.operator or self.breakpoints) and not is_python_name(str(file))
         return RunOptions(
             autonomy=self.autonomy or autonomy,
             demand_operator=self.demand,
-            breakpoints=load_breakpoints(file) if wanted else (),
+            breakpoints=load_breakpoints(file) if uses_breakpoints else (),
             start_paused=self.paused,
             loss_policy=self.loss,
         )

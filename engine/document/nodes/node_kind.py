@@ -71,11 +71,11 @@ class PostConditionsSpec(StrictModel, frozen=True, kw_only=True):
     always: Assignments = {}
 
 
-def numbered(wanted: Iterable[str]) -> list[str]:
+def numbered(labels: Iterable[str]) -> list[str]:
     """Return unique names for the children of a part of a tree; duplicates get a number."""
     names: dict[str, None] = {}
     seen: dict[str, int] = {}
-    for own in wanted:
+    for own in labels:
         name = own
         while name in names:
             seen[own] = seen.get(own, 1) + 1

@@ -41,9 +41,9 @@ def decode_document(source: DocumentSource, kind: type[T], *, refused: Mapping[s
     try:
         return msgspec.convert(source.data, kind)
     except msgspec.ValidationError as complaint:
-        sifting = MistakeCollector()
-        sifting.sift(source.data, kind)
-        found = mistake_errors(source, kind, sifting.mistakes, refused=refused) or [
+        collector = MistakeCollector()
+        collector.sift(source.data, kind)
+        found = mistake_errors(source, kind, collector.mistakes, refused=refused) or [
             _refusal(source, kind, (), str(complaint))
         ]
         raise combine_mistakes(found) from None

@@ -320,10 +320,10 @@ class Control:
 
     def _refuse_if_undone(self, path: str) -> None:
         """Refuse a command for a node that a step back undoes; any command where `path` is empty."""
-        for undoing in self._gate.undoing:
-            if not path or is_inside(undoing, path):
+        for path_undone in self._gate.stepping_back:
+            if not path or is_inside(path_undone, path):
                 hint = "wait until the run is at rest, or stop it"
-                raise ControlError("this node is being undone", where=undoing, hint=hint)
+                raise ControlError("this node is being undone", where=path_undone, hint=hint)
 
     def _require_active(self, path: str) -> None:
         self._refuse_if_undone(path)

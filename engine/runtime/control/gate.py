@@ -67,7 +67,7 @@ class Gate:
         self._accepted: dict[str, tuple[int, str]] = {}
         self.on_paused: Callable[[], None] = lambda: None
         """Called after every pause: by the operator, a breakpoint, or the end of a step."""
-        self.undoing: tuple[str, ...] = ()
+        self.stepping_back: tuple[str, ...] = ()
         """The node that is being undone, and the node that was preempted for it; empty while there is none."""
         self._step: SingleStep | None = None
         self._paused = False
@@ -117,16 +117,16 @@ class Gate:
 
     def begin_undo(self, path: str, gives_up: str) -> None:
         """Release only the undo of the node at `path`; `gives_up` is the node that is preempted for it."""
-        self.undoing = (path, gives_up)
+        self.stepping_back = (path, gives_up)
         self.step(SingleStep(mode="back", branch=path, origin=path))
 
     def undoes(self, path: str) -> bool:
         """Return whether the node at a path is being undone; no priority container holds an undo."""
-        return bool(self.undoing) and is_inside(self.undoing[0], path)
+        return bool(self.stepping_back) and is_inside(self.stepping_back[0], path)
 
     def end_undo(self) -> None:
         """Hold everything again, regardless of orders given meanwhile."""
-        self.undoing = ()
+        self.stepping_back = ()
         self.pause()
 
     def order(self, path: str, order: OperatorOrder) -> None:

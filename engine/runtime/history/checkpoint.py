@@ -29,5 +29,5 @@ class Checkpoint:
     """The states that are entered again."""
     taken: Mapping[str, str] = field(default_factory=dict[str, str])
     """The states that exit with a given outcome instead, by path."""
-    undoing: str = ""
+    stepping_back: str = ""
     """The state that a step back was undoing when the engine died; empty for none."""

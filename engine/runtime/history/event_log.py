@@ -27,15 +27,15 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
     """Return the log line of an event; `duration_s` is the duration of the node that ended."""
-    said = event_text(event, duration_s=duration_s)
+    shown = event_text(event, duration_s=duration_s)
     return LogLine(
         seq=event.seq,
         time_s=event.time_s,
         kind=_KINDS[type(event)],
-        level=said.level,
-        path=said.path,
-        text=said.text,
+        level=shown.level,
+        path=shown.path,
+        text=shown.text,
         causes=tuple(
-            CauseLink(message=link.message, where=link.where, kind=link.kind) for link in links_from_root(said.cause)
+            CauseLink(message=link.message, where=link.where, kind=link.kind) for link in links_from_root(shown.cause)
         ),
     )

@@ -137,7 +137,7 @@ class ResumableState(RunStatePart):
             seed=self.state.seed,
             epoch=epoch,
             rerun=self.active_states,
-            undoing=self.state.undoing,
+            stepping_back=self.state.stepping_back,
         )
 
     def _open_point(self, path: str, node: ActiveNodeState) -> NodeCheckpoint:

@@ -201,7 +201,7 @@ class RunReducer(RunStatePart):
     def transition_taken(self, event: TransitionTaken) -> None:
         """Note the transition that a container follows."""
         node = self.state.node(event.path)
-        self._nodes[event.path] = msgspec.structs.replace(node, followed=f"{event.source}|{event.outcome}")
+        self._nodes[event.path] = msgspec.structs.replace(node, last_transition=f"{event.source}|{event.outcome}")
         child = f"{event.path}/{event.source}"
         self._proceed_from(child)
         self._step = NodeStep(kind="transition", path=child, name=event.outcome)
@@ -273,7 +273,7 @@ class RunReducer(RunStatePart):
 
     def undo_started(self, event: UndoStarted) -> None:
         """Show the node under undo as active."""
-        self.state.undoing = event.path
+        self.state.stepping_back = event.path
         self._nodes[event.path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
 
     def undo_ended(self, event: UndoEnded) -> None:
@@ -288,7 +288,7 @@ class RunReducer(RunStatePart):
         """Return the undone nodes to the state before their entry."""
         self._run_changed = True
         state = self.state
-        state.undoing = ""
+        state.stepping_back = ""
         if event.cause is not None:
             return
         for path, node in state.nodes.items():
@@ -297,7 +297,7 @@ class RunReducer(RunStatePart):
         parent = event.path.rpartition("/")[0]
         if parent in state.nodes:
             # The last transition of the parent leads into an undone node.
-            self._nodes[parent] = msgspec.structs.replace(state.nodes[parent], followed="")
+            self._nodes[parent] = msgspec.structs.replace(state.nodes[parent], last_transition="")
         for path in (event.path, event.source):
             self._drop(path)
 

@@ -25,7 +25,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One node: idle, active, done, failed or stopped.
 
     `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock;
-    `duration_s` is that of the last finished visit. `followed` is the last transition of a machine, as
+    `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as
     `source|outcome`. `plan` is the last path that this visit planned.
     """
 
@@ -35,7 +35,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     entered_s: float = 0.0
     duration_s: float = 0.0
     cause: str = ""
-    followed: str = ""
+    last_transition: str = ""
     plan: PlanLive | None = None
 
 
@@ -100,7 +100,7 @@ class RunState:
         self.autonomy: AutonomyLevel | None = None
         self.locks: dict[str, str] = {}
         """The reason of each lock that an operator has set, by path."""
-        self.undoing = ""
+        self.stepping_back = ""
         """The state that an unfinished step back began to undo last; empty while there is none."""
         self.nodes: dict[str, NodeLive] = {}
         """Every node of which an event has told anything."""
@@ -125,7 +125,8 @@ class RunState:
         copied = RunState(self.run)
         copied.seq, copied.time_s, copied.real_time = self.seq, self.time_s, self.real_time
         copied.seed, copied.document, copied.parameters = self.seed, self.document, self.parameters
-        copied.end, copied.paused, copied.autonomy, copied.undoing = self.end, self.paused, self.autonomy, self.undoing
+        copied.end, copied.paused, copied.autonomy = self.end, self.paused, self.autonomy
+        copied.stepping_back = self.stepping_back
         copied.locks, copied.nodes, copied.active = dict(self.locks), dict(self.nodes), dict(self.active)
         copied.exits = {path: dict(ends) for path, ends in self.exits.items()}
         copied.containers = self.containers

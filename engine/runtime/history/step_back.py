@@ -44,7 +44,7 @@ class StepBack:
     since: int
     """The event with which the run reached `target`."""
     plan: Plan
-    trail: UndoLog
+    undo_log: UndoLog
     former: Mapping[str, Mapping[str, object]]
     """The userdata scopes at that event."""
     went_wrong: Cause | None
@@ -53,7 +53,7 @@ class StepBack:
     @property
     def undone(self) -> tuple[LeafActivation, ...]:
         """The activations to undo, in this order."""
-        return self.trail.done(self.target, self.since)
+        return self.undo_log.done(self.target, self.since)
 
 
 def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition, *, path: str = "") -> StepBack:
@@ -69,9 +69,9 @@ def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition
         ControlError: no node in that branch can be undone; the message states the reason.
     """
     effective = effective_events(events)
-    trail = UndoLog().read(effective)
-    cursor, node, target, since = _chosen(plan, trail, position, path)
-    for activation in trail.done(target, since):
+    undo_log = UndoLog().read(effective)
+    cursor, node, target, since = _chosen(plan, undo_log, position, path)
+    for activation in undo_log.done(target, since):
         _require_undo(plan, activation, is_over=activation.path not in position.active)
     before = [event for event in effective if event.seq <= since]
     userdata = UserdataHistory(lambda: plan)
@@ -84,7 +84,7 @@ def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition
         target=target,
         since=since,
         plan=plan,
-        trail=trail,
+        undo_log=undo_log,
         former={
             path: {key: entry.value for key, entry in view.values.items()} for path, view in userdata.scopes.items()
         },
@@ -121,18 +121,18 @@ def _refused(activation: LeafActivation, why: str) -> ControlError:
     return ControlError(f"cannot step back over visit {activation.visit}: {why}", where=activation.path, hint=hint)
 
 
-def _chosen(plan: Plan, trail: UndoLog, position: PausedPosition, path: str) -> tuple[str, str, str, int]:
+def _chosen(plan: Plan, undo_log: UndoLog, position: PausedPosition, path: str) -> tuple[str, str, str, int]:
     """Return cursor, node, target, and the event with which the run reached the target."""
     refusals: list[ControlError] = []
     options: list[tuple[int, tuple[str, str, str, int]]] = []
     for cursor in _cursors(plan, position, path):
         try:
-            node, target, since = _target(plan, trail, position, cursor)
+            node, target, since = _target(plan, undo_log, position, cursor)
         except ControlError as error:
             refusals.append(error)
             continue
-        newest = max((each.seq for each in trail.done(target, since)), default=since)
-        options.append((newest, (cursor, node, target, since)))
+        latest = max((each.seq for each in undo_log.done(target, since)), default=since)
+        options.append((latest, (cursor, node, target, since)))
     if options:
         return max(options)[1]
     if refusals:
@@ -149,26 +149,26 @@ def _cursors(plan: Plan, position: PausedPosition, path: str) -> Iterator[str]:
             yield each
 
 
-def _target(plan: Plan, trail: UndoLog, position: PausedPosition, cursor: str) -> tuple[str, str, int]:
+def _target(plan: Plan, undo_log: UndoLog, position: PausedPosition, cursor: str) -> tuple[str, str, int]:
     node = _tree_around(plan, cursor) or cursor
     while True:
-        if _has_begun(trail, position, node):
-            return node, node, trail.since(node)
+        if _has_begun(undo_log, position, node):
+            return node, node, undo_log.since(node)
         container = node.rpartition("/")[0]
         if not container:
             raise ControlError("the run is at its beginning", where=cursor, hint="there is nothing to undo")
         kind = plan.nodes[container].work.kind
-        if kind in ("machine", "priority") and (before := trail.previous(container)) is not None:
+        if kind in ("machine", "priority") and (before := undo_log.previous(container)) is not None:
             name, since = before
             return node, f"{container}/{name}", since
-        if kind == "foreach" and (rounds := trail.rounds(container)):
+        if kind == "foreach" and (rounds := undo_log.rounds(container)):
             raise ControlError(
                 f"round {rounds + 1} has not begun, and completed rounds cannot be undone one by one",
                 where=container,
                 hint="continue to the end of the loop, then step back over the whole loop",
             )
         if kind == "concurrency":
-            _require_alone(plan, trail, position, container, node)
+            _require_alone(plan, undo_log, position, container, node)
         node = container
 
 
@@ -179,19 +179,19 @@ def _tree_around(plan: Plan, path: str) -> str:
     return next((each for each in around if each in plan.nodes and plan.nodes[each].work.kind == "tree"), "")
 
 
-def _has_begun(trail: UndoLog, position: PausedPosition, node: str) -> bool:
+def _has_begun(undo_log: UndoLog, position: PausedPosition, node: str) -> bool:
     waiting = position.waiting.get(node)
-    return bool(trail.done(node)) or (waiting is not None and waiting.point == "after")
+    return bool(undo_log.done(node)) or (waiting is not None and waiting.point == "after")
 
 
-def _require_alone(plan: Plan, trail: UndoLog, position: PausedPosition, container: str, branch: str) -> None:
+def _require_alone(plan: Plan, undo_log: UndoLog, position: PausedPosition, container: str, branch: str) -> None:
     """Refuse to undo the entry of a concurrency container while another branch of it is active.
 
     Branches that have ended are undone with the container.
     """
     for child in plan.nodes[container].work.children.values():
         is_occupied = any(is_inside(child.path, each) for each in (*position.waiting, *position.active))
-        if child.path != branch and is_occupied and trail.done(child.path):
+        if child.path != branch and is_occupied and undo_log.done(child.path):
             raise ControlError(
                 f"{branch} is at its beginning, and the parallel branch {child.path} has begun",
                 where=container,

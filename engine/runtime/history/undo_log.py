@@ -53,7 +53,7 @@ class UndoLog(RunStatePart):
         self._entered: dict[str, int] = {}
         self._transitions: dict[str, list[TransitionTaken]] = {}
         self._writes: list[_Write] = []
-        self._undoing: set[str] = set()
+        self._stepping_back: set[str] = set()
 
     def read(self, events: Iterable[Event]) -> UndoLog:
         """Take events; returns itself."""
@@ -87,11 +87,11 @@ class UndoLog(RunStatePart):
 
     def undo_started(self, event: UndoStarted) -> None:
         """Keep its requests apart from those of the activation."""
-        self._undoing.add(event.path)
+        self._stepping_back.add(event.path)
 
     def undo_ended(self, event: UndoEnded) -> None:
         """Forget an activation that is undone."""
-        self._undoing.discard(event.path)
+        self._stepping_back.discard(event.path)
         if event.cause is None and not event.preempted:
             self._done.pop((event.path, event.undoes), None)
 
@@ -165,7 +165,7 @@ class UndoLog(RunStatePart):
     def request_sent(self, event: GoalSent | ServiceCalled, name: str) -> None:
         """Keep a request of the activation."""
         activation = self._last.get(event.path)
-        if activation is not None and event.path not in self._undoing:
+        if activation is not None and event.path not in self._stepping_back:
             activation.requests[name] = RequestRecord(address=event.address, request=event.request)
 
     def _end(self, path: str, name: str, status: str, result: object) -> None:

@@ -160,13 +160,13 @@ class Execution:
         """
         plain = plain_value(value, key=key, where=path)
         with self.counted():
-            owner, grown, is_new = scope.append(key, value, writer=path)
+            owner, values, is_new = scope.append(key, value, writer=path)
         if is_new:
-            self.record_write(path, owner, key, plain_value(grown, key=key, where=path))
+            self.record_write(path, owner, key, plain_value(values, key=key, where=path))
         else:
             self.progress_count += 1
             self.recorder.emit(UserdataAppended, path=path, scope=owner, key=key, value=plain)
-        return len(grown)
+        return len(values)
 
     def record_write(self, path: str, scope: str, key: str, value: object, *, post: str = "") -> None:
         """Record that the node at `path`, or a post-condition of it, wrote a plain value to `key` of `scope`."""

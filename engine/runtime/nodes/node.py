@@ -350,13 +350,13 @@ class Node:
         path, visit = self.path, begun.visit
         try:
             outcome = await begun.work
-        except asyncio.CancelledError as stray:
+        except asyncio.CancelledError as cancellation:
             if being_cancelled(execution.loop):
                 record_exit(execution, self.path, visit, "", preempted=True)
                 raise
             error = StateError("a CancelledError was raised without a stop request", where=self.position or path)
             record_exit(execution, self.path, visit, "", cause=cause_of(error))
-            raise error from stray
+            raise error from cancellation
         except Exception as raised:
             error = self._flexcell_error(raised)
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
@@ -410,7 +410,7 @@ def overdue_policy(execution: Execution, path: str) -> OverduePolicy:
     # The innermost level abandons first, or every level around it would be abandoned with it.
     grace_s = 0.1 * max(0, 20 - path.count("/"))
     return OverduePolicy(
-        tell=report,
+        report=report,
         abandon=abandon,
         abandon_after_s=execution.abandon_after_s + grace_s,
         stands_still=execution.branch_holds.stands_still,

@@ -111,8 +111,8 @@ class BusPort:
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Return the newest message of a topic, waiting for the first one."""
-        newest = self._bus.topic(topic, kind).latest
-        return newest if newest is not None else await self.next_message(topic, kind, holder=holder)
+        message = self._bus.topic(topic, kind).latest
+        return message if message is not None else await self.next_message(topic, kind, holder=holder)
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Wait for the next message of a topic."""

@@ -45,22 +45,22 @@ class _Member:
     def __init__(self, work: Holdable, settled: Callable[[], None], *, of_clean_up: bool) -> None:
         self.work = work
         self.of_clean_up = of_clean_up
-        self.wanted = False
+        self.requested = False
         self.held = False
         self.cannot = ""
         self._settled = settled
         self.task: asyncio.Task[None] | None = None
 
     def want(self, *, held: bool) -> None:
-        self.wanted = held
-        if self.wanted != self.held and (self.task is None or self.task.done()):
+        self.requested = held
+        if self.requested != self.held and (self.task is None or self.task.done()):
             self.task = asyncio.create_task(self._follow(), name=f"hold {self.work.label}")
 
     async def _follow(self) -> None:
-        while self.wanted != self.held:
+        while self.requested != self.held:
             self.cannot = ""
             try:
-                await (self.work.hold() if self.wanted else self.work.resume())
+                await (self.work.hold() if self.requested else self.work.resume())
             except FlexcellError as error:
                 # Work that cannot be held continues to its end; the operator is notified, the pause remains.
                 self.cannot = f"{self.work.label}: {error.message}"
@@ -139,7 +139,7 @@ class BranchHolds:
         if member.task is not None and not member.task.done():
             member.task.cancel()
             await asyncio.wait({member.task})
-        if member.wanted:
+        if member.requested:
             self._notify_settled()
 
     def timer(self, path: str, duration_s: float) -> Timer:
@@ -178,11 +178,11 @@ class BranchHolds:
 
     def settled(self) -> bool:
         """Return whether all work to be held is held."""
-        return all(member.held for member in self._members.values() if member.wanted)
+        return all(member.held for member in self._members.values() if member.requested)
 
     def cannot(self) -> tuple[str, ...]:
         """Return the messages of work that cannot be held."""
-        return tuple(member.cannot for member in self._members.values() if member.wanted and member.cannot)
+        return tuple(member.cannot for member in self._members.values() if member.requested and member.cannot)
 
     def _apply(self) -> None:
         for timer in self._timers.values():

@@ -131,18 +131,18 @@ class Repeat(decorators.Repeat, TreeDecorator):
     """Repeat of py_trees that requests the next tick at once instead of waiting for it."""
 
     def __init__(
-        self, path: str, child: Behaviour, times: int, tree_timers: TreeTimers, tell: Callable[[Behaviour], None]
+        self, path: str, child: Behaviour, times: int, tree_timers: TreeTimers, report: Callable[[Behaviour], None]
     ) -> None:
         super().__init__(path, child, times)
         self._tree_timers = tree_timers
-        self._tell = tell
+        self._report = report
 
     def update(self) -> Status:
         """Count a success and request the next tick."""
         status = super().update()
         if status is Status.RUNNING and self.decorated.status is Status.SUCCESS:
             self._tree_timers.call_again(self.name)
-            self._tell(self)
+            self._report(self)
         return status
 
     def terminate(self, new_status: Status) -> None:
@@ -266,7 +266,7 @@ def new_decorator(part: TreeNode, child: Behaviour, site: DecoratorSite) -> Tree
         case nodes.TimeoutSpec() as spec:
             return Timeout(path, child, spec.after_s, tree_timers)
         case nodes.RetrySpec() as spec:
-            return Retry(path, child, spec, tree_timers=tree_timers, clear=site.clear, tell=site.record_retry)
+            return Retry(path, child, spec, tree_timers=tree_timers, clear=site.clear, report=site.record_retry)
         case nodes.GuardSpec() as spec:
             keys, holds, skips = guard_condition(part).names, holds_in(part, site.place), site.statuses.skips
             return Guard(path, child, keys=keys, holds=holds, text=spec.when, to=spec.to or "failure", skips=skips)

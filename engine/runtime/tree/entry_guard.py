@@ -34,7 +34,7 @@ class EntryGuard:
     ) -> None:
         self.keys = keys
         self.holds = holds
-        self.said: bool | None = None
+        self.last_value: bool | None = None
         """False where it was closed in the current or last tick; else None."""
         self.refusal = ""
         """Reason of a failure by this guard; else empty."""
@@ -52,7 +52,7 @@ class EntryGuard:
             self._skips.run(part)
             yield from self._tick()
             return
-        self.said = False
+        self.last_value = False
         for child in part.children:
             if child.status is not Status.INVALID:
                 child.stop(Status.INVALID)

@@ -43,7 +43,7 @@ class Guard(TreeDecorator):
         super().__init__(path, child)
         self.keys = keys
         self.holds = holds
-        self.said: bool | None = None
+        self.last_value: bool | None = None
         """Value of the condition in the current or last tick; None where it was not evaluated."""
         self._text = text
         self._to = to
@@ -51,8 +51,8 @@ class Guard(TreeDecorator):
 
     def tick(self) -> Iterator[Behaviour]:
         """Evaluate the condition, then tick the child or stop it."""
-        self.said = self.holds()
-        if self.said:
+        self.last_value = self.holds()
+        if self.last_value:
             yield from super().tick()
             return
         self.refusal = f"{self._text} is false"

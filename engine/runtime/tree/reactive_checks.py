@@ -114,12 +114,12 @@ class ReactiveChecks:
         elif isinstance(event, MessageReceived) and self._builder.reactive and is_inside(self._path, event.path):
             self._topics[event.path].add(event.topic)
 
-    async def ask(self, *, until: Callable[[], bool], news: asyncio.Event) -> None:
+    async def ask(self, *, until: Callable[[], bool], changed: asyncio.Event) -> None:
         """Observe the checks that may have changed, in document order, until a tick is due.
 
         Args:
             until: Returns whether a tick is due for another reason, which ends the observation.
-            news: Set when there may be such a reason.
+            changed: Set when there may be such a reason.
 
         Raises:
             StateError: in virtual time only observations would continue, forever.
@@ -132,7 +132,7 @@ class ReactiveChecks:
             if until():
                 return
             watch.leaf.stale = False
-            observed = await self._observe(watch.leaf, until, news)
+            observed = await self._observe(watch.leaf, until, changed)
             if until():
                 watch.leaf.stale = True
                 return
@@ -183,18 +183,18 @@ class ReactiveChecks:
         self._subscribe_topics(watch)
         if observed.left is not None:
             status = watch.leaf.status_of(observed.left)
-            if status is watch.leaf.said:
+            if status is watch.leaf.reported:
                 return
             # If the tick does not reach it, it must not cause another tick.
-            watch.leaf.said = status
+            watch.leaf.reported = status
         self._execution.observed.keep(watch.path, observed.answers)
         self.tick_due = True
 
-    async def _observe(self, leaf: TreeLeaf, until: Callable[[], bool], news: asyncio.Event) -> Observation:
+    async def _observe(self, leaf: TreeLeaf, until: Callable[[], bool], changed: asyncio.Event) -> Observation:
         path = leaf.plan.node.path
         work = observe(leaf.plan.node, leaf.scope, self._execution)
         task = asyncio.create_task(work, name=f"observing {path}")
-        news_task: asyncio.Task[bool] | None = None
+        changed_task: asyncio.Task[bool] | None = None
         try:
             # Most observations end in the first iteration of the loop.
             await asyncio.sleep(0)
@@ -203,13 +203,13 @@ class ReactiveChecks:
                 left_s = deadline_s - self._execution.clock.now_s()
                 if left_s <= 0:
                     break
-                if news_task is None or news_task.done():
-                    news.clear()
-                    news_task = asyncio.create_task(news.wait(), name=f"news of {self._path}")
-                await asyncio.wait({task, news_task}, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
+                if changed_task is None or changed_task.done():
+                    changed.clear()
+                    changed_task = asyncio.create_task(changed.wait(), name=f"changes of {self._path}")
+                await asyncio.wait({task, changed_task}, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            if news_task is not None:
-                news_task.cancel()
+            if changed_task is not None:
+                changed_task.cancel()
             await preempt((task,), overdue_policy(self._execution, self._path))
         return Observation() if task.cancelled() else task.result()
 

@@ -132,7 +132,7 @@ class _Restoring:
         if not node.plan.check:
             return -1
         # A leaf with a closed guard was not entered.
-        return state.order if state.target is not None else state.began
+        return state.order if state.target is not None else state.active
 
     def _unread(self, node: Behaviour, state: TreeNodeState) -> list[Behaviour]:
         """Return the children whose end a RUNNING node had not read."""
@@ -181,7 +181,7 @@ class _Restoring:
 
     def _was_skipped(self, child: Behaviour, around: TreeNodeState) -> bool:
         state = self._state(child)
-        return state.skipped > max(around.over, state.began)
+        return state.skipped > max(around.over, state.active)
 
     def _order(self, node: Behaviour) -> int:
         """Return the number of the last event of a node."""

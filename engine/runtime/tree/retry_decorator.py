@@ -37,7 +37,7 @@ class Retry(TreeDecorator):
         *,
         tree_timers: TreeTimers,
         clear: Callable[[Behaviour], None],
-        tell: Callable[[int, float, Cause | None], None],
+        report: Callable[[int, float, Cause | None], None],
     ) -> None:
         super().__init__(path, child)
         self.attempt = 1
@@ -46,7 +46,7 @@ class Retry(TreeDecorator):
         self._errors = spec.errors
         self._tree_timers = tree_timers
         self._clear = clear
-        self._tell = tell
+        self._report = report
 
     def initialise(self) -> None:
         """Start the first attempt."""
@@ -107,7 +107,7 @@ class Retry(TreeDecorator):
     def _try_again(self, error: Cause | None) -> None:
         wait_s = self._backoff_s * 2 ** (self.attempt - 1)
         self.attempt += 1
-        self._tell(self.attempt, wait_s, error)
+        self._report(self.attempt, wait_s, error)
         if wait_s > 0:
             self._tree_timers.set(self.name, wait_s)
         else:

@@ -64,10 +64,10 @@ class TreeRunner:
     ) -> None:
         self._path = path
         self._execution = execution
-        self._news = asyncio.Event()
+        self._changed = asyncio.Event()
         self._recent: deque[str] = deque(maxlen=_REMEMBERED)
-        self._leaves = ActiveLeaves(execution, path, self._news.set)
-        self._tree_timers = TreeTimers(execution, self._news.set)
+        self._leaves = ActiveLeaves(execution, path, self._changed.set)
+        self._tree_timers = TreeTimers(execution, self._changed.set)
         self._builder = TreeBuilder(
             execution=execution, leaves=self._leaves, tree_timers=self._tree_timers, clear=self._clear
         )
@@ -76,7 +76,7 @@ class TreeRunner:
             path, execution, lambda: (*self._tree_timers.timers, *self._reactive.timers)
         )
         self._reactive = ReactiveChecks(
-            path, execution, builder=self._builder, polling=self._polling, wake=self._news.set
+            path, execution, builder=self._builder, polling=self._polling, wake=self._changed.set
         )
         self._blackboard: AbstractContextManager[None] = IsolatedBlackboard() if root.holds_foreign else nullcontext()
         self._watched = frozenset[str]()
@@ -164,9 +164,9 @@ class TreeRunner:
         self._raise_error(seen)
         self._count_polling()
         self._tree_timers.follow()
-        self._news.clear()
+        self._changed.clear()
         for guard in self._builder.guards:
-            guard.said = None
+            guard.last_value = None
         await self._ticker.tick(self._steps(root))
         for passed in self._leaves.forget(seen):
             self._builder.statuses.pass_over(passed.path)
@@ -209,11 +209,11 @@ class TreeRunner:
     async def _wait(self) -> None:
         """Return when a tick is due, this instant has settled, and the branch is not held."""
         while not (self._is_due() or self._guard_has_changed()):
-            self._news.clear()
+            self._changed.clear()
             if self._reactive.stale:
-                await self._reactive.ask(until=self._is_due, news=self._news)
+                await self._reactive.ask(until=self._is_due, changed=self._changed)
             else:
-                await self._news.wait()
+                await self._changed.wait()
         await self._execution.settlement.settled(self._path)
         branch_holds = self._execution.branch_holds
         while branch_holds.active and branch_holds.held(self._path):
@@ -227,10 +227,10 @@ class TreeRunner:
     def _guard_has_changed(self) -> bool:
         """Return whether the value of a guard that was evaluated in the last tick has changed."""
         written, self._written = self._written, set()
-        evaluated = [each for each in self._builder.guards if each.said is not None and each.keys & written]
+        evaluated = [each for each in self._builder.guards if each.last_value is not None and each.keys & written]
         try:
             with METER.limited(MAX_STEPS, "the guards of this tree"):
-                return any(each.holds() is not each.said for each in evaluated)
+                return any(each.holds() is not each.last_value for each in evaluated)
         except FlexcellError:
             return True  # the tick raises the error where a decorator may handle it
 
@@ -238,7 +238,7 @@ class TreeRunner:
         self._reactive.hear(event)
         if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)
-            self._news.set()
+            self._changed.set()
             if not is_inside(self._path, event.path):
                 self._execution.waits.add(self._path)
 

@@ -23,7 +23,7 @@ class TreeNodeState:
     since_s: float = 0.0
     order: int = -1
     """The last event of this node."""
-    began: int = -1
+    active: int = -1
     """The last event by which it was active."""
     skipped: int = -1
     """The last event by which it was skipped."""
@@ -79,7 +79,7 @@ def fold_tree_events(events: Iterable[TreeEvent]) -> dict[str, TreeNodeState]:
         what, _, name = event.what.partition(" ")
         ended = what in ("outcome", "target", "failed")
         state.over = number if ended or event.what in _OVER else state.over
-        state.began = number if what in ("entered", "running", "attempt") else state.began
+        state.active = number if what in ("entered", "running", "attempt") else state.active
         state.skipped = number if event.what in ("skipped", "target skipped") else state.skipped
         own_retry = what == "attempt" and any(other is state for other in unread)
         if not ended and not own_retry:

@@ -78,7 +78,7 @@ class TreeLeaf(Behaviour):
         self.place = place
         self.left: NodeExit | None = None
         """Its last exit."""
-        self.said = _INVALID
+        self.reported = _INVALID
         """Its status when it last ran or was observed."""
         self._leaves = leaves
         self._turn = turn
@@ -194,7 +194,7 @@ class TreeLeaf(Behaviour):
 
     def _end(self, left: NodeExit) -> None:
         self.left = left
-        self.status = self.said = self.status_of(left)
+        self.status = self.reported = self.status_of(left)
         skips = self._statuses.skips
         if left.target == "skipped":
             skips.skip(self)

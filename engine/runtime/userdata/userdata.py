@@ -35,7 +35,7 @@ class Scope:
         shared: The keys that an isolated scope passes on to its parent.
     """
 
-    __slots__ = ("_grown", "_isolated", "_shared", "_values", "parent", "path")
+    __slots__ = ("_append_only", "_isolated", "_shared", "_values", "parent", "path")
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Scope:
         self._values = dict(values)
         self._isolated = isolated
         self._shared = shared
-        self._grown: AppendOnlyLists | None = None
+        self._append_only: AppendOnlyLists | None = None
 
     def read(self, key: str, *, reader: str) -> object:
         """Return a value, copied where it is mutable.
@@ -106,9 +106,9 @@ class Scope:
             kind = type(before).__name__
             message = f"cannot append to {key!r}, which is a {kind}"
             raise UserdataError(message, where=writer, hint="initialize it with []")
-        scope._grown = scope._grown or AppendOnlyLists()
-        grown = scope._values[key] = scope._grown.appended(key, cast("list[object]", before), value)
-        return scope.path, grown, is_new
+        scope._append_only = scope._append_only or AppendOnlyLists()
+        values = scope._values[key] = scope._append_only.appended(key, cast("list[object]", before), value)
+        return scope.path, values, is_new
 
     def keys(self) -> Iterator[str]:
         """Yield all keys that are readable from this scope."""

@@ -261,7 +261,9 @@ class MotionRunner:
         self.error = ""
         self._begin(motion, mode, handle.address.rpartition("/")[2])
         try:
-            await supervise_goal(motion, handle, tell=lambda: publish_feedback(motion), device=self.name, words=words)
+            await supervise_goal(
+                motion, handle, publish=lambda: publish_feedback(motion), device=self.name, words=words
+            )
         except (SkillFailed, RobotError) as error:
             self.error = describe_cause(cause_of(error))
             if failed_result is not None and isinstance(error, SkillFailed):

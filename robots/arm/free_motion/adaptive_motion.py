@@ -68,7 +68,7 @@ class AdaptiveMotion:
         self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._attempts = 0
         self._detected_late = self._replan_failure = ""
-        self.tally = AdaptiveMotionReport()
+        self.statistics = AdaptiveMotionReport()
         self.phase: MotionPhase = "moving"
         self.reason = ""
         self._segment: PathSegment | None = None
@@ -188,7 +188,7 @@ class AdaptiveMotion:
         """Come to rest before a predicted collision, and report if the arm stops too late."""
         if not self._halted:
             # If the arm was held meanwhile, that hold stopped it, not this.
-            self.tally.stops += 1
+            self.statistics.stops += 1
             self._halted = True
         self._enter("braking", collision.reason)
         _log.info("%s stops: %s", self._runner.name, collision.reason)
@@ -258,7 +258,7 @@ class AdaptiveMotion:
         if not self._waiting.is_over:
             return None
         self._waiting.end()
-        self.tally.blocked = why
+        self.statistics.blocked = why
         await self._cancel_inner()
         patience_s = self._adaptation.patience_s
         waited = f" for {patience_s:g} s" if patience_s > 0.0 else ""
@@ -272,7 +272,7 @@ class AdaptiveMotion:
                 return await self._resume(reused=False)
             if monitor.unobserved_reason:
                 return monitor.unobserved_reason
-            if self.reason and not waiting.has_rested(stops=self.tally.stops):
+            if self.reason and not waiting.has_rested(stops=self.statistics.stops):
                 return self.reason
             # Two processes work in parallel: one checks the path while the other searches in case it is needed.
             search = self._begin_search() if waiting.may_search and self.phase != "waiting" else None
@@ -285,11 +285,11 @@ class AdaptiveMotion:
                 if not blocked:
                     return await self._resume(reused=reused)
                 if waiting.may_search:
-                    began_s = self._clock.now_s()
+                    started_s = self._clock.now_s()
                     self._replan_failure = await self._follow_new_path(blocked, search or self._begin_search())
                     if not self._replan_failure:
                         return ""
-                    waiting.searched(took_s=self._clock.now_s() - began_s)
+                    waiting.searched(took_s=self._clock.now_s() - started_s)
                 return blocked + self._detected_late + self._replan_failure
             finally:
                 await discard_query(search)
@@ -322,7 +322,7 @@ class AdaptiveMotion:
         if self._held or self._cancelled:
             return f"; {_HELD}"
         if self._segment is not None:
-            self.tally.replans += 1
+            self.statistics.replans += 1
             _log.info("%s follows a new path", self._runner.name)
         self._follow(segment)
         return ""
@@ -335,7 +335,7 @@ class AdaptiveMotion:
         self._detected_late = self._replan_failure = ""
         await inner.resume()
         if reused:
-            self.tally.reused += 1
+            self.statistics.reused += 1
             _log.info("%s resumes along its path", self._runner.name)
         return ""
 

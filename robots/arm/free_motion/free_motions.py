@@ -71,18 +71,18 @@ class FreeMotions:
         start = self._joints(goal.start, handle) if goal.start else runner.port.sample().desired_rad
         planner = self._new_planner(self._goal(goal.target, handle), goal.options)
         handle.accept()
-        began_s = runner.clock.now_s()
+        started_s = runner.clock.now_s()
         planning = asyncio.ensure_future(self._plan_observed(lambda: planner.find(np.array(start))))
         try:
             while not (await asyncio.wait((planning,), timeout=FEEDBACK_S))[0]:
-                handle.feedback(PlanFeedback(elapsed_s=runner.clock.now_s() - began_s))
+                handle.feedback(PlanFeedback(elapsed_s=runner.clock.now_s() - started_s))
         finally:
             planning.cancel()
         segment = planning.result()
         if isinstance(segment, PlanRefusal):
             raise SkillFailed(segment.message, where=handle.address, hint=segment.hint or None)
         self._preview.show(segment.trajectory, state="proposed")
-        return self._planned(segment, goal.options, planning_s=runner.clock.now_s() - began_s)
+        return self._planned(segment, goal.options, planning_s=runner.clock.now_s() - started_s)
 
     async def _move_free(self, goal: MoveFree, handle: ActiveGoal[FreeMotionFeedback]) -> FreeMotionResult:
         planner = self._new_planner(self._goal(goal.target, handle), goal.options)
@@ -227,7 +227,7 @@ class FreeMotions:
             phase=phase,
             joints=self._runner.measured(),
             progress=motion.progress if motion is not None else 0.0,
-            replans=motion.tally.replans if motion is not None else 0,
+            replans=motion.statistics.replans if motion is not None else 0,
             waited_s=motion.waited_s if motion is not None else 0.0,
             reason=motion.reason if motion is not None else "",
         )
@@ -262,13 +262,13 @@ class _MotionDisplay:
     def result(self, duration_s: float) -> FreeMotionResult:
         """Return the arm's joints and the statistics of the motion."""
         motion = self.motion
-        tally = motion.tally if motion is not None else AdaptiveMotionReport()
+        statistics = motion.statistics if motion is not None else AdaptiveMotionReport()
         return FreeMotionResult(
             joints=self._runner.measured(),
             duration_s=duration_s,
-            stops=tally.stops,
-            replans=tally.replans,
-            reused=tally.reused,
+            stops=statistics.stops,
+            replans=statistics.replans,
+            reused=statistics.reused,
             waited_s=motion.waited_s if motion is not None else 0.0,
-            blocked=tally.blocked,
+            blocked=statistics.blocked,
         )

@@ -76,8 +76,8 @@ class JogGuard:
         """
         self._workspace.require()
         try:
-            standing = self._runner.port.sample().desired_rad[None]
-            await self._scene.check(JointTrajectory(dt_s=_STEP_S, position_rad=standing, velocity_rad_s=standing * 0.0))
+            at_rest = self._runner.port.sample().desired_rad[None]
+            await self._scene.check(JointTrajectory(dt_s=_STEP_S, position_rad=at_rest, velocity_rad_s=at_rest * 0.0))
         except BaseException:
             self._workspace.release()
             raise
@@ -153,21 +153,21 @@ class JogGuard:
         joints, velocity = sample.desired_rad.copy(), sample.velocity_rad_s.copy()
         rows, travelled = [joints], [0.0]
         reaction, longest = round(_REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
-        wanted = self._to_joints(commanded, joints)
+        requested = self._to_joints(commanded, joints)
         for k in range(longest):
             if k < reaction:
-                wanted = self._to_joints(commanded, joints)
-            change = (wanted if k < reaction else 0.0) - velocity
+                requested = self._to_joints(commanded, joints)
+            change = (requested if k < reaction else 0.0) - velocity
             most = float((self._braking_rad_s2 * _STEP_S / np.maximum(np.abs(change), 1e-12)).min())
             velocity = velocity + change * min(1.0, most)
             joints = joints + velocity * _STEP_S
-            share = float(velocity @ wanted) / max(1e-12, float(wanted @ wanted))
+            share = float(velocity @ requested) / max(1e-12, float(requested @ requested))
             rows.append(joints)
             travelled.append(travelled[-1] + max(0.0, share) * _STEP_S)
             if k >= reaction and not velocity.any():
                 break
         path = np.array(rows)
-        slowing_s = 0.5 * float((np.abs(wanted) / self._braking_rad_s2).max())
+        slowing_s = 0.5 * float((np.abs(requested) / self._braking_rad_s2).max())
         return (
             JointTrajectory(dt_s=_STEP_S, position_rad=path, velocity_rad_s=path * 0.0),
             np.array(travelled),

@@ -61,7 +61,7 @@ class JogRun:
         self._command: Row = (0.0,) * width
         self._command_s = clock.now_s()
         self._stream: MotionStream | None = None
-        self._countdown: StreamDeadline | None = None
+        self._deadline: StreamDeadline | None = None
         # Its own velocity is resent only with the feedback, so the watchdog must be longer than that period.
         self.watchdog_s = max(goal.watchdog_s, _REPEATED_S) if velocity else goal.watchdog_s
         if bool(velocity) != (goal.duration_s is not None):
@@ -76,7 +76,7 @@ class JogRun:
     def start(self, stream: MotionStream) -> MotionStream:
         """Drive `stream` from now on."""
         self._stream = stream
-        self._countdown = StreamDeadline(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
+        self._deadline = StreamDeadline(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
         self.look()
         if self._guard is not None:
             self._guard.watch_ahead(self._on_limit_change)
@@ -86,8 +86,8 @@ class JogRun:
         """Resend the velocity before the watchdog expires, and end the stream at its deadline."""
         if self._velocity:
             self._send(self._velocity)
-        if self._countdown is not None:
-            self._countdown.look()
+        if self._deadline is not None:
+            self._deadline.look()
 
     def take(self, command: JogCommand) -> None:
         """Move at this velocity until the next command; an invalid one is ignored and logged."""
@@ -97,8 +97,8 @@ class JogRun:
         if problem := self._velocity_error(velocity):
             _log.warning("%s: %s; command ignored", self._handle.address, problem)
             return
-        if self._countdown is not None:
-            self._countdown.restart()
+        if self._deadline is not None:
+            self._deadline.restart()
         try:
             self._send(velocity)
         except RobotError as error:
@@ -108,8 +108,8 @@ class JogRun:
     def close(self) -> None:
         """Release the ended stream."""
         self._stream = None
-        if self._countdown is not None:
-            self._countdown.close()
+        if self._deadline is not None:
+            self._deadline.close()
 
     def _send(self, velocity: Row) -> None:
         """Send a new command."""

@@ -33,17 +33,17 @@ class AdmittanceLoop:
         """The active axes."""
         return self._axes
 
-    def press(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
+    def press(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
         """Advance so that the measured wrench converges to the wanted one, (6,); `total` is the whole offset."""
         for axis in self._axes:
-            self._move(axis, step_s, float(measured[axis] - wanted[axis]), float(feed_forward[axis]))
+            self._move(axis, step_s, float(measured[axis] - target[axis]), float(feed_forward[axis]))
         self._add_up(feed_forward)
 
-    def relieve(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
+    def relieve(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
         """Come to rest; move only away from forces clearly above the wanted ones, never towards them."""
         for axis in self._axes:
-            excess = float(measured[axis] - wanted[axis])
-            towards = excess * float(wanted[axis]) < 0.0
+            excess = float(measured[axis] - target[axis])
+            towards = excess * float(target[axis]) < 0.0
             excess = 0.0 if towards else np.copysign(max(0.0, abs(excess) - _BORNE[axis]), excess)
             self._move(axis, step_s, float(excess), float(feed_forward[axis]))
         self._add_up(feed_forward)

@@ -20,12 +20,12 @@ def validate_force_task(task: ForceTask, *, start_rad: Array, joints: tuple[str,
             reach, or invalid admittance parameters.
     """
     validate_trajectory(task.trajectory, start_rad=start_rad, joints=joints)
-    wanted = (len(task.trajectory.position_rad), 6)
+    shape = (len(task.trajectory.position_rad), 6)
     for what, values in (("offset", task.offset), ("wrench", task.wrench)):
-        if np.shape(values) != wanted or not np.isfinite(values).all():
+        if np.shape(values) != shape or not np.isfinite(values).all():
             raise RobotError(
                 f"the {what} has shape {np.shape(values)} or values that are not finite",
-                hint=f"give finite numbers of shape {wanted}, one row for each sample of the trajectory",
+                hint=f"give finite numbers of shape {shape}, one row for each sample of the trajectory",
             )
     _check_reach(task)
     _check_law(task.admittance)

@@ -23,7 +23,7 @@ _MOST_MISSING = 0.02
 _RAD_PER_M = 10.0
 _STANDS_RAD_S = 0.002
 # Under a persistent push the tool yields for this long once the path stands still, then rests briefly.
-_GIVING_WAY_S, _PAUSE_S = 1.2, 0.1
+_YIELDING_S, _PAUSE_S = 1.2, 0.1
 _AT_LIMIT_RAD = 0.01
 
 
@@ -57,7 +57,7 @@ class ForceTracking:
         self._row = self._rows[0]
         self._passed_s = 0.0
         self._force_error_n = 0.0
-        self._giving_way_s = self._pausing_s = 0.0
+        self._yielding_s = self._pausing_s = 0.0
         self._failure = ""
         self.position = self._tracker.position
         self.velocity = self._tracker.velocity
@@ -120,7 +120,7 @@ class ForceTracking:
             self._tracker.brake(step_s)
             return
         move = admittance.press if passing else admittance.relieve
-        move(step_s, measured=measured, wanted=self._row[6:], feed_forward=self._feed_forward())
+        move(step_s, measured=measured, target=self._row[6:], feed_forward=self._feed_forward())
         self._follow(step_s, state)
         if passing:
             self._recorder.add(step_s, share=playback.progress, offset=admittance.total, wrench=measured)
@@ -128,16 +128,16 @@ class ForceTracking:
     def _pauses(self, step_s: float) -> bool:
         """Return whether the tool pauses, having yielded for long since the path stands still."""
         if not self._playback.stopped:
-            self._giving_way_s = self._pausing_s = 0.0
+            self._yielding_s = self._pausing_s = 0.0
             return False
         still = self.stopped
-        if self._giving_way_s <= _GIVING_WAY_S:
-            self._giving_way_s = 0.0 if still else self._giving_way_s + step_s
+        if self._yielding_s <= _YIELDING_S:
+            self._yielding_s = 0.0 if still else self._yielding_s + step_s
         else:
             self._pausing_s = self._pausing_s + step_s if still else 0.0
             if self._pausing_s > _PAUSE_S:
-                self._giving_way_s = self._pausing_s = 0.0
-        return self._giving_way_s > _GIVING_WAY_S
+                self._yielding_s = self._pausing_s = 0.0
+        return self._yielding_s > _YIELDING_S
 
     def _in_task(self, wrench: Array) -> Array:
         return (wrench.reshape(2, 3) @ self._task_axes).reshape(6)
@@ -147,11 +147,11 @@ class ForceTracking:
         later = 1.0 - share**3 * (10.0 - 15.0 * share + 6.0 * share * share)
         return self._row[:6] - later * self._rows[0, :6] if later > 0.0 else self._row[:6]
 
-    def _slowdown(self, step_s: float, measured: Array, wanted: Array) -> float:
+    def _slowdown(self, step_s: float, measured: Array, target: Array) -> float:
         missing = self._missing() / _SLOW_MISSING
         slowdown = 1.0 + missing * missing
         if self._task.slow_per_n > 0.0:
-            error = [float(measured[axis] - wanted[axis]) for axis in self._admittance.axes if axis < 3]
+            error = [float(measured[axis] - target[axis]) for axis in self._admittance.axes if axis < 3]
             size = sum(value * value for value in error) ** 0.5
             self._force_error_n += (size - self._force_error_n) * min(1.0, step_s / _FORCE_SMOOTHING_S)
             slowdown *= 1.0 + self._task.slow_per_n * self._force_error_n

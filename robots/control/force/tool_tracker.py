@@ -74,12 +74,12 @@ class ToolTracker:
     def _newton(self, jacobian: Array, error: Array) -> Array:
         return jacobian.T @ solve_positive_definite(jacobian @ jacobian.T + self._damping, error)
 
-    def _go(self, step_s: float, wanted: Array) -> None:
+    def _go(self, step_s: float, requested: Array) -> None:
         change = self._acceleration * step_s
         highest = np.minimum(np.minimum(self.velocity + change, self._fastest), self._stoppable(step_s, self._upper))
         lowest = np.maximum(np.maximum(self.velocity - change, -self._fastest), -self._stoppable(step_s, self._lower))
-        velocity = np.minimum(np.maximum(wanted, lowest), highest)
-        self.hindered = int(np.argmax(np.abs(wanted - velocity)))
+        velocity = np.minimum(np.maximum(requested, lowest), highest)
+        self.hindered = int(np.argmax(np.abs(requested - velocity)))
         self.acceleration[:] = (velocity - self.velocity) / step_s
         self.velocity[:] = velocity
         self.position += velocity * step_s

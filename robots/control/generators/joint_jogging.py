@@ -27,4 +27,4 @@ class JointJogGenerator(SetpointStream):
         super().__init__(shaper=shaper, values=len(start), watchdog_s=watchdog_s)
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
-        self._shaper.run(step_s, velocity=self._told * pace)
+        self._shaper.run(step_s, velocity=self._received * pace)

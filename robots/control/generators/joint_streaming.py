@@ -69,13 +69,13 @@ class JointStreamGenerator(SetpointStream):
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
         self._since_s += step_s
-        way_s = _PERIODS * self._period_s
-        share = self._since_s / way_s if self._since_s < way_s else 1.0
-        self._reference = self._from + share * (self._told - self._from)
+        ramp_s = _PERIODS * self._period_s
+        share = self._since_s / ramp_s if self._since_s < ramp_s else 1.0
+        self._reference = self._from + share * (self._received - self._from)
         self._smooth(self._reference, step_s)
         shaper = self._shaper
-        if way_s == 0.0 or float(np.abs(self._rate).max()) < _STANDS_RAD_S:
-            shaper.go_to(step_s, position=self._told, pace=pace)
+        if ramp_s == 0.0 or float(np.abs(self._rate).max()) < _STANDS_RAD_S:
+            shaper.go_to(step_s, position=self._received, pace=pace)
         else:
             shaper.track(step_s, position=self._smoothed, velocity=self._rate, acceleration=self._rise, pace=pace)
 

@@ -59,7 +59,7 @@ class OnlineTrajectoryGenerator:
         self.acceleration = np.zeros(n)
         self._now: _State = (self.position.tolist(), [0.0] * n, [0.0] * n)
         self._solver = profiles.Ruckig(n)
-        self._way = profiles.Trajectory(n)
+        self._trajectory = profiles.Trajectory(n)
         self._hardest = np.array(limits.acceleration_rad_s2) * _STOP_SHARE
         self._request = self._new_request(self.acceleration_rad_s2, limits)
         self._stop_request = self._new_request(self._hardest, limits)
@@ -128,10 +128,10 @@ class OnlineTrajectoryGenerator:
         fastest = self.velocity_rad_s * pace
         missing = position - self.position
         highest = np.sqrt(self.acceleration_rad_s2 * np.abs(missing))
-        wanted = velocity + np.minimum(np.maximum(self._answer_hz / 4.0 * missing, -highest), highest)
-        wanted = np.minimum(np.maximum(wanted, -fastest), fastest)
+        target = velocity + np.minimum(np.maximum(self._answer_hz / 4.0 * missing, -highest), highest)
+        target = np.minimum(np.maximum(target, -fastest), fastest)
         now, before = np.array(self._now[1]), np.array(self._now[2])
-        rise = acceleration + (wanted - now) * self._answer_hz
+        rise = acceleration + (target - now) * self._answer_hz
         change = self._jerk * step_s
         rise = np.minimum(np.maximum(rise, -self.acceleration_rad_s2), self.acceleration_rad_s2)
         rise = np.minimum(np.maximum(rise, before - change), before + change)
@@ -142,7 +142,7 @@ class OnlineTrajectoryGenerator:
         before = self.velocity.copy()
         self._stop_passed_s += step_s
         moved, velocity, acceleration = self._stop.at_time(self._stop_passed_s)
-        position = [start + way for start, way in zip(self._stop_start, moved, strict=True)]
+        position = [start + distance for start, distance in zip(self._stop_start, moved, strict=True)]
         self._now = (position, velocity, acceleration)
         self._take(before, step_s)
 
@@ -158,12 +158,12 @@ class OnlineTrajectoryGenerator:
         request = self._request
         request.current_position, request.current_velocity, request.current_acceleration = self._now
         try:
-            self._solver.calculate(request, self._way)
+            self._solver.calculate(request, self._trajectory)
         except (profiles.RuckigError, ValueError):
             # Rounding makes ruckig fail from some states; the verified stop leaves them within a period.
             self.brake(step_s)
             return
-        self._accept(self._way.at_time(step_s), step_s)
+        self._accept(self._trajectory.at_time(step_s), step_s)
 
     def _accelerate(self, step_s: float, rise: Array) -> None:
         """Change the acceleration to `rise` within the period, if no velocity limit is passed now or later."""

@@ -25,7 +25,7 @@ class SetpointStream:
     def __init__(self, *, shaper: OnlineTrajectoryGenerator, values: int, watchdog_s: float) -> None:
         self._shaper = shaper
         self._watchdog_s = watchdog_s
-        self._told = np.zeros(values)
+        self._received = np.zeros(values)
         self._silence_s = np.inf
         self._finishing = False
         self._held = False
@@ -75,7 +75,7 @@ class SetpointStream:
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
         """Set the latest values; the watchdog counts from when they were sent, `age_s` ago."""
-        self._told[:] = values
+        self._received[:] = values
         self._silence_s = age_s
 
     def finish(self) -> None:

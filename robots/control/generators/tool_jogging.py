@@ -43,8 +43,8 @@ class ToolJogGenerator(SetpointStream):
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
         _, jacobian = state.kinematics.tool_pose_and_jacobian(self.position)
-        rows = twist_rows(self._told, len(self.position))
-        twist = self._bounded(self._told[rows]) * pace
+        rows = twist_rows(self._received, len(self.position))
+        twist = self._bounded(self._received[rows]) * pace
         velocity = joint_velocity(jacobian[rows], twist)
         share = self._share(velocity)
         same = np.array_equal(twist, self._twist)

@@ -65,8 +65,8 @@ class CartesianImpedance:
             ArithmeticError: the mass matrix is not positive definite.
         """
         torque = self._torque
-        measured, wanted = state.tool, state.kinematics.tool_pose(set_point.position)
-        self._pose_error(wanted.xyz, wanted.xyzw, measured.xyz, measured.xyzw, self._error)
+        measured, target = state.tool, state.kinematics.tool_pose(set_point.position)
+        self._pose_error(target.xyz, target.xyzw, measured.xyz, measured.xyzw, self._error)
         np.subtract(set_point.position, state.position, out=self._joint_error)
         np.subtract(set_point.velocity, state.velocity, out=self._joint_error_rate)
         done = self._hang_tool(

@@ -112,8 +112,8 @@ class FingerServo(TaskDrive):
         if not self._task.halted:
             # Also after the end: a held object may yield, and the force follows it.
             self._advance(step_s, width_m)
-        wanted = self._stiffness_n_m * (self._set_m - width_m) / 2.0 - self._damping_ns_m * velocity_m_s / 2.0
-        self.force_n = min(self._limit_n, max(-self._limit_n, wanted))
+        unlimited_n = self._stiffness_n_m * (self._set_m - width_m) / 2.0 - self._damping_ns_m * velocity_m_s / 2.0
+        self.force_n = min(self._limit_n, max(-self._limit_n, unlimited_n))
         arrived = self._set_m == self._target_m and abs(width_m - self._target_m) < _AT_WIDTH_M
         pressing = abs(self.force_n) >= _FORCE_SHARE * self._limit_n
         cancelled = self._task.cancelled

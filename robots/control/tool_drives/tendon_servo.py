@@ -68,10 +68,10 @@ class TendonServo(TaskDrive):
         """Start winding to a share of the travel, 0 to 1, in `time_s` or as fast as the motor can."""
         self._start_m = self._wound_m
         self._target_m = min(1.0, max(0.0, share)) * self._travel_m
-        way = abs(self._target_m - self._start_m)
+        distance_m = abs(self._target_m - self._start_m)
         # A motion of zero length works at any speed.
-        self._speed_m_s = min(self._max_speed_m_s, way / time_s) or self._max_speed_m_s
-        self._task.start(number, patience_s=way / self._speed_m_s + _PATIENCE_S)
+        self._speed_m_s = min(self._max_speed_m_s, distance_m / time_s) or self._max_speed_m_s
+        self._task.start(number, patience_s=distance_m / self._speed_m_s + _PATIENCE_S)
 
     def step(self, step_s: float, *, pulled_m: float, velocity_m_s: float) -> tuple[AnyMotionEvent, ...]:
         """Set `force_n`, the pull; `pulled_m` is the tendon length released by the fingers, at `velocity_m_s`."""
@@ -81,8 +81,8 @@ class TendonServo(TaskDrive):
         # At maximum pull the motor does not wind further.
         self._wound_m = min(self._wound_m, max(pulled_m, 0.0) + _GIVE_SHARE * self._travel_m)
         damping = self._stiffness_n_m * _DAMPING_S
-        wanted = self._stiffness_n_m * (self._wound_m - pulled_m) - damping * velocity_m_s
-        self.force_n = min(self._max_force_n, max(0.0, wanted))
+        unlimited_n = self._stiffness_n_m * (self._wound_m - pulled_m) - damping * velocity_m_s
+        self.force_n = min(self._max_force_n, max(0.0, unlimited_n))
         slack = pulled_m - self._wound_m > _SLACK_SHARE * self._travel_m
         stalled = self._wound_m < self._target_m and self.force_n >= _FORCE_SHARE * self._max_force_n
         cancelled = self._task.cancelled

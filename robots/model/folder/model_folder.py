@@ -79,17 +79,17 @@ class ModelFolder(Generic[Document]):
             CellError: it cannot be read or a mesh is missing.
             DocumentError: the root or a link to remove does not exist.
         """
-        wanted: UrdfSource = self.document.urdf
-        directory = self.package_dir(wanted)
-        within = self.folder if wanted.package is None else directory
-        robot = read_urdf(self.locate(wanted), package_dir=directory, within=within)
-        root = self._known(wanted.root, links_of(robot), ("urdf", "root"), "link") if wanted.root else root_of(robot)
+        urdf: UrdfSource = self.document.urdf
+        directory = self.package_dir(urdf)
+        within = self.folder if urdf.package is None else directory
+        robot = read_urdf(self.locate(urdf), package_dir=directory, within=within)
+        root = self._known(urdf.root, links_of(robot), ("urdf", "root"), "link") if urdf.root else root_of(robot)
         kept = descendants_of(robot, root)
-        for index, link in enumerate(wanted.without):
+        for index, link in enumerate(urdf.without):
             kept -= descendants_of(robot, self._known(link, links_of(robot), ("urdf", "without", index), "link"))
         keep_links(robot, kept)
-        if wanted.collision_file is not None:
-            other = self.locate(FileReference(file=wanted.collision_file, package=wanted.package))
+        if urdf.collision_file is not None:
+            other = self.locate(FileReference(file=urdf.collision_file, package=urdf.package))
             take_collisions(robot, read_urdf(other, package_dir=directory, within=within))
         return robot
 

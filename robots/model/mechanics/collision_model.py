@@ -39,9 +39,9 @@ class CollisionModel:
         self.solver, self.geometry = _built(model, tool_joints or {})
         links = [_link(self.solver, shape) for shape in self.geometry.geometryObjects]
         self.pairs = _counting_pairs(model, self.solver, self.geometry, links)
-        wanted = {frozenset(pair) for pair in self.pairs}
+        checked = {frozenset(pair) for pair in self.pairs}
         for i, j in combinations(range(len(links)), 2):
-            if frozenset((links[i], links[j])) in wanted:
+            if frozenset((links[i], links[j])) in checked:
                 self.geometry.addCollisionPair(pin.CollisionPair(i, j))
         self._links = links
         self.renew()

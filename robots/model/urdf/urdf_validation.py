@@ -117,7 +117,7 @@ def _verify_numbers(element: Element, key: str, count: int) -> None:
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(math.isfinite(number) and abs(number) <= _MAX_NUMBER for number in numbers):
-        wanted = "a number" if count == 1 else f"{count} numbers"
-        raise ValueError(f'`{element.tag} {key}="{text:.40}"` is not {wanted} below {_MAX_NUMBER:g}')
+        expected = "a number" if count == 1 else f"{count} numbers"
+        raise ValueError(f'`{element.tag} {key}="{text:.40}"` is not {expected} below {_MAX_NUMBER:g}')
     if element.tag in ("mass", "box", "cylinder", "sphere") and min(numbers) < 0.0:
         raise ValueError(f'`{element.tag} {key}="{text:.40}"` is negative')

@@ -50,7 +50,7 @@ class _LearnedSection:
     shares: Array
     duration_s: float
     taken: slice
-    rests: RestEnds
+    rest_ends: RestEnds
     cut: TrimInterval
 
 
@@ -74,17 +74,17 @@ def learn_joint_dmp(
         raise RobotError("the recording has no joints", hint="record `joints`, or learn a Cartesian primitive")
     joints = np.array(recorded.joints)
     part = _part(recorded, [MotionChannel(values=joints, rest=_REST_RAD_S)], trim=trim)
-    wanted = joints[part.taken]
+    demonstrated = joints[part.taken]
 
     def learned(number: int) -> LearnedJointDmp:
-        dmp = _joint_dmp(part, wanted, number, a_z=a_z, a_x=a_x)
-        return LearnedJointDmp(dmp=dmp, fit=_joint_fit(dmp, part, wanted))
+        dmp = _joint_dmp(part, demonstrated, number, a_z=a_z, a_x=a_x)
+        return LearnedJointDmp(dmp=dmp, fit=_joint_fit(dmp, part, demonstrated))
 
     def error(one: LearnedJointDmp) -> tuple[float, bool]:
         return one.fit.rms_rad, one.fit.max_rad <= GOOD_RAD
 
     best = _best(learned, error, _numbers(kernels, part))
-    return best if tool_at is None else _with_tool(best, part, wanted, tool_at)
+    return best if tool_at is None else _with_tool(best, part, demonstrated, tool_at)
 
 
 def learn_cart_dmp(
@@ -143,7 +143,7 @@ def _part(recorded: Trajectory, channels: Sequence[MotionChannel], *, trim: bool
     duration_s = float(used[-1] - used[0])
     cut = TrimInterval(start_s=float(used[0] - times[0]), end_s=float(used[-1] - times[0]))
     return _LearnedSection(
-        shares=(used - used[0]) / duration_s, duration_s=duration_s, taken=taken, rests=moving.rests, cut=cut
+        shares=(used - used[0]) / duration_s, duration_s=duration_s, taken=taken, rest_ends=moving.rest_ends, cut=cut
     )
 
 
@@ -176,14 +176,14 @@ def _fit_shares(number: int) -> Array:
 
 
 def _weights(
-    kernels: GaussianKernels, shares: Array, force: Array, *, a_x: float, rests: RestEnds
+    kernels: GaussianKernels, shares: Array, force: Array, *, a_x: float, rest_ends: RestEnds
 ) -> tuple[tuple[float, ...], ...]:
     """Return the weights, one row for each column of the forcing term (T, n), by least squares.
 
     An arm that rests at the end needs zero force afterwards too: otherwise the last kernel, active
     while the phase decays, would hold the arm away from its goal.
     """
-    if rests.end:
+    if rest_ends.end:
         after = np.linspace(1.0, _REST_AFTER, max(2, len(shares) // 5))[1:]
         shares, force = np.append(shares, after), np.vstack((force, np.zeros((len(after), force.shape[1]))))
     phase = phase_at(shares, a_x)
@@ -195,7 +195,7 @@ def _weights(
 
 def _joint_dmp(part: _LearnedSection, joints: Array, number: int, *, a_z: float, a_x: float) -> JointDmp:
     kernels, shares = GaussianKernels.evenly(number, a_x=a_x), _fit_shares(number)
-    value, rate, push = smooth(part.shares, joints, intervals=2 * number, rests=part.rests).at(shares)
+    value, rate, push = smooth(part.shares, joints, intervals=2 * number, rest_ends=part.rest_ends).at(shares)
     force = push + a_z * rate - a_z * a_z / 4.0 * (value[-1] - value)
     return JointDmp(
         N=number,
@@ -207,19 +207,19 @@ def _joint_dmp(part: _LearnedSection, joints: Array, number: int, *, a_z: float,
         dy0=_row(rate[0] / part.duration_s),
         c=_row(kernels.c),
         sigma=_row(kernels.sigma),
-        w=_weights(kernels, shares, force, a_x=a_x, rests=part.rests),
+        w=_weights(kernels, shares, force, a_x=a_x, rest_ends=part.rest_ends),
     )
 
 
 def _cart_dmp(part: _LearnedSection, xyz: Array, xyzw: Array, number: int, *, a_z: float, a_x: float) -> CartDmp:
     kernels, shares = GaussianKernels.evenly(number, a_x=a_x), _fit_shares(number)
-    motion = smooth(part.shares, np.hstack((xyz, xyzw)), intervals=2 * number, rests=part.rests)
+    motion = smooth(part.shares, np.hstack((xyz, xyzw)), intervals=2 * number, rest_ends=part.rest_ends)
     value, rate, push = motion.at(shares)
     turn, spin, spin_push = _spin(value[:, 3:], rate[:, 3:], push[:, 3:])
     missing = np.hstack((value[-1, :3] - value[:, :3], log(product(turn[-1], conjugate(turn)))))
     speed = np.hstack((rate[:, :3], spin))
     force = np.hstack((push[:, :3], spin_push)) + a_z * speed - a_z * a_z / 4.0 * missing
-    w1, w2, w3, w4, w5, w6 = _weights(kernels, shares, force, a_x=a_x, rests=part.rests)
+    w1, w2, w3, w4, w5, w6 = _weights(kernels, shares, force, a_x=a_x, rest_ends=part.rest_ends)
     return CartDmp(
         N=number,
         a_z=a_z,
@@ -241,13 +241,13 @@ def _spin(raw: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
     """
     square = (raw * raw).sum(axis=1, keepdims=True)
     spin = 2.0 * product(rate, conjugate(raw))[:, :3] / square
-    growth = 2.0 * (raw * rate).sum(axis=1, keepdims=True) / square
-    return raw / np.sqrt(square), spin, 2.0 * product(push, conjugate(raw))[:, :3] / square - spin * growth
+    relative_rate = 2.0 * (raw * rate).sum(axis=1, keepdims=True) / square
+    return raw / np.sqrt(square), spin, 2.0 * product(push, conjugate(raw))[:, :3] / square - spin * relative_rate
 
 
-def _joint_fit(dmp: JointDmp, part: _LearnedSection, wanted: Array) -> JointFit:
+def _joint_fit(dmp: JointDmp, part: _LearnedSection, demonstrated: Array) -> JointFit:
     path = integrate_joints(dmp)
-    error = _at(part.shares, path.shares, path.position) - wanted
+    error = _at(part.shares, path.shares, path.position) - demonstrated
     return JointFit(
         kernels=dmp.N,
         rms_rad=float(np.sqrt((error**2).mean())),
@@ -259,13 +259,13 @@ def _joint_fit(dmp: JointDmp, part: _LearnedSection, wanted: Array) -> JointFit:
 
 
 def _with_tool(
-    learned: LearnedJointDmp, part: _LearnedSection, wanted: Array, tool_at: Callable[[Array], Array]
+    learned: LearnedJointDmp, part: _LearnedSection, demonstrated: Array, tool_at: Callable[[Array], Array]
 ) -> LearnedJointDmp:
     """Add the tool error, at a limited number of samples."""
     path = integrate_joints(learned.dmp)
-    rows = np.unique(np.linspace(0, len(wanted) - 1, min(len(wanted), _TOOL_SAMPLES)).astype(int))
+    rows = np.unique(np.linspace(0, len(demonstrated) - 1, min(len(demonstrated), _TOOL_SAMPLES)).astype(int))
     made = _at(part.shares[rows], path.shares, path.position)
-    pairs = zip(made, wanted[rows], strict=True)
+    pairs = zip(made, demonstrated[rows], strict=True)
     away = np.array([np.linalg.norm(tool_at(one) - tool_at(other)) for one, other in pairs])
     fit = msgspec.structs.replace(learned.fit, rms_m=float(np.sqrt((away**2).mean())), max_m=float(away.max()))
     return msgspec.structs.replace(learned, fit=fit)

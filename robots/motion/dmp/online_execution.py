@@ -70,7 +70,7 @@ class OnlineJointDmp(_OnlineDmp):
         self._rate = dmp.tau * np.array(dmp.dy0)
         self._velocity = np.array(dmp.dy0)
         self._goal = np.array(dmp.goal)
-        self._wanted = self._goal.copy()
+        self._final_goal = self._goal.copy()
 
     @property
     def velocity(self) -> Array:
@@ -79,13 +79,13 @@ class OnlineJointDmp(_OnlineDmp):
 
     def set_goal(self, goal: Array) -> None:
         """Set another goal; it is approached smoothly."""
-        self._wanted = np.array(goal, dtype=np.float64)
+        self._final_goal = np.array(goal, dtype=np.float64)
 
     def step(self, step_s: float, *, actual: Array | None = None) -> Array:
         """Advance by `step_s` and return the position; `actual` is the measured position, for phase stopping."""
         span = step_s / self.tau_s
         lag = np.zeros_like(self.position) if actual is None else actual - self.position
-        self._goal = self._wanted + np.exp(-self._a_g * span) * (self._goal - self._wanted)
+        self._goal = self._final_goal + np.exp(-self._a_g * span) * (self._goal - self._final_goal)
         push = self._a_z * (self._a_z / 4.0 * (self._goal - self.position) - self._rate) + self._forcing()
         self._rate = self._rate + span * push
         moved = span * (self._rate + self._stopping.a_py * lag)
@@ -107,11 +107,11 @@ class OnlineCartDmp(_OnlineDmp):
         self.xyzw = np.array(dmp.y0[3:]) / np.linalg.norm(dmp.y0[3:])
         self._rate = dmp.tau * np.array(dmp.dy0)
         self._goal = np.array(dmp.goal[:3]), np.array(dmp.goal[3:]) / np.linalg.norm(dmp.goal[3:])
-        self._wanted = self._goal
+        self._final_goal = self._goal
 
     def set_goal(self, xyz: Array, xyzw: Array) -> None:
         """Set another goal; it is approached smoothly, and rotated along the shorter arc."""
-        self._wanted = np.array(xyz, dtype=np.float64), toward(xyzw / np.linalg.norm(xyzw), self._goal[1])
+        self._final_goal = np.array(xyz, dtype=np.float64), toward(xyzw / np.linalg.norm(xyzw), self._goal[1])
 
     def step(self, step_s: float, *, actual: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
         """Advance by `step_s` and return position and orientation; `actual` is the measured tool pose."""
@@ -140,6 +140,6 @@ class OnlineCartDmp(_OnlineDmp):
 
     def _move_goal(self, span: float) -> None:
         left = np.exp(-self._a_g * span)
-        (xyz, xyzw), (wanted, turn) = self._goal, self._wanted
+        (xyz, xyzw), (final, turn) = self._goal, self._final_goal
         ahead = product(exp(left * log(product(xyzw, conjugate(turn)))), turn)
-        self._goal = wanted + left * (xyz - wanted), ahead
+        self._goal = final + left * (xyz - final), ahead

@@ -124,8 +124,8 @@ def _tool_path(path: PosePath, duration_s: float) -> ToolPath:
     """Return the poses of the path at sufficiently dense knots."""
     speed = np.linalg.norm(path.rate[:, :3], axis=1).max(), np.linalg.norm(path.rate[:, 3:], axis=1).max()
     span = float(path.shares[-1])
-    wanted = max(duration_s / KNOT_S, speed[0] * span / KNOT_M, speed[1] * span / KNOT_RAD, FEWEST_KNOTS)
-    at = np.linspace(0.0, span, min(MOST_KNOTS, math.ceil(wanted)) + 1)
+    knots = max(duration_s / KNOT_S, speed[0] * span / KNOT_M, speed[1] * span / KNOT_RAD, FEWEST_KNOTS)
+    at = np.linspace(0.0, span, min(MOST_KNOTS, math.ceil(knots)) + 1)
     poses = _poses_at(path, at)
     steps = np.array([pose_error(*pair) for pair in pairwise(poses)])
     lengths = np.linalg.norm(steps[:, :3], axis=1) + np.linalg.norm(steps[:, 3:], axis=1)

@@ -41,14 +41,14 @@ class SmoothMotion:
         return values, rates, pushes
 
 
-def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> SmoothMotion:
+def smooth(shares: Array, values: Array, *, intervals: int, rest_ends: RestEnds) -> SmoothMotion:
     """Return the least-squares spline of the samples with at most `intervals` pieces.
 
     Args:
         shares: Sample times, increasing from 0 to 1, (T,).
         values: The samples, (T, n).
         intervals: Maximum number of pieces.
-        rests: Where rate and acceleration are 0.
+        rest_ends: Where rate and acceleration are 0.
 
     Raises:
         RobotError: there are too few samples.
@@ -64,19 +64,19 @@ def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> 
     inner = np.interp(np.linspace(0.0, 1.0, pieces + 1)[1:-1], np.linspace(0.0, 1.0, len(shares)), shares)
     knots = np.concatenate((np.zeros(_DEGREE + 1), inner, np.ones(_DEGREE + 1)))
     design = splines.BSpline.design_matrix(shares, knots, _DEGREE)
-    ties = _ties(pieces + _DEGREE, rests)
+    ties = _ties(pieces + _DEGREE, rest_ends)
     normal: Array = np.asarray(ties.T @ (design.T @ design) @ ties, dtype=np.float64)
     right: Array = np.asarray(ties.T @ (design.T @ values), dtype=np.float64)
     free = np.linalg.solve(normal + 1e-12 * len(shares) / pieces * np.eye(len(normal)), right)
     return SmoothMotion(spline=splines.BSpline(knots, ties @ free, _DEGREE), pieces=pieces)
 
 
-def _ties(coefficients: int, rests: RestEnds) -> Array:
+def _ties(coefficients: int, rest_ends: RestEnds) -> Array:
     """Return the matrix from free to spline coefficients: at rest those at the end coincide."""
     kept = list(range(coefficients))
-    if rests.start and len(kept) > _EQUAL_AT_REST:
+    if rest_ends.start and len(kept) > _EQUAL_AT_REST:
         kept[:_EQUAL_AT_REST] = [0] * _EQUAL_AT_REST
-    if rests.end and coefficients > 2 * _EQUAL_AT_REST - 1:
+    if rest_ends.end and coefficients > 2 * _EQUAL_AT_REST - 1:
         kept[-_EQUAL_AT_REST:] = [coefficients - _EQUAL_AT_REST] * _EQUAL_AT_REST
     used = sorted(set(kept))
     ties = np.zeros((coefficients, len(used)))

@@ -31,7 +31,7 @@ class MotionWindow:
     """The samples from the start to the end of a motion with a little rest, and whether it was at rest there."""
 
     taken: slice
-    rests: RestEnds
+    rest_ends: RestEnds
 
 
 def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> MotionWindow:
@@ -54,7 +54,7 @@ def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> Mot
     end = int(np.searchsorted(times_s, last + _KEPT_REST_S, side="right"))
     return MotionWindow(
         taken=slice(begin, end),
-        rests=RestEnds(
+        rest_ends=RestEnds(
             start=first - float(times_s[0]) >= _KEPT_REST_S / 2.0, end=float(times_s[-1]) - last >= _KEPT_REST_S / 2.0
         ),
     )
@@ -64,8 +64,8 @@ def _moves(times_s: Array, channel: MotionChannel) -> Array:
     """Return at which samples a channel moves faster than its rest speed, its noise and a small share of its peak."""
     duration_s = float(times_s[-1] - times_s[0])
     shares = (times_s - times_s[0]) / duration_s
-    wanted = max(8, round(duration_s / _SMOOTHING_S))
-    smoothed = smooth(shares, channel.values, intervals=wanted, rests=RestEnds(start=True, end=True))
+    intervals = max(8, round(duration_s / _SMOOTHING_S))
+    smoothed = smooth(shares, channel.values, intervals=intervals, rest_ends=RestEnds(start=True, end=True))
     values, rates, _ = smoothed.at(shares)
     speed = np.linalg.norm(rates, axis=1) / duration_s
     scatter = float(np.linalg.norm((channel.values - values).std(axis=0)))

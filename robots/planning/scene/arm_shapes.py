@@ -56,10 +56,10 @@ def arm_shapes(model: RobotModel, tool_joints: tuple[tuple[str, float], ...]) ->
         if geometry.existGeometryName(old[index].name):
             geometry.removeGeometryObject(old[index].name)
     links = tuple(str(solver.frames[shape.parentFrame].name) for shape in geometry.geometryObjects)
-    wanted = {frozenset(pair) for pair in collision.pairs}
+    checked = {frozenset(pair) for pair in collision.pairs}
     for i in range(len(links)):
         for j in range(i + 1, len(links)):
-            if frozenset((links[i], links[j])) in wanted:
+            if frozenset((links[i], links[j])) in checked:
                 geometry.addCollisionPair(pin.CollisionPair(i, j))
     return ArmShapes(solver=solver, geometry=geometry, links=links, pairs=collision.pairs)
 

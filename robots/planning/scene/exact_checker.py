@@ -84,13 +84,13 @@ class ExactChecker:
         self._geometry = base.geometry.copy()
         self._names = [f"{arm}/{link}" for link in base.links]
         self._world = RigidTransform.from_pose(among.placed.placement.base).inverse()
-        wanted = [(int(pair.first), int(pair.second)) for pair in base.geometry.collisionPairs]
-        wanted += self._attach(among.held)
+        candidates = [(int(pair.first), int(pair.second)) for pair in base.geometry.collisionPairs]
+        candidates += self._attach(among.held)
         own = len(self._names)
         self._held = range(len(base.links), own)
-        wanted += self._add_obstacles(among.outside)
+        candidates += self._add_obstacles(among.outside)
         allowed = allowed_collision_matrix(scene, self._names[:own], self._names)
-        pairs = [pair for pair in wanted if not allowed[pair]]
+        pairs = [pair for pair in candidates if not allowed[pair]]
         self.bound_m = motion_bound(self._solver, self._geometry)
         self.step_m = min(max(_STEP_SHARE * float(self.bound_m.max()), _LEAST_STEP_M), _MOST_STEP_M)
         margins = [margin_m if second >= own else 0.0 for _, second in pairs]
@@ -181,15 +181,15 @@ class ExactChecker:
         return self._checks, self._octree
 
     def first_collision(
-        self, path: Array, *, step_m: float | None = None, looking: CollisionQuery | None = None
+        self, path: Array, *, step_m: float | None = None, query: CollisionQuery | None = None
     ) -> PathCollision | None:
         """Return the first collision on a path of straight joint lines, shape (waypoints, n); None if it is free.
 
         No point of the arm moves farther than `step_m` between two checked configurations;
         by default the checker's own `step_m`, 1.6 % of the arm's reach but at least 1 cm and at most 4 cm.
-        `looking` is queried in place of the checker itself, configuration after configuration.
+        `query` is queried in place of the checker itself, configuration after configuration.
         """
-        query = looking or self
+        query = query or self
         if len(path) and query.in_collision(path[0]):
             return PathCollision(segment=0, share=0.0, joints=path[0], pairs=query.colliding_pairs(path[0]))
         for segment in range(len(path) - 1):

@@ -40,11 +40,11 @@ class PairChecks:
         self._solver, self._geometry = solver, geometry
         # Pinocchio searches all pairs for duplicates when one is added: set thousands at once, in this order.
         order = sorted(range(len(pairs)), key=lambda k: pairs[k])
-        wanted = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=np.bool_)
+        enabled = np.zeros((geometry.ngeoms, geometry.ngeoms), dtype=np.bool_)
         margins = np.zeros((geometry.ngeoms, geometry.ngeoms))
         for k in order:
-            wanted[pairs[k]], margins[pairs[k]] = True, max(margins_m[k], TOUCHING_M)
-        geometry.setCollisionPairs(wanted)
+            enabled[pairs[k]], margins[pairs[k]] = True, max(margins_m[k], TOUCHING_M)
+        geometry.setCollisionPairs(enabled)
         self._data, self._geometry_data = solver.createData(), geometry.createData()
         self._geometry_data.setSecurityMargins(geometry, margins)
         self._margins_m = [max(margins_m[k], TOUCHING_M) for k in order]

@@ -126,10 +126,10 @@ def is_edge_free(p: CompiledProblem, a: Array, b: Array, s: Scratch) -> bool:
     frames, balls, centres, placed, touching, near = s.frames, s.balls, s.centres, s.placed, s.touching, s.near
     link_joint, first_sphere, spheres, solids, gaps = p.link_joint, p.first_sphere, p.spheres, p.solids, p.solid_gap
     voxels, grid, solid_count, q = p.voxels, p.voxel_grid, len(solids), s.q
-    way = 0.0
+    distance = 0.0
     for j in range(len(a)):
-        way += abs(b[j] - a[j]) * p.bound[j]
-    count = max(1, math.ceil(way / p.step_m))
+        distance += abs(b[j] - a[j]) * p.bound[j]
+    count = max(1, math.ceil(distance / p.step_m))
     stride = 1
     while stride < count:
         stride *= 2
@@ -208,14 +208,14 @@ def check_along_path(p: CompiledProblem, rows: Array, looked: Counts, blocked: F
     s = new_scratch(p)
     count, at = 0, 0
     for k in range(len(rows)):
-        way = ahead = 0.0
+        distance = ahead = 0.0
         for j in range(rows.shape[1]):
-            way += abs(rows[k, j] - rows[at, j]) * p.bound[j]
+            distance += abs(rows[k, j] - rows[at, j]) * p.bound[j]
             if k + 1 < len(rows):
                 ahead += abs(rows[k + 1, j] - rows[at, j]) * p.bound[j]
         if k == 0 or k == len(rows) - 1 or ahead > p.step_m:
             looked[count] = k
-            far = way > p.step_m
+            far = distance > p.step_m
             blocked[count] = not is_edge_free(p, rows[at] if far else rows[k], rows[k], s)
             count += 1
             at = k

@@ -41,7 +41,7 @@ def validate_path(
             message = f"waypoint {number} of the given path: {outside}"
             return PlanRefusal(reason=reason, message=message, hint="plan another path")
     path = np.vstack(rows)
-    hit = checker.first_collision(path, looking=EscapeChecker(checker, start))
+    hit = checker.first_collision(path, query=EscapeChecker(checker, start))
     if hit is not None:
         at_start = hit.segment == 0 and hit.share == 0.0
         where = "at the start" if at_start else f"at {hit.share:.0%} of the segment from waypoint {hit.segment}"

@@ -17,7 +17,7 @@ from robots.port import Array
 
 _RECIPE = "spheres 6"
 # Extension of spheres beyond a link: a share of its greatest depth, or of its length if that is more, within bounds.
-_DEPTH_SHARE, _LENGTH_SHARE, _LEAST_GROWTH_M, _MOST_GROWTH_M = 0.4, 0.04, 0.015, 0.07
+_DEPTH_SHARE, _LENGTH_SHARE, _LEAST_INFLATION_M, _MOST_INFLATION_M = 0.4, 0.04, 0.015, 0.07
 _MOST_CANDIDATES = 1500
 
 
@@ -83,31 +83,31 @@ def _fit(solids: Sequence[LinkSolid]) -> Array:
     deepest = max(float(union.depth(to_frame(pose, s.centre[None]))[0]) for s, pose in union.parts)
     corners = np.vstack([to_frame(pose, np.array(s.box())) for s, pose in union.parts])
     length = float(np.linalg.norm(corners.max(axis=0) - corners.min(axis=0)))
-    growth = min(max(_DEPTH_SHARE * deepest, _LENGTH_SHARE * length, _LEAST_GROWTH_M), _MOST_GROWTH_M)
-    spacing = 0.25 * growth
-    centres = union.inside(1.6 * growth)
+    inflation = min(max(_DEPTH_SHARE * deepest, _LENGTH_SHARE * length, _LEAST_INFLATION_M), _MOST_INFLATION_M)
+    spacing = 0.25 * inflation
+    centres = union.inside(1.6 * inflation)
     if len(centres) > _MOST_CANDIDATES:
         centres = centres[np.linspace(0, len(centres) - 1, _MOST_CANDIDATES).astype(int)]
-    centres = np.vstack((_deepened(union, centres, growth), centres))
-    radii = np.maximum(union.depth(centres), 0.0) + growth
+    centres = np.vstack((_deepened(union, centres, inflation), centres))
+    radii = np.maximum(union.depth(centres), 0.0) + inflation
     surface = union.surface(spacing)
     # Slack with which a sphere must contain a point to contain the surface around it too.
-    wanted = np.vstack((surface, centres))
+    samples = np.vstack((surface, centres))
     slack = np.concatenate((np.full(len(surface), 0.8 * spacing), np.zeros(len(centres))))
-    covers = _distances(centres, wanted) <= radii[:, None] - slack[None, :]
+    covers = _distances(centres, samples) <= radii[:, None] - slack[None, :]
     chosen: list[Array] = []
-    left = np.ones(len(wanted), dtype=bool)
+    left = np.ones(len(samples), dtype=bool)
     gains = covers.sum(axis=1)
     while left.any():
         best = int(np.argmax(gains))
         if gains[best] == 0:
             # No candidate covers this point: add a small sphere for it.
-            point = wanted[int(np.argmax(left))]
-            sphere = np.append(point, max(float(union.depth(point[None])[0]), 0.0) + growth)
+            point = samples[int(np.argmax(left))]
+            sphere = np.append(point, max(float(union.depth(point[None])[0]), 0.0) + inflation)
         else:
             sphere = np.append(centres[best], radii[best])
         chosen.append(sphere)
-        covered = left & (np.linalg.norm(wanted - sphere[:3], axis=1) <= sphere[3] - slack + 1e-12)
+        covered = left & (np.linalg.norm(samples - sphere[:3], axis=1) <= sphere[3] - slack + 1e-12)
         gains -= covers[:, covered].sum(axis=1)
         left &= ~covered
     return np.array(chosen)

@@ -52,7 +52,7 @@ class Simulation:
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
         self._ctrl = physics.motors
-        self._wanted_acceleration = np.zeros(physics.dof_count)
+        self._target_acceleration = np.zeros(physics.dof_count)
         self._inertia_torque = np.zeros(physics.dof_count)
         self._start_poses = self._qpos[cell.part_qpos].copy()
         self._set_home()
@@ -145,10 +145,10 @@ class Simulation:
         accelerated = False
         for arm in self._arms.values():
             events.extend(arm.move(self.step_s))
-            self._wanted_acceleration[arm.indices.dof] = arm.control.motion.acceleration
+            self._target_acceleration[arm.indices.dof] = arm.control.motion.acceleration
             accelerated |= arm.control.motion.number != 0
         if accelerated:
-            self._physics.inertia_times(self._wanted_acceleration, out=self._inertia_torque)
+            self._physics.inertia_times(self._target_acceleration, out=self._inertia_torque)
         else:
             self._inertia_torque[:] = 0.0
         for arm in self._arms.values():

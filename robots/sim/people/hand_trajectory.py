@@ -62,9 +62,9 @@ class HandTrajectory:
 
     def _place(self, s: float | Array) -> Array:
         """Return the position after a share of the time, or after each of several in a column."""
-        way = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+        progress = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         run_on = s * (1.0 - s**2 * (6.0 - 8.0 * s + 3.0 * s**2)) * self.duration_s
-        return self.start.xyz + way * (self.goal - self.start.xyz) + run_on * self.start.velocity
+        return self.start.xyz + progress * (self.goal - self.start.xyz) + run_on * self.start.velocity
 
     def _velocity(self, s: float | Array) -> Array:
         """Return the velocity, like `_place`."""
@@ -85,11 +85,11 @@ def plan_hand_trajectory(start: HandMotion, goal: Array, *, speed_m_s: float) ->
     # It must also shed its initial speed; the required time has no short formula.
     duration_s = max(duration_s, moving_m_s / GREATEST_ACCELERATION_M_S2)
     limit_m_s = max(speed_m_s, moving_m_s) * _SLACK
-    way = HandTrajectory(start=start, goal=goal, duration_s=duration_s)
+    trajectory = HandTrajectory(start=start, goal=goal, duration_s=duration_s)
     for _ in range(_TRIES):
-        speed, acceleration = way.peaks()
+        speed, acceleration = trajectory.peaks()
         if speed <= limit_m_s and acceleration <= GREATEST_ACCELERATION_M_S2 * _SLACK:
             break
         duration_s *= _SLOWER
-        way = HandTrajectory(start=start, goal=goal, duration_s=duration_s)
-    return way
+        trajectory = HandTrajectory(start=start, goal=goal, duration_s=duration_s)
+    return trajectory

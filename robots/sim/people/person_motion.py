@@ -23,7 +23,7 @@ class PersonMotion:
         self._rest = np.array(person.hand_rests)
         self._limb = Limb(person)
         self._step_s = step_s
-        self._way = HandTrajectory(start=_at_rest(self._rest), goal=self._rest, duration_s=0.0)
+        self._trajectory = HandTrajectory(start=_at_rest(self._rest), goal=self._rest, duration_s=0.0)
         self._steps = 0
         self._stay_s = _FOR_EVER
         self._speed_m_s = 1.0
@@ -34,12 +34,12 @@ class PersonMotion:
     @property
     def hand(self) -> HandMotion:
         """Position and velocity of the hand."""
-        return self._way.at(self._steps * self._step_s)
+        return self._trajectory.at(self._steps * self._step_s)
 
     @property
     def arrives_in_s(self) -> float:
         """Remaining motion time of the hand, 0 at its goal."""
-        return max(0.0, self._way.duration_s - self._steps * self._step_s)
+        return max(0.0, self._trajectory.duration_s - self._steps * self._step_s)
 
     def send(self, request: Reach) -> None:
         """Send the hand to a point; replaces its present motion."""
@@ -51,7 +51,7 @@ class PersonMotion:
         if self._still:
             return False
         self._steps += 1
-        if self._stay_s >= 0.0 and self._steps * self._step_s >= self._way.duration_s + self._stay_s:
+        if self._stay_s >= 0.0 and self._steps * self._step_s >= self._trajectory.duration_s + self._stay_s:
             self._go(self._rest, speed_m_s=self._speed_m_s)
             self._stay_s = _FOR_EVER
         hand = self.hand.xyz
@@ -64,15 +64,15 @@ class PersonMotion:
 
     def write(self, out: Array) -> None:
         """Write the complete state of the motion, shape (`MOTION_FIELDS`,)."""
-        way = self._way
-        out[0:3], out[3:6], out[6:9] = way.start.xyz, way.start.velocity, way.goal
-        out[9:13] = way.duration_s, self._steps, self._stay_s, self._speed_m_s
+        trajectory = self._trajectory
+        out[0:3], out[3:6], out[6:9] = trajectory.start.xyz, trajectory.start.velocity, trajectory.goal
+        out[9:13] = trajectory.duration_s, self._steps, self._stay_s, self._speed_m_s
         out[13:16] = self._side
 
     def take_over(self, numbers: Array) -> None:
         """Continue from the numbers of `write`."""
         start = HandMotion(xyz=numbers[0:3].copy(), velocity=numbers[3:6].copy())
-        self._way = HandTrajectory(start=start, goal=numbers[6:9].copy(), duration_s=float(numbers[9]))
+        self._trajectory = HandTrajectory(start=start, goal=numbers[6:9].copy(), duration_s=float(numbers[9]))
         self._steps = int(numbers[10])
         self._stay_s, self._speed_m_s = float(numbers[11]), float(numbers[12])
         self._side = numbers[13:16].copy()
@@ -80,7 +80,7 @@ class PersonMotion:
         self.pose = self._limb.pose(self.hand.xyz, self._side)
 
     def _go(self, goal: Array, *, speed_m_s: float) -> None:
-        self._way = plan_hand_trajectory(self.hand, goal, speed_m_s=speed_m_s)
+        self._trajectory = plan_hand_trajectory(self.hand, goal, speed_m_s=speed_m_s)
         self._steps = 0
         self._speed_m_s = speed_m_s
         self._still = False

@@ -89,11 +89,11 @@ class Limb:
 
     def _axis(self, hand: Array) -> tuple[Array, float]:
         """Return the direction from the shoulder to the hand, and the hand's distance."""
-        way = hand - self._shoulder
+        offset = hand - self._shoulder
         length = self.away_m(hand)
         if length < _SMALL:
             return np.array([1.0, 0.0, 0.0]), self._least_m
-        return way / length, min(max(length, self._least_m), self._greatest_m)
+        return offset / length, min(max(length, self._least_m), self._greatest_m)
 
 
 def _across(vector: Array, axis: Array) -> Array | None:

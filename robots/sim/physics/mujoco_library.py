@@ -32,9 +32,9 @@ class _WindowsOnDemand(MetaPathFinder):
 
 def load_mujoco() -> Any:
     """Return the module `mujoco`; its Python bindings carry no types."""
-    finder = _WindowsOnDemand()
-    sys.meta_path.insert(0, finder)
+    importer = _WindowsOnDemand()
+    sys.meta_path.insert(0, importer)
     try:
         return import_module("mujoco")
     finally:
-        sys.meta_path.remove(finder)
+        sys.meta_path.remove(importer)

@@ -129,16 +129,16 @@ class MotionRegistry:
         """Return the motions that have not ended."""
         return tuple(self._motions.values())
 
-    def when_reflex(self, arm: str, tell: Callable[[str], None]) -> None:
-        """Call `tell` with the reason at every reflex stop of an arm."""
-        self._reflex_listeners.setdefault(arm, []).append(tell)
+    def when_reflex(self, arm: str, callback: Callable[[str], None]) -> None:
+        """Call `callback` with the reason at every reflex stop of an arm."""
+        self._reflex_listeners.setdefault(arm, []).append(callback)
 
     def happened(self, event: AnyMotionEvent) -> None:
         """Forward an event to its motion; report a reflex also without an active motion."""
         if isinstance(event, ReflexTripped):
             self.reflexes[event.arm] = event.reason
-            for tell in self._reflex_listeners.get(event.arm, ()):
-                tell(event.reason)
+            for callback in self._reflex_listeners.get(event.arm, ()):
+                callback(event.reason)
         motion = self._motions.get(event.motion)
         if motion is None:
             return

@@ -65,9 +65,9 @@ class SimArmPort:
         """
         return self._board.reflexes.get(self._arm.name, _REFLEX_REASON) if self.sample().reflex else ""
 
-    def when_reflex(self, tell: Callable[[str], None]) -> None:
-        """Call `tell` with the reason at every reflex stop."""
-        self._board.when_reflex(self._arm.name, tell)
+    def when_reflex(self, callback: Callable[[str], None]) -> None:
+        """Call `callback` with the reason at every reflex stop."""
+        self._board.when_reflex(self._arm.name, callback)
 
     def sample(self) -> ArmSample:
         """Return the latest measurement."""

@@ -34,7 +34,7 @@ class SimStream(SimMotion):
         super().__init__(number, send=send, progress=progress)
         self._arm = arm
         self._width = width
-        self._tell = send
+        self._send = send
 
     def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
         """Send target positions or velocities that are `age_s` old; does nothing after the end.
@@ -50,9 +50,9 @@ class SimStream(SimMotion):
             )
         if not self.ended:
             numbers = tuple(map(float, values))
-            self._tell(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
+            self._send(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
 
     def finish(self) -> None:
         """Request to come to rest and end as REACHED."""
         if not self.ended:
-            self._tell(FinishStream(arm=self._arm, motion=self.number))
+            self._send(FinishStream(arm=self._arm, motion=self.number))

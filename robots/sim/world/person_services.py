@@ -67,18 +67,18 @@ class PersonServices:
                 where=self._world,
                 hint=f"the shoulder is at {_written(person.shoulder)}",
             )
-        way = plan_hand_trajectory(self._sample(person).hand, place, speed_m_s=speed_m_s)
-        ways = [way.places()]
+        trajectory = plan_hand_trajectory(self._sample(person).hand, place, speed_m_s=speed_m_s)
+        paths = [trajectory.places()]
         if and_back:
             there = HandMotion(xyz=place, velocity=np.zeros(3))
-            ways.append(plan_hand_trajectory(there, np.array(person.hand_rests), speed_m_s=speed_m_s).places())
-        if any(_through(places, person, limb) for places in ways):
+            paths.append(plan_hand_trajectory(there, np.array(person.hand_rests), speed_m_s=speed_m_s).places())
+        if any(_through(places, person, limb) for places in paths):
             raise SkillFailed(
                 f"the path of the hand of {person.name} to {_written(goal)} passes through the shoulder",
                 where=self._world,
                 hint="let it reach a point beside the shoulder first",
             )
-        return way.duration_s
+        return trajectory.duration_s
 
     def _sample(self, person: PersonBody) -> PersonSample:
         return self._host.snapshot().person(person.name)

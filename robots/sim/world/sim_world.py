@@ -74,7 +74,7 @@ class SimWorld:
         }
         self._status = DeviceStatus.DISCONNECTED
         self._at_loss = b""
-        self._tell_connection: Callable[[], None] = _nothing
+        self._connection_changed: Callable[[], None] = _nothing
         self._publisher: WorldPublisher | None = None
         self._bus: SkillBus | None = None
         self._timer: asyncio.Task[None] | None = None
@@ -193,9 +193,9 @@ class SimWorld:
         """Why the world is lost; empty while it is connected."""
         return self._board.lost_reason if self._status is DeviceStatus.FAULT else ""
 
-    def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        """Call `tell` when the world is lost and when it is restored."""
-        self._tell_connection = tell
+    def when_connection_changes(self, callback: Callable[[], None]) -> None:
+        """Call `callback` when the world is lost and when it is restored."""
+        self._connection_changed = callback
 
     async def reconnect(self) -> str:
         """Start a new process for a lost world, and restore the last state of the old one, at rest.
@@ -214,7 +214,7 @@ class SimWorld:
         for robot in self._robots:
             if isinstance(robot, WorldDependentDevice):
                 robot.world_restored()
-        self._tell_connection()
+        self._connection_changed()
         return note
 
     async def _go_on_after_loss(self) -> str:
@@ -391,7 +391,7 @@ class SimWorld:
         for robot in self._robots:
             if isinstance(robot, WorldDependentDevice):
                 robot.world_lost(reason)
-        self._tell_connection()
+        self._connection_changed()
 
 
 def _nothing() -> None:

@@ -59,7 +59,7 @@ class _CameraDetections:
         self._rate_hz = detector.rate_hz
         self._is_always_on = detector.always
         self._topic: Topic[Detections] | None = None
-        self._began_s = float("-inf")
+        self._started_s = float("-inf")
         # Requests from before the image being processed, and requests since.
         self._served: list[asyncio.Future[Detections]] = []
         self._waiting: list[asyncio.Future[Detections]] = []
@@ -76,9 +76,9 @@ class _CameraDetections:
     def begins(self, now_s: float) -> bool:
         """Start a detection if one is due; return whether it is."""
         period_s = 1.0 / self._rate_hz - _EARLY / self._camera_hz
-        if not self.needed or (now_s < self._began_s + period_s and not self._is_asked):
+        if not self.needed or (now_s < self._started_s + period_s and not self._is_asked):
             return False
-        self._began_s = now_s
+        self._started_s = now_s
         self._served, self._waiting = [*self._served, *self._waiting], []
         return True
 

@@ -207,17 +207,17 @@ def apply_evidence(
         if full[index]:
             continue
         strong = levels[index] == STRONG
-        wanted = 0
+        needed = 0
         if strong and _neighbours(index, shape, levels, WEAK) >= company:
             # Something new counts at once; a thing that is there already grows by evidence, or its edges would flicker.
-            wanted = edge_images if _grows(index, shape, levels, full) else 1
+            needed = edge_images if _grows(index, shape, levels, full) else 1
         elif strong or _neighbours(index, shape, levels, STRONG) > 0:
-            wanted = lone_images
-        streak[index] = streak[index] + 1 if wanted else 0
-        if wanted and streak[index] >= wanted:
+            needed = lone_images
+        streak[index] = streak[index] + 1 if needed else 0
+        if needed and streak[index] >= needed:
             full[index] = _NEW
             streak[index] = 0
-        elif wanted:
+        elif needed:
             waiting[waits] = index
             waits += 1
     for i in range(len(filled)):

@@ -25,7 +25,7 @@ class LiveOccupancyMap:
         self._fresh_s = fresh_s
         self._looked_at_s = -math.inf
         self._callbacks: list[Callable[[], None]] = []
-        self._told: tuple[int, str] = (0, "")
+        self._published: tuple[int, str] = (0, "")
         self.latest: OccupancyGrid | None = None
         self.required = 0
         self.starting = False
@@ -60,7 +60,7 @@ class LiveOccupancyMap:
         changed = self.latest is None or grid.revision != self.latest.revision
         if self.stale_reason:
             # A map becomes stale without notification; that it is valid again is still a change.
-            self._told = (self._told[0], "stale")
+            self._published = (self._published[0], "stale")
         self.latest, self._looked_at_s, self.lost_reason = grid, looked_at_s, ""
         self.notify()
         return changed
@@ -80,9 +80,9 @@ class LiveOccupancyMap:
         # A rising age is not a change.
         stale = self.lost_reason or ("stale" if self.stale_reason else "")
         now = (self.latest.revision if self.latest is not None else 0, stale)
-        if now == self._told:
+        if now == self._published:
             return
-        self._told = now
+        self._published = now
         for callback in tuple(self._callbacks):
             try:
                 callback()

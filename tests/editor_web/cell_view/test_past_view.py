@@ -35,7 +35,7 @@ class Past:
         def report(state: PastViewState) -> None:
             self._loop.call_soon_threadsafe(self._told.put_nowait, state)
 
-        self.view.show_past(page, run, time_s, tell=report)
+        self.view.show_past(page, run, time_s, report=report)
         async with asyncio.timeout(GUARD_S):
             while (state := await self._told.get()).time_s != time_s:
                 pass

@@ -19,7 +19,7 @@ from tests.editor_web.limits import GUARD_S
 
 def test_a_look_tells_what_has_changed_since_the_last_one(tmp_path: Path) -> None:
     documents = DocumentRepository(tmp_path, {})
-    watch = DocumentWatch(documents, changed=lambda _: None, wanted=lambda: True)
+    watch = DocumentWatch(documents, changed=lambda _: None, is_needed=lambda: True)
     documents.create(SHIFT_ID)
     assert watch.look() == {}
     assert watch.look() == {}
@@ -41,7 +41,7 @@ async def test_a_change_while_no_page_is_open_is_reported_to_the_next_one(tmp_pa
         asked.set()
         return is_open
 
-    watch = DocumentWatch(documents, changed=changes.put_nowait, wanted=is_watched, period_s=0.001)
+    watch = DocumentWatch(documents, changed=changes.put_nowait, is_needed=is_watched, period_s=0.001)
     watch.open()
     (tmp_path / SHIFT_ID).write_text(SHIFT)
     async with asyncio.timeout(GUARD_S):

@@ -69,14 +69,14 @@ async def test_the_way_of_an_arm_is_reported_with_what_blocks_it_and_since_when(
             ways.publish(planned_path("left", "blocked", reason="a hand"))
             now_s = 109.0
             ways.publish(planned_path("left", "blocked", reason="an arm"))
-            line = board.lines["left"].way
+            line = board.lines["left"].path
             assert line is not None
             assert (line.state, line.reason, line.since_s) == ("blocked", "an arm", 107.0)
             assert 1.0 < line.length_m < 1.5
             await cell.bus.call(SetSpeedOverride(share=0.25), to="left")
-            assert board.lines["left"].way == line
+            assert board.lines["left"].path == line
             ways.publish(planned_path("left", "none"))
-            assert board.lines["left"].way is None
+            assert board.lines["left"].path is None
             board.close()
 
 

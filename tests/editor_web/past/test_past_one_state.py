@@ -54,7 +54,7 @@ def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float
     for other in (live.state, past.now):
         assert (list(other.active), other.exits) == (list(state.active), state.exits)
         assert (other.paused, other.locks, other.autonomy) == (state.paused, state.locks, state.autonomy)
-        assert (other.undoing, other.document, other.end) == (state.undoing, state.document, state.end)
+        assert (other.stepping_back, other.document, other.end) == (state.stepping_back, state.document, state.end)
     points = resumable.checkpoint().points
     assert {path for path, point in points.items() if point.active and point.entered} == set(state.active)
     left = {path for path, point in points.items() if not point.active}

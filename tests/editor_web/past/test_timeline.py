@@ -40,7 +40,7 @@ def test_a_node_is_active_in_its_spans_and_nowhere_else(
     events = made_up(steps, ended=ended)
     course = history_of(events)
     seq = math.ceil(where * len(events))
-    active = {path for path, node in course.moments.at(seq).nodes.items() if node.status == "active"}
+    active = {path for path, node in course.states.at(seq).nodes.items() if node.status == "active"}
     spans = spans_of(course.timeline())
     assert active == {
         path for path, row in spans.items() for span in row if span.seq <= seq and not 0 < span.end_seq <= seq

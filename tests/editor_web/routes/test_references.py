@@ -38,7 +38,7 @@ async def test_a_document_moves_with_the_references_to_it(client: EditingClient)
         {"id": "behaviors/outer.yaml", "name": "o", "paths": ["root"]}
     ]
     moved = (await client.post(f"{AT}/move", {"id": "behaviors/a/night.yaml", "follow": True})).json()
-    assert (moved["document"]["id"], moved["followed"], moved["left"]) == (
+    assert (moved["document"]["id"], moved["updated"], moved["left"]) == (
         "behaviors/a/night.yaml",
         ["behaviors/outer.yaml"],
         [],

@@ -58,9 +58,9 @@ class Hand:
                 if news["k"] == kind and all(news[name] == value for name, value in fields.items()):
                     return news
 
-    async def take(self, way: str = "move", arm: str = "left") -> None:
+    async def take(self, mode: str = "move", arm: str = "left") -> None:
         """Take the handle, and wait until it is seen."""
-        await self.say(k="take", arm=arm, way=way)
+        await self.say(k="take", arm=arm, mode=mode)
         await self.message("gripped", arm=arm)
         await self.view.until(lambda: self.view.is_seen(HANDLE))
 
@@ -354,7 +354,9 @@ async def test_a_viewer_has_no_handle_not_even_under_the_name_of_an_operators_pa
         assert viewer.node(HANDLE) is None
 
 
-@pytest.mark.parametrize("message", ["", "[]", '{"k": "take", "arm": 3}', '{"k": "take", "arm": "left", "way": "fly"}'])
+@pytest.mark.parametrize(
+    "message", ["", "[]", '{"k": "take", "arm": 3}', '{"k": "take", "arm": "left", "mode": "fly"}']
+)
 async def test_what_is_no_message_ends_the_connection(site: TeachSite, message: str) -> None:
     async with connect(site, f"/api/v1/cell/grip/grip{next(PAGES)}") as grip:
         await grip.send(message)

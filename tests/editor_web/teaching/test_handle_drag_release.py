@@ -47,7 +47,7 @@ class PulledView:
 async def test_a_handle_that_is_pulled_while_its_page_goes_moves_nothing() -> None:
     backend, view = FakeBackend(), PulledView()
     backend.publish("left/description", DESCRIPTION)
-    grip = HandleDrag(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None)
+    grip = HandleDrag(backend, cast("CellView", view), "page", joggers={}, send=lambda _: None)
     await grip.take(ShowHandle(arm="left"))
     assert view.handle is not None
     grip.held()
@@ -61,7 +61,7 @@ async def test_a_connection_that_goes_late_takes_only_its_own_handle_away() -> N
     backend, view = FakeBackend(), PulledView()
     backend.publish("left/description", DESCRIPTION)
     before, after = (
-        HandleDrag(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None) for _ in range(2)
+        HandleDrag(backend, cast("CellView", view), "page", joggers={}, send=lambda _: None) for _ in range(2)
     )
     await before.take(ShowHandle(arm="left"))
     await after.take(ShowHandle(arm="left"))

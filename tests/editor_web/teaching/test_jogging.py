@@ -38,7 +38,7 @@ class BrakingArm(TopicBus):
 async def test_an_arm_whose_page_goes_before_it_was_jogged_is_free_for_the_next() -> None:
     taken: dict[str, Jogger] = {}
     arm = BrakingArm()
-    jogger = Jogger(arm, taken=taken, tell=lambda _: None)
+    jogger = Jogger(arm, taken=taken, send=lambda _: None)
 
     async def page() -> None:
         await jogger.begin(JOG)
@@ -56,7 +56,7 @@ async def test_who_asks_again_for_rest_waits_until_the_arm_rests() -> None:
     """The page's own message was cut short by the end of its connection; the arm brakes meanwhile."""
     taken: dict[str, Jogger] = {}
     arm = BrakingArm()
-    jogger = Jogger(arm, taken=taken, tell=lambda _: None)
+    jogger = Jogger(arm, taken=taken, send=lambda _: None)
     await jogger.begin(JOG)
     await arm.moving.wait()
     first = asyncio.create_task(jogger.rest())

@@ -88,7 +88,7 @@ async def test_buttons_teach_two_poses_and_a_motion(tmp_path: Path) -> None:
         cell.press("pose", value=False)
         await cell.bus.clock.sleep(0.1)
         status = await cell.bus.call(ReadTeachStatus(), to="teach")
-        assert [one.form for one in status.captures] == ["joints", "dmp", "pose"], status.said
+        assert [one.form for one in status.captures] == ["joints", "dmp", "pose"], status.message
         assert status.guided == ()
         assert status.recording == ()
         motion = await cell.bus.call(ReadCapture(id=2), to="teach")
@@ -139,12 +139,12 @@ async def test_what_cannot_be_done_is_said_and_teaching_goes_on() -> None:
     )
     async with taught() as cell:
         await cell.bus.call(SetTriggers(triggers=wrong), to="teach")
-        said = (await cell.bus.call(FireTrigger(trig_name="nobody"), to="teach")).said
+        said = (await cell.bus.call(FireTrigger(trig_name="nobody"), to="teach")).message
         assert said == "nobody: there is no robot middle (left)"
         cell.press("short")
         cell.press("short", value=False)
         await cell.bus.clock.sleep(0.1)
-        said = (await cell.bus.call(ReadTeachStatus(), to="teach")).said
+        said = (await cell.bus.call(ReadTeachStatus(), to="teach")).message
         assert "the recording is too short" in said
         status = await cell.bus.call(FireTrigger(trig_name="good"), to="teach")
         assert [one.form for one in status.captures] == ["joints"]

@@ -52,7 +52,7 @@ def look(what: SimScene, names: tuple[str, ...] = ("front",), *, joints: Array |
         simulation._qpos[cell.arms[0].qpos] = joints  # pyright: ignore[reportPrivateUsage]
     image = np.zeros(simulation.image_layout.size)
     simulation.write_image(image)
-    return PerceptionRequest(time_s=0.0, state=image, cameras=names, wanted=names)
+    return PerceptionRequest(time_s=0.0, state=image, cameras=names, returned=names)
 
 
 def voxels(grid: OccupancyGrid | None) -> Array:

@@ -90,9 +90,9 @@ function command(run: string, name: string, body: unknown = {}): Promise<Control
 
 /** Ask who this page is, and keep the answer for all of it. */
 async function session(): Promise<SessionBody> {
-  const told = await call<SessionBody>('/session')
-  keepSession(told)
-  return told
+  const answer = await call<SessionBody>('/session')
+  keepSession(answer)
+  return answer
 }
 
 /** An id as a part of an address; its slashes stay. */

@@ -10,16 +10,16 @@ const RETRY_MS = 1500
 
 /** Look at something for as long as it is given; nothing is sent while it is undefined. `look` is compared by what it says. */
 export function useData(look: Look | undefined, onFrame: (frame: DataFrame) => void): void {
-  const told = useRef(onFrame)
+  const handler = useRef(onFrame)
   useEffect(() => {
-    told.current = onFrame
+    handler.current = onFrame
   })
   const request = look && JSON.stringify({ k: 'look', ...look })
   const isOn = request !== undefined
   const stream = useRef<Stream>(undefined)
   useEffect(() => {
     if (!isOn) return
-    const opened = new Stream((frame) => told.current(frame))
+    const opened = new Stream((frame) => handler.current(frame))
     stream.current = opened
     return () => opened.close()
   }, [isOn])

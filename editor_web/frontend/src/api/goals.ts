@@ -16,7 +16,7 @@ export function useGoalsOf(run: string | undefined): void {
   useEffect(() => () => useGoals.setState({ goals: {} }), [run])
 }
 
-function onVisibility(tell: () => void): () => void {
-  document.addEventListener('visibilitychange', tell)
-  return () => document.removeEventListener('visibilitychange', tell)
+function onVisibility(listener: () => void): () => void {
+  document.addEventListener('visibilitychange', listener)
+  return () => document.removeEventListener('visibilitychange', listener)
 }

@@ -9,27 +9,27 @@ import { openSocket } from './socket'
 import type { HandleStatus, RefusedFrame } from './types'
 
 /** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
-export type HandleMode = HandleStatus['way']
+export type HandleMode = HandleStatus['mode']
 
 interface GripStore extends Omit<HandleStatus, 'k'> {
   /** Why the last pull did nothing; empty where it did. */
   readonly refused: string
 }
 
-const NONE: GripStore = { arm: '', way: 'move', pulled: false, refused: '' }
+const NONE: GripStore = { arm: '', mode: 'move', pulled: false, refused: '' }
 export const useHandleDrag = create<GripStore>(() => NONE)
 
 let socket: WebSocket | undefined
 
 /** Show a handle at this arm's tool, for operators; empty takes it away. */
-export function showHandle(arm: string, way: HandleMode = 'move'): void {
+export function showHandle(arm: string, mode: HandleMode = 'move'): void {
   if (!arm) {
     socket?.close()
     socket = undefined
     useHandleDrag.setState(NONE)
     return
   }
-  const send = () => socket?.send(JSON.stringify({ k: 'take', arm, way }))
+  const send = () => socket?.send(JSON.stringify({ k: 'take', arm, mode }))
   if (socket?.readyState === WebSocket.OPEN) send()
   else open(send)
 }
@@ -45,13 +45,13 @@ function open(then: () => void): void {
   socket = opened
   opened.onopen = then
   opened.onmessage = (message: MessageEvent<string>) => {
-    const news = JSON.parse(message.data) as HandleStatus | RefusedFrame
-    if (news.k === 'refused') {
-      useHandleDrag.setState({ refused: news.hint ? `${news.message}: ${news.hint}` : news.message })
+    const frame = JSON.parse(message.data) as HandleStatus | RefusedFrame
+    if (frame.k === 'refused') {
+      useHandleDrag.setState({ refused: frame.hint ? `${frame.message}: ${frame.hint}` : frame.message })
       return
     }
-    const { arm, way, pulled } = news
-    useHandleDrag.setState(pulled || arm !== useHandleDrag.getState().arm ? { arm, way, pulled, refused: '' } : { arm, way, pulled })
+    const { arm, mode, pulled } = frame
+    useHandleDrag.setState(pulled || arm !== useHandleDrag.getState().arm ? { arm, mode, pulled, refused: '' } : { arm, mode, pulled })
   }
   opened.onclose = () => {
     if (socket !== opened) return

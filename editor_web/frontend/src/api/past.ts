@@ -6,12 +6,12 @@ import type { PastViewRequest, PastViewState } from './types'
 
 interface PastStore {
   /** What was asked for; null for the present. */
-  readonly wanted: PastViewRequest | null
+  readonly requested: PastViewRequest | null
   /** What the server has drawn last of it. */
   readonly shown: PastViewState | null
 }
 
-export const usePast = create<PastStore>(() => ({ wanted: null, shown: null }))
+export const usePast = create<PastStore>(() => ({ requested: null, shown: null }))
 
 const AGAIN_MS = 1000
 
@@ -24,9 +24,9 @@ export function showCellAt(run: string, timeS: number | null): void {
     leave()
     return
   }
-  const { wanted, shown } = usePast.getState()
-  const isSameRun = wanted?.run === run
-  usePast.setState({ wanted: { run, time_s: timeS }, shown: isSameRun ? shown : null })
+  const { requested, shown } = usePast.getState()
+  const isSameRun = requested?.run === run
+  usePast.setState({ requested: { run, time_s: timeS }, shown: isSameRun ? shown : null })
   // A run that was not recorded has no other moment either.
   if (isSameRun && shown?.problem) return
   if (socket === undefined) open()
@@ -37,7 +37,7 @@ function leave(): void {
   clearTimeout(again)
   socket?.close()
   socket = undefined
-  usePast.setState({ wanted: null, shown: null })
+  usePast.setState({ requested: null, shown: null })
 }
 
 function open(): void {
@@ -46,17 +46,17 @@ function open(): void {
   opened.onopen = send
   opened.onmessage = (message: MessageEvent<string>) => {
     const state = JSON.parse(message.data) as PastViewState
-    if (socket === opened && usePast.getState().wanted?.run === state.run) usePast.setState({ shown: state })
+    if (socket === opened && usePast.getState().requested?.run === state.run) usePast.setState({ shown: state })
   }
   opened.onclose = () => {
     if (socket !== opened) return
     socket = undefined
     usePast.setState({ shown: null })
-    again = setTimeout(() => usePast.getState().wanted && socket === undefined && open(), AGAIN_MS)
+    again = setTimeout(() => usePast.getState().requested && socket === undefined && open(), AGAIN_MS)
   }
 }
 
 function send(): void {
-  const { wanted } = usePast.getState()
-  if (wanted && socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wanted))
+  const { requested } = usePast.getState()
+  if (requested && socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(requested))
 }

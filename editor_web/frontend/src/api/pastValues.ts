@@ -9,18 +9,18 @@ import type { PastUserdata } from './types'
 export function usePastValues(run: string | undefined, isShown: boolean): PastUserdata | undefined {
   const seq = useLive((s) => s.past?.seq)
   const opened = useTimeline((s) => s.opened)
-  const [told, setTold] = useState<PastUserdata>()
+  const [values, setValues] = useState<PastUserdata>()
   const [isAsking, setAsking] = useState(false)
-  useEffect(() => setTold(undefined), [run, opened])
+  useEffect(() => setValues(undefined), [run, opened])
   useEffect(() => {
     const subject = opened ?? (run ? runSubject(run) : undefined)
-    if (!isShown || seq === undefined || !subject || isAsking || told?.seq === seq) return
+    if (!isShown || seq === undefined || !subject || isAsking || values?.seq === seq) return
     setAsking(true)
     pastApi
       .userdata(subject, seq)
-      .then(setTold, (error: unknown) => setTold({ seq, scopes: {}, problem: wordsOf(error) }))
+      .then(setValues, (error: unknown) => setValues({ seq, scopes: {}, problem: wordsOf(error) }))
       .finally(() => setAsking(false))
-  }, [run, opened, seq, isShown, isAsking, told])
+  }, [run, opened, seq, isShown, isAsking, values])
   // Of another run or time than what was told last, until that has come.
-  return seq === undefined ? undefined : (told ?? { seq, scopes: {}, problem: '' })
+  return seq === undefined ? undefined : (values ?? { seq, scopes: {}, problem: '' })
 }

@@ -39,7 +39,7 @@ export interface TeachStore {
   /** Null where there is no Helping Hand, undefined until told. */
   readonly hand: TeachStatus | null | undefined
   /** Whether something is shown in the cell. */
-  readonly isLooking: boolean
+  readonly isPreviewing: boolean
   /** Counts changes of the store. */
   readonly entries: number
   /** The arm that this page jogs. */
@@ -55,7 +55,7 @@ const NOTHING: TeachStore = {
   frames: [],
   now: {},
   hand: undefined,
-  isLooking: false,
+  isPreviewing: false,
   entries: 0,
   jogging: '',
   heldBy: '',
@@ -68,7 +68,7 @@ const RETRY_MS = 1000
 let socket: WebSocket | undefined
 
 /** Say something to the server; nothing while it is not connected. */
-export function tellServer(message: TeachingMessage): void {
+export function sendToServer(message: TeachingMessage): void {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message))
 }
 
@@ -90,7 +90,7 @@ export function connectTeach(): () => void {
     opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as TeachingFrame)
     opened.onclose = () => {
       if (socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isLooking: false })
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isPreviewing: false })
       if (!ended) retry = setTimeout(open, RETRY_MS)
     }
   }
@@ -142,8 +142,8 @@ export type TaughtReference = Pick<PreviewTaught, 'revision'> & Required<Pick<Pr
 /** Show in the cell where an arm is along something; beside what is shown there already, where the place is not 0. */
 export function previewTaught(arm: string, what: TaughtReference, place = 0): void {
   clearTeachRefusal('look')
-  useTeach.setState({ isLooking: arm !== '' })
-  tellServer({ k: 'look', arm, revision: 0, ...what, place })
+  useTeach.setState({ isPreviewing: arm !== '' })
+  sendToServer({ k: 'look', arm, revision: 0, ...what, place })
 }
 
 /** Show nothing any more. */

@@ -93,8 +93,8 @@ export async function refresh(subject: Subject): Promise<void> {
   const before = useTimeline.getState().course
   const known = before?.run === subject.run ? before : undefined
   try {
-    const told = await pastApi.timeline(subject, known && !known.merged ? known.seq : 0)
-    useTimeline.setState(({ course }) => ({ course: course === before ? withTimeline(known, told) : course, problem: '' }))
+    const answer = await pastApi.timeline(subject, known && !known.merged ? known.seq : 0)
+    useTimeline.setState(({ course }) => ({ course: course === before ? withTimeline(known, answer) : course, problem: '' }))
   } catch (error) {
     useTimeline.setState({ problem: wordsOf(error) })
   }
@@ -174,11 +174,11 @@ async function lookAt(subject: Subject, wish: Wish): Promise<void> {
 async function show(subject: Subject, { timeS, seq }: Wish): Promise<void> {
   const before = useLive.getState().past
   try {
-    const told = await call<PastRunState | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
+    const answer = await call<PastRunState | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
     // Meanwhile somebody may have gone back to the present, or to another run.
     if (wishedOf?.address !== subject.address) return
-    const at = timeS ?? told?.time_s ?? before?.timeS ?? 0
-    const moment = told ? nextMoment(before, told, at) : before && { ...before, timeS: at }
+    const at = timeS ?? answer?.time_s ?? before?.timeS ?? 0
+    const moment = answer ? nextMoment(before, answer, at) : before && { ...before, timeS: at }
     showMoment(moment)
     if (hasCell) showCellAt(subject.recorded, at)
   } catch (error) {

@@ -852,7 +852,7 @@ export interface GroupNodes {
 export interface HandleStatus {
   readonly k: "gripped"
   readonly arm: string
-  readonly way: "move" | "push"
+  readonly mode: "move" | "push"
   readonly pulled: boolean
 }
 
@@ -1109,7 +1109,7 @@ export interface MoveNodes {
 /** A moved document: the ids whose references were updated, and those whose references were not. */
 export interface MoveResultBody {
   readonly document: DocumentBody
-  readonly followed: readonly string[]
+  readonly updated: readonly string[]
   readonly left: readonly string[]
 }
 
@@ -1182,7 +1182,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `followed` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1190,7 +1190,7 @@ export interface NodeLive {
   readonly entered_s: number
   readonly duration_s: number
   readonly cause: string
-  readonly followed: string
+  readonly last_transition: string
   readonly plan: PlanLive | null
 }
 
@@ -1506,7 +1506,7 @@ export interface ResumeQuestionsBody {
   readonly questions: readonly ResumeQuestion[]
 }
 
-/** One arm: its mode, its activity, the error of a reflex stop, and its speed override. `way` is its planned path, which the 3D view shows. */
+/** One arm: its mode, its activity, the error of a reflex stop, and its speed override. `path` is its planned path, which the 3D view shows. */
 export interface RobotLive {
   readonly name: string
   readonly mode: string
@@ -1514,7 +1514,7 @@ export interface RobotLive {
   readonly error: string
   readonly speed_override: number
   readonly controller: string
-  readonly way: PathLive | null
+  readonly path: PathLive | null
 }
 
 /** The run ended; `status` is finished, stopped or errored. */
@@ -1713,7 +1713,7 @@ export interface SetTransition {
 export interface ShowHandle {
   readonly k: "take"
   readonly arm?: string
-  readonly way?: "move" | "push"
+  readonly mode?: "move" | "push"
 }
 
 /** From the client: the 3D view under `/cell/<page>/` shows exactly these groups. */
@@ -1869,7 +1869,7 @@ export interface TaughtStep {
   readonly part?: string | null
 }
 
-/** The status of the Helping Hand, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last message, such as why a capture was refused. */
+/** The status of the Helping Hand, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `message`, in JSON `said`, is the last thing that it reported, such as why a capture was refused. */
 export interface TeachStatus {
   readonly triggers: readonly TriggerStatus[]
   readonly captures: readonly CaptureSummary[]

@@ -29,7 +29,7 @@ interface TeachPageProps {
 
 export function TeachPage({ session, isNarrow }: TeachPageProps) {
   const arms = useTeach((s) => s.arms)
-  const isLooking = useTeach((s) => s.isLooking)
+  const isPreviewing = useTeach((s) => s.isPreviewing)
   const [chosen, setChosen] = useState('')
   useEffect(connectTeach, [])
   useButtons()
@@ -41,7 +41,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
       tools={
         <>
           <span className="spacer" />
-          {hasCellView(session) && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={endPreview} />}
+          {hasCellView(session) && isPreviewing && <CommandButton label="Hide the ghosts" tone="quiet" onPress={endPreview} />}
           {hasCellView(session) && <ShowMenu />}
           {hasCellView(session) && session?.role === 'operator' && <HandleMenu />}
         </>

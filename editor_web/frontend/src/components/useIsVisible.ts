@@ -7,16 +7,16 @@ export function useIsVisible(part: RefObject<HTMLElement | null>): boolean {
     const element = part.current
     if (!element) return
     let isInside = false
-    const tell = () => setShown(isInside && document.visibilityState === 'visible')
+    const update = () => setShown(isInside && document.visibilityState === 'visible')
     const observer = new IntersectionObserver((entries) => {
       isInside = entries.at(-1)?.isIntersecting ?? false
-      tell()
+      update()
     })
     observer.observe(element)
-    document.addEventListener('visibilitychange', tell)
+    document.addEventListener('visibilitychange', update)
     return () => {
       observer.disconnect()
-      document.removeEventListener('visibilitychange', tell)
+      document.removeEventListener('visibilitychange', update)
     }
   }, [part])
   return isShown

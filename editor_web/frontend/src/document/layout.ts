@@ -157,8 +157,8 @@ async function layOutInside(node: GraphNode, style: Style, call: LayoutCall): Pr
 }
 
 function leaf(node: GraphNode): Inner {
-  const wanted = Math.max(textWidth(node.name.length, 8), textWidth(node.title.length, 6.6)) + 64
-  const width = Math.min(LEAF_MAX, Math.max(LEAF_MIN, wanted))
+  const preferred = Math.max(textWidth(node.name.length, 8), textWidth(node.title.length, 6.6)) + 64
+  const width = Math.min(LEAF_MAX, Math.max(LEAF_MIN, preferred))
   return { width, height: LEAF_HEIGHT, boxes: new Map(), courses: [] }
 }
 

@@ -10,7 +10,7 @@ const node = (status: string, visits = 1): NodeLive => ({
   entered_s: 0,
   duration_s: 0,
   cause: '',
-  followed: '',
+  last_transition: '',
   plan: null,
 })
 const line = (seq: number): LogLine => ({ seq, time_s: 0, kind: 'log', level: 'info', path: '', text: '', causes: [] })

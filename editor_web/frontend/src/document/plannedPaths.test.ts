@@ -1,4 +1,4 @@
-/** Planned ways: found at the node that asks or inside it, and said in words. */
+/** Planned paths: found at the node that asks or inside it, and said in words. */
 import { describe, expect, it } from 'vitest'
 import type { NodeLive, PlanLive, RobotLive, PathLive } from '../api/types'
 import { blockedPaths, isProposed, plansOf, planWords, sinceWords } from './plannedPaths'
@@ -11,10 +11,10 @@ const node = (of: PlanLive | null): NodeLive => ({
   entered_s: 0,
   duration_s: 0,
   cause: '',
-  followed: '',
+  last_transition: '',
   plan: of,
 })
-const way = (state: string): PathLive => ({ state, reason: 'a hand', length_m: 1, since_s: 5 })
+const path = (state: string): PathLive => ({ state, reason: 'a hand', length_m: 1, since_s: 5 })
 const robot = (name: string, of: PathLive | null): RobotLive => ({
   name,
   mode: 'moving',
@@ -22,10 +22,10 @@ const robot = (name: string, of: PathLive | null): RobotLive => ({
   error: '',
   speed_override: 1,
   controller: '',
-  way: of,
+  path: of,
 })
 
-describe('the ways that a question is about', () => {
+describe('the paths that a question is about', () => {
   const nodes = { root: node(null), 'root/pick': node(null), 'root/pick/plan': node(plan), 'root/picked': node(plan) }
 
   it('are those of the node and of what lies inside it', () => {
@@ -39,13 +39,13 @@ describe('the ways that a question is about', () => {
   })
 
   it('are on view until the arm goes them', () => {
-    expect([robot('left', way('proposed')), robot('left', way('moving')), undefined].map(isProposed)).toEqual([true, false, false])
+    expect([robot('left', path('proposed')), robot('left', path('moving')), undefined].map(isProposed)).toEqual([true, false, false])
   })
 })
 
-describe('arms whose way is blocked', () => {
+describe('arms whose path is blocked', () => {
   it('are listed by name', () => {
-    const robots = { right: robot('right', way('blocked')), middle: robot('middle', way('moving')), left: robot('left', way('blocked')), far: robot('far', null) }
+    const robots = { right: robot('right', path('blocked')), middle: robot('middle', path('moving')), left: robot('left', path('blocked')), far: robot('far', null) }
     expect(blockedPaths(robots).map((each) => each.robot)).toEqual(['left', 'right'])
   })
 

@@ -1,9 +1,9 @@
-/** Planned ways in words: what a run that asks has planned, and which arms wait for a free way. Pure. */
+/** Planned paths in words: what a run that asks has planned, and which arms wait for a free path. Pure. */
 import type { Dict } from './dict'
 import type { NodeLive, PlanLive, RobotLive, PathLive } from '../api/types'
 import { duration } from './time'
 
-/** The ways that a node, or what lies inside it, has planned. */
+/** The paths that a node, or what lies inside it, has planned. */
 export function plansOf(nodes: Dict<NodeLive>, path: string): readonly PlanLive[] {
   const inside = `${path}/`
   return Object.entries(nodes).flatMap(([at, node]) => (node.plan && (at === path || at.startsWith(inside)) ? [node.plan] : []))
@@ -14,20 +14,20 @@ export function planWords(plan: PlanLive): string {
   return `${duration(plan.duration_s)} for ${plan.length_m.toFixed(2)} m of the tool's path, found by ${plan.found_by} in ${duration(plan.planning_s)}`
 }
 
-/** Is the way that is shown for this arm one that nobody goes yet? */
+/** Is the path that is shown for this arm one that nobody follows yet? */
 export function isProposed(robot: RobotLive | undefined): boolean {
-  return robot?.way?.state === 'proposed'
+  return robot?.path?.state === 'proposed'
 }
 
 export interface BlockedPath {
   readonly robot: string
-  readonly way: PathLive
+  readonly path: PathLive
 }
 
-/** The arms whose way is blocked, by name. */
+/** The arms whose path is blocked, by name. */
 export function blockedPaths(robots: Dict<RobotLive>): readonly BlockedPath[] {
   return Object.values(robots)
-    .flatMap(({ name, way }) => (way?.state === 'blocked' ? [{ robot: name, way }] : []))
+    .flatMap(({ name, path }) => (path?.state === 'blocked' ? [{ robot: name, path }] : []))
     .sort((a, b) => a.robot.localeCompare(b.robot))
 }
 

@@ -7,7 +7,7 @@ type Schema = Dict<unknown>
 /** The fields of a request; empty for one that takes nothing. */
 export function requestFields(schema: Schema): readonly Field[] {
   const definitions = record(schema['$defs'])
-  const root = followed(schema, definitions)
+  const root = resolved(schema, definitions)
   const required = Array.isArray(root['required']) ? root['required'].map(String) : []
   return Object.entries(record(root['properties'])).map(([name, property]) =>
     fieldWithin(name, record(property), definitions, required.includes(name)),
@@ -21,7 +21,7 @@ export function valueField(name: string, schema: Schema, now: unknown): Field {
 
 function fieldWithin(name: string, property: Schema, definitions: Schema, required: boolean): Field {
   // The title of a shared shape is the name of its type, not of this field.
-  const flat: Schema = { ...followed(property, definitions), title: property['title'] }
+  const flat: Schema = { ...resolved(property, definitions), title: property['title'] }
   const schema = property['default'] !== undefined && property['default'] !== null ? { ...flat, default: property['default'] } : flat
   const field = fieldOf({ name, schema, required })
   if (field.kind !== 'json') return field
@@ -30,19 +30,19 @@ function fieldWithin(name: string, property: Schema, definitions: Schema, requir
 }
 
 /** Follow a reference, and take the first alternative that is not `null`; what stands beside it counts too. */
-function followed(schema: Schema, definitions: Schema): Schema {
+function resolved(schema: Schema, definitions: Schema): Schema {
   const { $ref: reference, anyOf: options, ...beside } = schema
   if (typeof reference === 'string') {
-    const target = followed(record(lookup(definitions, reference.replace('#/$defs/', ''))), definitions)
+    const target = resolved(record(lookup(definitions, reference.replace('#/$defs/', ''))), definitions)
     return { ...target, ...beside }
   }
   const first = Array.isArray(options) ? options.map(record).find((option) => option['type'] !== 'null') : undefined
-  return first ? { ...followed(first, definitions), ...beside } : schema
+  return first ? { ...resolved(first, definitions), ...beside } : schema
 }
 
 /** The simplest value of a shape, to be filled in: zeros, empty texts, first choices. */
 function example(schema: Schema, definitions: Schema, depth = 0): unknown {
-  const flat = followed(schema, definitions)
+  const flat = resolved(schema, definitions)
   if (flat['default'] !== undefined) return flat['default']
   const choices = flat['enum']
   if (Array.isArray(choices)) return choices[0] as unknown

@@ -22,7 +22,7 @@ const live = (status: string, entered_s = 0): NodeLive => ({
   entered_s,
   duration_s: 0,
   cause: '',
-  followed: '',
+  last_transition: '',
   plan: null,
 })
 const root = graph('root', [

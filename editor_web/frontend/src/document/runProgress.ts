@@ -42,6 +42,6 @@ export function progressText(cells: readonly GraphNode[], nodes: Nodes, waiting:
     [count('failed'), 'failed'],
     [count('stopped'), 'stopped'],
   ] as const
-  const told = more.filter(([number]) => number > 0).map(([number, word]) => `${number} ${word}`)
-  return [`${count('done')} of ${cells.length} ${cells.length === 1 ? 'step' : 'steps'} done`, ...told].join(', ')
+  const others = more.filter(([number]) => number > 0).map(([number, word]) => `${number} ${word}`)
+  return [`${count('done')} of ${cells.length} ${cells.length === 1 ? 'step' : 'steps'} done`, ...others].join(', ')
 }

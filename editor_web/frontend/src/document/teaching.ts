@@ -76,21 +76,21 @@ export function endOf(trace: Trace): Trace {
 
 /** What the arm will do otherwise when `after` takes the place of `before`, one fact a line. */
 export function changesOf(before: Trace, after: Trace): readonly string[] {
-  const said: string[] = []
+  const changes: string[] = []
   const isMotion = before.poses.length > 1 || after.poses.length > 1
-  if (isMotion) push(said, 'starts', distance(before.poses[0], after.poses[0]))
-  push(said, isMotion ? 'ends' : 'moves by', distance(before.poses.at(-1), after.poses.at(-1)))
+  if (isMotion) push(changes, 'starts', distance(before.poses[0], after.poses[0]))
+  push(changes, isMotion ? 'ends' : 'moves by', distance(before.poses.at(-1), after.poses.at(-1)))
   const joint = farthestJoint(before, after)
-  if (joint) said.push(joint)
+  if (joint) changes.push(joint)
   const lasted = before.times_s.at(-1) ?? 0
   const lasts = after.times_s.at(-1) ?? 0
-  if (Math.abs(lasts - lasted) > 0.005) said.push(`lasts ${lasts.toFixed(2)} s instead of ${lasted.toFixed(2)} s`)
-  return said.length > 0 ? said : ['is the same']
+  if (Math.abs(lasts - lasted) > 0.005) changes.push(`lasts ${lasts.toFixed(2)} s instead of ${lasted.toFixed(2)} s`)
+  return changes.length > 0 ? changes : ['is the same']
 }
 
-function push(said: string[], what: string, far_m: number | undefined): void {
+function push(changes: string[], what: string, far_m: number | undefined): void {
   if (far_m === undefined || far_m < 0.0005) return
-  said.push(what === 'moves by' ? `the tool ${what} ${millimetres(far_m)}` : `${what} ${millimetres(far_m)} away`)
+  changes.push(what === 'moves by' ? `the tool ${what} ${millimetres(far_m)}` : `${what} ${millimetres(far_m)} away`)
 }
 
 function millimetres(far_m: number): string {
@@ -146,8 +146,8 @@ export interface Errors {
 export function errorsOf(shown: Trace, learned: Trace): Errors {
   const joints = shown.joints.length > 0 && learned.joints.length > 0 ? (shown.joints[0]?.length ?? 0) : 0
   const turns = distances(shown, learned, joints, 'joints')
-  const ways = distances(shown, learned, 3, 'poses')
-  return { joints: summed(turns.flat()), tool: summed(ways.map((each) => Math.hypot(...each))) }
+  const moves = distances(shown, learned, 3, 'poses')
+  return { joints: summed(turns.flat()), tool: summed(moves.map((each) => Math.hypot(...each))) }
 }
 
 /** For each time the distances of the first columns. */

@@ -124,7 +124,7 @@ it('says where it is', () => {
 })
 
 describe('a moment', () => {
-  const node = (status: string): NodeLive => ({ status, visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', followed: '', plan: null })
+  const node = (status: string): NodeLive => ({ status, visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', last_transition: '', plan: null })
   const moment = (seq: number, nodes: PastRunState['nodes'], lines: readonly number[]): PastRunState => ({
     seq,
     time_s: seq / 10,

@@ -15,18 +15,18 @@ export interface LoadedTimeline {
 }
 
 /** Take what the server has told: all of it, or what is new after `course`. */
-export function withTimeline(course: LoadedTimeline | undefined, told: Timeline): LoadedTimeline {
-  const isWhole = course === undefined || told.merged || course.merged || course.run !== told.run
+export function withTimeline(course: LoadedTimeline | undefined, loaded: Timeline): LoadedTimeline {
+  const isWhole = course === undefined || loaded.merged || course.merged || course.run !== loaded.run
   const rows = new Map(isWhole ? [] : course.rows)
-  for (const { path, spans } of told.rows) {
+  for (const { path, spans } of loaded.rows) {
     // A span that was open when it came last comes again when it is over.
     const fresh = new Set(spans.map((span) => span.seq))
     const kept = (rows.get(path) ?? []).filter((span) => !fresh.has(span.seq))
     rows.set(path, [...kept, ...spans])
   }
-  const marks = isWhole ? told.marks : [...course.marks, ...told.marks]
-  const { run, seq, ended, merged } = told
-  return { run, seq, durationS: told.duration_s, ended, merged, leftOut: told.left_out, rows, marks }
+  const marks = isWhole ? loaded.marks : [...course.marks, ...loaded.marks]
+  const { run, seq, ended, merged } = loaded
+  return { run, seq, durationS: loaded.duration_s, ended, merged, leftOut: loaded.left_out, rows, marks }
 }
 
 export interface ShownRow {
@@ -120,9 +120,9 @@ const STEPS = [1, 2, 5]
 /** Round times about `apart` pixels from one another. */
 export function ticks(view: View, width: number, apart = 90): readonly { readonly timeS: number; readonly label: string }[] {
   const length = view.untilS - view.fromS
-  const wanted = (length * apart) / Math.max(width, 1)
-  const power = 10 ** Math.floor(Math.log10(wanted))
-  const step = (STEPS.find((each) => each * power >= wanted) ?? 10) * power
+  const interval = (length * apart) / Math.max(width, 1)
+  const power = 10 ** Math.floor(Math.log10(interval))
+  const step = (STEPS.find((each) => each * power >= interval) ?? 10) * power
   const digits = Math.max(0, -Math.floor(Math.log10(step)))
   const first = Math.ceil(view.fromS / step - 1e-9)
   const count = Math.floor(view.untilS / step + 1e-9) - first + 1

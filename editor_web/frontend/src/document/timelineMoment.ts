@@ -20,20 +20,20 @@ export function atMoment(live: LiveState, moment: ShownMoment): LiveState {
 }
 
 /** A moment as the server told it, with the objects of the one before where they say the same: they are not drawn again. */
-export function nextMoment(before: ShownMoment | undefined, told: PastRunState, timeS: number): ShownMoment {
+export function nextMoment(before: ShownMoment | undefined, state: PastRunState, timeS: number): ShownMoment {
   const known = new Map(before?.log.map((line) => [line.seq, line]))
   return {
-    seq: told.seq,
+    seq: state.seq,
     timeS,
-    nodes: before ? withKept(before.nodes, told.nodes) : told.nodes,
-    log: told.log.map((line) => known.get(line.seq) ?? line),
-    dropped: told.dropped,
+    nodes: before ? withKept(before.nodes, state.nodes) : state.nodes,
+    log: state.log.map((line) => known.get(line.seq) ?? line),
+    dropped: state.dropped,
   }
 }
 
-function withKept(before: Dict<NodeLive>, told: Dict<NodeLive>): Dict<NodeLive> {
+function withKept(before: Dict<NodeLive>, state: Dict<NodeLive>): Dict<NodeLive> {
   return Object.fromEntries(
-    Object.entries(told).map(([path, node]) => {
+    Object.entries(state).map(([path, node]) => {
       const old = lookup(before, path)
       return [path, old && isSame(old, node) ? old : node]
     }),

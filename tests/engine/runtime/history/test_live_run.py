@@ -108,9 +108,9 @@ def test_the_arrow_taken_last_is_known_until_the_machine_starts_anew() -> None:
     """Highlighted in the graph."""
     arrow = TransitionTaken(seq=2, time_s=0.0, path="root", source="a", outcome="done", target="b")
     live = folded(entered(1, "root"), arrow)
-    assert live.state.nodes["root"].followed == "a|done"
+    assert live.state.nodes["root"].last_transition == "a|done"
     live.apply(entered(3, "root", visit=2))
-    assert live.state.nodes["root"].followed == ""
+    assert live.state.nodes["root"].last_transition == ""
 
 
 def test_nothing_is_left_active_after_the_end() -> None:
@@ -219,7 +219,7 @@ def test_what_a_step_back_undoes_is_active_and_then_as_if_it_had_not_been_entere
     live.apply(UndoEnded(seq=9, time_s=4.0, path="root/b", visit=2, undoes=1))
     live.apply(RunSteppedBack(seq=10, time_s=4.0, path="root/b", source="root/c"))
     assert live.state.nodes["root/b"] == NodeLive(visits=2)
-    assert live.state.nodes["root"].followed == ""
+    assert live.state.nodes["root"].last_transition == ""
     assert live.state.nodes["root/a"].status == "done"
 
 

@@ -17,7 +17,7 @@ TIMES = np.arange(385) / 128.0
 
 def rest_ends(joint: Array) -> RestEnds:
     """At which ends of its motion a joint is at rest."""
-    return find_motion_window(TIMES, [MotionChannel(values=joint[:, None], rest=REST)]).rests
+    return find_motion_window(TIMES, [MotionChannel(values=joint[:, None], rest=REST)]).rest_ends
 
 
 @pytest.mark.parametrize("samples", [1, 2, 9])
@@ -35,8 +35,8 @@ def test_the_window_is_that_of_the_motion_whenever_the_recording_began() -> None
     begin_s, end_s = float(TIMES[window.taken][0]), float(TIMES[window.taken][-1])
     assert 0.35 < begin_s < 0.6
     assert 2.4 < end_s < 2.65
-    assert window.rests.start
-    assert window.rests.end
+    assert window.rest_ends.start
+    assert window.rest_ends.end
 
 
 def test_a_tenth_of_a_second_of_rest_is_rest_and_none_is_none() -> None:

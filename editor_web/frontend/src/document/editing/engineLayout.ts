@@ -7,13 +7,13 @@ import { outgoingTransitions, type EditNode } from './model'
 
 /** Where the port of an outcome is, from the top of its node. */
 export function portOf(parent: EditNode, node: EditNode, outcome: string, box: Size): number {
-  const ways = outgoingTransitions(parent, node)
+  const outgoing = outgoingTransitions(parent, node)
   return portY(
     box.height,
-    ways.length,
+    outgoing.length,
     Math.max(
       0,
-      ways.findIndex((way) => way.outcome === outcome),
+      outgoing.findIndex((each) => each.outcome === outcome),
     ),
   )
 }
@@ -47,9 +47,9 @@ export async function byEngine(
 ): Promise<Content> {
   const children: (ElkShape & { ports: Port[] })[] = node.children.map((child, index) => {
     const { width, height } = units[index] ?? empty()
-    const ways = outgoingTransitions(node, child)
-    const outs = ways.map((way, row) =>
-      port(`${child.path}>${way.outcome}`, width, portY(height, ways.length, row), 'EAST'),
+    const outgoing = outgoingTransitions(node, child)
+    const outs = outgoing.map((each, row) =>
+      port(`${child.path}>${each.outcome}`, width, portY(height, outgoing.length, row), 'EAST'),
     )
     const first: Record<string, string> =
       child.name === node.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
@@ -57,7 +57,7 @@ export async function byEngine(
       id: child.path,
       width,
       height,
-      ports: [port(`${child.path}>`, 0, entryY(height, ways.length), 'WEST'), ...outs],
+      ports: [port(`${child.path}>`, 0, entryY(height, outgoing.length), 'WEST'), ...outs],
       layoutOptions: { ...FIXED, ...first },
     }
   })

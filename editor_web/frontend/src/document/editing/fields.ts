@@ -34,12 +34,12 @@ export interface EditField {
 export function editFieldOf(key: KeyView): EditField {
   const definitions = record(key.schema['$defs'])
   const { schema, isNullable } = resolved(key.schema, definitions)
-  const said = { ...schema, ...withoutShape(key.schema) }
+  const combined = { ...schema, ...withoutShape(key.schema) }
   const properties = record(schema['properties'])
   const entry = record(properties['entry'])
   const choices = Array.isArray(schema['enum']) ? schema['enum'].map(String) : []
   const parts = partsOf(schema)
-  const plainEntry = text(said['entry'])
+  const plainEntry = text(combined['entry'])
   const isTarget = 'entry' in properties
   return {
     name: key.name,
@@ -48,8 +48,8 @@ export function editFieldOf(key: KeyView): EditField {
       hasChoices: choices.length > 0,
       isVector: parts.length > 0,
     }),
-    description: text(said['description']),
-    unit: text(said['unit']),
+    description: text(combined['description']),
+    unit: text(combined['unit']),
     required: key.required,
     isNullable,
     minimum: numeric(schema['minimum']) ?? numeric(schema['exclusiveMinimum']),
@@ -59,16 +59,16 @@ export function editFieldOf(key: KeyView): EditField {
     parts,
     entryKind: plainEntry || text(entry['entry']),
     isPlainEntry: plainEntry !== '' && !isTarget,
-    nameKind: text(said['cell_name']),
-    nameOf: text(said['of']),
+    nameKind: text(combined['cell_name']),
+    nameOf: text(combined['of']),
     fallback: key.default,
   }
 }
 
-const SAID_BESIDE = new Set(['description', 'unit', 'entry', 'cell_name', 'of'])
+const KEPT_BESIDE = new Set(['description', 'unit', 'entry', 'cell_name', 'of'])
 
 function withoutShape(schema: Schema): Dict<unknown> {
-  return Object.fromEntries(Object.entries(schema).filter(([key]) => SAID_BESIDE.has(key)))
+  return Object.fromEntries(Object.entries(schema).filter(([key]) => KEPT_BESIDE.has(key)))
 }
 
 interface Resolved {

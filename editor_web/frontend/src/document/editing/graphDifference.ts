@@ -45,8 +45,8 @@ export function withDifference(root: EditNode, difference: GraphDifference): Edi
 }
 
 function linesOf(path: string, was: EditNode | undefined, difference: GraphDifference): readonly [number, number, number] {
-  const said = lookup(difference.lines, path)
-  if (said || !was) return said ?? [1, 1, 1]
+  const given = lookup(difference.lines, path)
+  if (given || !was) return given ?? [1, 1, 1]
   return [shiftedLine(was.line, difference.shifts), was.column, shiftedLine(was.end_line, difference.shifts)]
 }
 
@@ -54,11 +54,11 @@ function linesOf(path: string, was: EditNode | undefined, difference: GraphDiffe
 function transitionsOf(
   names: readonly string[],
   was: EditNode | undefined,
-  said: Dict<Transitions> | undefined,
+  given: Dict<Transitions> | undefined,
 ): Transitions {
   const before = new Map<string, Transitions>()
   for (const arrow of was?.transitions ?? []) before.set(arrow.source, [...(before.get(arrow.source) ?? []), arrow])
-  return names.flatMap((name) => lookup(said, name) ?? before.get(name) ?? [])
+  return names.flatMap((name) => lookup(given, name) ?? before.get(name) ?? [])
 }
 
 /** Findings of the old text at their lines in the new one. */

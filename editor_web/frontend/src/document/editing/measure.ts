@@ -29,12 +29,12 @@ export function rowsHeight(count: number): number {
 
 /** A state, or a container that is closed. */
 export function leafSize(node: EditNode, parent: EditNode | undefined): Size {
-  const ways = outgoingTransitions(parent, node)
-  const rows = ways.map((way) => textWidth(transitionText(way.outcome, way.target), 6.4) + 44)
+  const outgoing = outgoingTransitions(parent, node)
+  const rows = outgoing.map((each) => textWidth(transitionText(each.outcome, each.target), 6.4) + 44)
   const widest = Math.max(textWidth(node.name, 8.2) + 62, textWidth(node.title, 6.9) + 46, ...rows)
   return {
     width: Math.min(MAX_WIDTH, Math.max(MIN_WIDTH, widest)),
-    height: ways.length > 0 ? HEAD_HEIGHT + rowsHeight(ways.length) : HEAD_HEIGHT + 6,
+    height: outgoing.length > 0 ? HEAD_HEIGHT + rowsHeight(outgoing.length) : HEAD_HEIGHT + 6,
   }
 }
 
@@ -65,8 +65,8 @@ export function portY(height: number, count: number, index: number): number {
 }
 
 /** Where arrows come in, from the top of a node: at the height of its first way out, so that what follows one another is one line. */
-export function entryY(height: number, ways: number): number {
-  return ways > 0 ? portY(height, ways, 0) : Math.min(height / 2, HEAD_HEIGHT / 2)
+export function entryY(height: number, outgoing: number): number {
+  return outgoing > 0 ? portY(height, outgoing, 0) : Math.min(height / 2, HEAD_HEIGHT / 2)
 }
 
 /** The outcomes of a machine as places that arrows can lead to, and which of them stand in the flow. */

@@ -116,9 +116,9 @@ export function holderOf(root: EditNode, path: string): EditNode | undefined {
 }
 
 /** A name that no child of `parent` has yet: `grasp`, `grasp_2`, … */
-export function freeName(parent: EditNode | undefined, wanted: string): string {
+export function freeName(parent: EditNode | undefined, preferred: string): string {
   const taken = new Set(parent?.children.map((child) => child.name) ?? [])
-  const base = wanted.replace(/[^A-Za-z0-9_-]/g, '_').replace(/^-+/, '') || 'node'
+  const base = preferred.replace(/[^A-Za-z0-9_-]/g, '_').replace(/^-+/, '') || 'node'
   if (!taken.has(base)) return base
   let number = 2
   while (taken.has(`${base}_${number}`)) number += 1
@@ -160,9 +160,9 @@ export function outgoingTransitions(parent: EditNode | undefined, node: EditNode
 }
 
 /** A state's outcomes as it declares them; those of a container as they are connected. */
-function inOrder(node: EditNode, ways: readonly { readonly outcome: string }[]): readonly string[] {
+function inOrder(node: EditNode, outgoing: readonly { readonly outcome: string }[]): readonly string[] {
   if (node.kind === 'state') return node.outcomes
-  const connected = ways.map((way) => way.outcome).filter((outcome) => node.outcomes.includes(outcome))
+  const connected = outgoing.map((each) => each.outcome).filter((outcome) => node.outcomes.includes(outcome))
   return [...new Set([...connected, ...node.outcomes])]
 }
 

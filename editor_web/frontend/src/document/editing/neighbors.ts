@@ -14,14 +14,14 @@ const DIRECTIONS: Record<Heading, Point> = {
 export function neighborOf(boxes: ReadonlyMap<string, Box>, from: string, heading: Heading): string | undefined {
   const start = boxes.get(from)
   if (!start) return undefined
-  const way = DIRECTIONS[heading]
+  const direction = DIRECTIONS[heading]
   const origin = centerOf(start)
   let best: { id: string; cost: number } | undefined
   for (const [id, box] of boxes) {
     if (id === from || contains(box, start)) continue
     const center = centerOf(box)
-    const along = (center.x - origin.x) * way.x + (center.y - origin.y) * way.y
-    const across = Math.abs((center.x - origin.x) * way.y) + Math.abs((center.y - origin.y) * way.x)
+    const along = (center.x - origin.x) * direction.x + (center.y - origin.y) * direction.y
+    const across = Math.abs((center.x - origin.x) * direction.y) + Math.abs((center.y - origin.y) * direction.x)
     if (along < 4 || across > along * 3 + 60) continue
     const cost = along + across * 2
     if (!best || cost < best.cost) best = { id, cost }

@@ -14,15 +14,15 @@ export function inlineReferences(root: EditNode, bodies: InlinedDocuments, depth
   const body = root.kind === 'behavior' && root.document !== null ? bodies.get(root.document) : undefined
   if (body) {
     const known = root.children[0]
-    if (known && madeOf.get(known) === body) return grown(root, bodies, depth)
+    if (known && madeOf.get(known) === body) return inlined(root, bodies, depth)
     const child = relocated(body, root)
     madeOf.set(child, body)
     return { ...root, children: [inlineReferences(child, bodies, depth + 1)] }
   }
-  return grown(root, bodies, depth)
+  return inlined(root, bodies, depth)
 }
 
-function grown(node: EditNode, bodies: InlinedDocuments, depth: number): EditNode {
+function inlined(node: EditNode, bodies: InlinedDocuments, depth: number): EditNode {
   const children = node.children.map((child) => {
     const made = inlineReferences(child, bodies, depth + 1)
     const from = madeOf.get(child)

@@ -89,8 +89,8 @@ export function added(
       })),
     ),
   ]
-  const said = new Set(rules.filter((rule) => rule.preempt.length === 0).map((rule) => textOf(rule.when)))
-  const next = candidates.find((rule) => Object.keys(rule.when).length > 0 && !said.has(textOf(rule.when)))
+  const present = new Set(rules.filter((rule) => rule.preempt.length === 0).map((rule) => textOf(rule.when)))
+  const next = candidates.find((rule) => Object.keys(rule.when).length > 0 && !present.has(textOf(rule.when)))
   return next ? [...rules, next] : [...rules, { outcome: 'finished', when: all, at_least: null, preempt: [] }]
 }
 

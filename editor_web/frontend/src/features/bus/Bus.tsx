@@ -107,8 +107,8 @@ export function Bus({ session }: BusProps) {
     const shared = { mayChange, onBack: () => setChosen({ ...chosen, [kind]: undefined }) }
     const facts = known.topics.find((each) => each.name === name)
     if (kind === 'topics' && facts) {
-      const newest = message?.topic === name ? message : undefined
-      return <TopicView key={name} {...shared} facts={facts} message={newest} traffic={lookup(traffic?.topics, name)} />
+      const latest = message?.topic === name ? message : undefined
+      return <TopicView key={name} {...shared} facts={facts} message={latest} traffic={lookup(traffic?.topics, name)} />
     }
     const parameter = known.parameters.find((each) => each.name === name)
     if (kind === 'parameters' && parameter) return <ParameterView key={name} {...shared} facts={parameter} />

@@ -24,9 +24,9 @@ export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) 
   const [value, setValue] = useState<unknown>(facts.value)
   const [refusal, setRefusal] = useState('')
 
-  async function set(wanted: unknown): Promise<void> {
+  async function set(next: unknown): Promise<void> {
     setRefusal('')
-    await bus.setParameter(facts.name, wanted).then(setValue, (error: unknown) => setRefusal(wordsOf(error)))
+    await bus.setParameter(facts.name, next).then(setValue, (error: unknown) => setRefusal(wordsOf(error)))
   }
 
   return (

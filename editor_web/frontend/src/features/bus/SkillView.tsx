@@ -21,7 +21,7 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
   const form = useForm(async () => requestFields((await bus.requestForm(facts.name)).schema))
   const course = useRequests((s) => lookup(s.courses, facts.name))
   const isAction = facts.kind === 'action'
-  const isUnderWay = course !== undefined && !isOver(course)
+  const isActive = course !== undefined && !isOver(course)
   return (
     <Detail name={facts.name} type={`${facts.type} → ${facts.answer}`} doc={facts.doc} onBack={onBack}>
       <Caution
@@ -35,15 +35,15 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
       <RequestForm
         label={`Request to ${facts.name}`}
         form={form}
-        isOff={!mayChange || isUnderWay}
+        isOff={!mayChange || isActive}
         onSend={(request) => void send(facts, request)}
         refusal={course?.status === 'refused' ? course.cause : ''}
         buttons={
           <>
-            <Button type="submit" size="xs" disabled={!mayChange || isUnderWay} leftSection={<IconSend size={14} aria-hidden />}>
+            <Button type="submit" size="xs" disabled={!mayChange || isActive} leftSection={<IconSend size={14} aria-hidden />}>
               {isAction ? 'Send goal' : 'Call'}
             </Button>
-            {isUnderWay && isAction && (
+            {isActive && isAction && (
               <Button size="xs" color="red" variant="outline" onClick={() => void cancel(facts.name)} leftSection={<IconPlayerStopFilled size={14} aria-hidden />}>
                 Cancel goal
               </Button>

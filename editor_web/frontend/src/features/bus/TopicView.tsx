@@ -34,7 +34,7 @@ export function TopicView({ facts, message, traffic, mayChange, onBack }: TopicV
       {message?.problem ? (
         <p className="quiet">There is no message: {message.problem}.</p>
       ) : (
-        message && <ValueTree label={`Newest message of ${facts.name}`} value={message.value} open={2} />
+        message && <ValueTree label={`Latest message of ${facts.name}`} value={message.value} open={2} />
       )}
     </Detail>
   )

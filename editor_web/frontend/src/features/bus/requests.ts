@@ -16,21 +16,21 @@ export interface RequestProgress {
 }
 
 const SENT: RequestProgress = { status: 'sent', feedback: undefined, answer: undefined, cause: '', goal: '' }
-const UNDER_WAY: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
+const ACTIVE: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
 
 /** The newest request to each address. */
 export const useRequests = create<{ readonly courses: Dict<RequestProgress> }>(() => ({ courses: {} }))
 
-let leaving = new AbortController()
+let watching = new AbortController()
 
 /** Has it ended? */
 export function isOver(course: RequestProgress): boolean {
-  return !UNDER_WAY.includes(course.status)
+  return !ACTIVE.includes(course.status)
 }
 
 /** Ask a service, or send a goal and follow it. */
 export async function send(facts: SkillInfo, request: Dict<unknown>): Promise<void> {
-  const { signal } = leaving
+  const { signal } = watching
   put(facts.name, SENT)
   try {
     await (facts.kind === 'service' ? ask(facts.name, request) : follow(facts.name, request, signal))
@@ -52,8 +52,8 @@ export async function cancel(address: string): Promise<void> {
 
 /** Let the server cancel every goal that was sent from here. */
 export function leave(): void {
-  leaving.abort()
-  leaving = new AbortController()
+  watching.abort()
+  watching = new AbortController()
   useRequests.setState({ courses: {} })
 }
 

@@ -22,8 +22,8 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
   const [text, setText] = useState('')
   const runs = useLive((s) => s.runs)
   const active = new Set(runs.filter(isActive).map((run) => run.behavior))
-  const wanted = text.trim().toLowerCase()
-  const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(wanted))
+  const query = text.trim().toLowerCase()
+  const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(query))
   return (
     <nav className="behavior-list" aria-label="Behaviors">
       <div className="side-head">

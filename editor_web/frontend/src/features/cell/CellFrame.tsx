@@ -18,7 +18,7 @@ export function CellFrame() {
   const isPast = usePast((s) => s.shown !== null && !s.shown.problem)
   const port = useSession((s) => s.session?.cell_view_port)
   const origin = `http://${location.hostname}:${port}`
-  const frame = useNewsOfView(origin)
+  const frame = useViewMessages(origin)
   if (typeof port !== 'number') {
     return (
       <Empty icon={<IconCube size={28} stroke={1.4} aria-hidden />} title="No 3D view">
@@ -43,7 +43,7 @@ export function CellFrame() {
 }
 
 /** Hears from the view that the mouse is down in it, and of the key of STOP; returns the reference for its frame. */
-function useNewsOfView(origin: string) {
+function useViewMessages(origin: string) {
   const frame = useRef<HTMLIFrameElement>(null)
   useEffect(() => {
     const hear = (event: MessageEvent<{ cellView?: string } | null>) => {

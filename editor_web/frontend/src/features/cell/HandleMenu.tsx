@@ -13,7 +13,7 @@ const WORDS: Record<HandleMode, string> = {
 export function HandleMenu() {
   const [isOpen, setOpen] = useState(false)
   const robots = useLive((s) => s.robots)
-  const { arm, way, pulled, refused } = useHandleDrag()
+  const { arm, mode, pulled, refused } = useHandleDrag()
   useEffect(() => () => showHandle(''), [])
   const arms = Object.keys(robots)
   if (arms.length === 0) return null
@@ -38,7 +38,7 @@ export function HandleMenu() {
           aria-label="Arm with the handle"
           data={[{ value: '', label: 'None' }, ...arms.map((each) => ({ value: each, label: each }))]}
           value={arm}
-          onChange={(next) => showHandle(next, way)}
+          onChange={(next) => showHandle(next, mode)}
         />
         <SegmentedControl
           fullWidth
@@ -49,10 +49,10 @@ export function HandleMenu() {
             { value: 'move', label: 'Move the tool' },
             { value: 'push', label: 'Push the arm' },
           ]}
-          value={way}
+          value={mode}
           onChange={(next) => showHandle(arm, next as HandleMode)}
         />
-        <p className="quiet handle-words">{WORDS[way]}</p>
+        <p className="quiet handle-words">{WORDS[mode]}</p>
         <p role="status" className={refused ? 'handle-refused' : 'quiet handle-words'}>
           {refused || (pulled ? `${arm} follows` : '')}
         </p>

@@ -7,8 +7,8 @@ import { duration } from '../../document/time'
 const SLACK_S = 0.5
 
 export function PastMark() {
-  const { wanted, shown } = usePast()
-  if (wanted === null || shown === null) return null
+  const { requested, shown } = usePast()
+  if (requested === null || shown === null) return null
   const { run, time_s, until_s, problem } = shown
   const isAfter = time_s > until_s + SLACK_S
   return (

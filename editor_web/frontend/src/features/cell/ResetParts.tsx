@@ -5,11 +5,11 @@ import { useState } from 'react'
 import { api } from '../../api/client'
 
 export function ResetParts({ isBusy }: { isBusy: boolean }) {
-  const { reset, said } = useReset()
+  const { reset, outcome } = useReset()
   return (
     <>
       <span role="status" className="quiet">
-        {said}
+        {outcome}
       </span>
       <Button
         size="compact-sm"
@@ -26,12 +26,12 @@ export function ResetParts({ isBusy }: { isBusy: boolean }) {
 }
 
 function useReset() {
-  const [said, setSaid] = useState('')
+  const [outcome, setOutcome] = useState('')
   const reset = () => {
     api.resetParts().then(
-      () => setSaid('Parts are back'),
-      (error: unknown) => setSaid(error instanceof Error ? error.message : String(error)),
+      () => setOutcome('Parts are back'),
+      (error: unknown) => setOutcome(error instanceof Error ? error.message : String(error)),
     )
   }
-  return { reset, said }
+  return { reset, outcome }
 }

@@ -50,8 +50,8 @@ it('takes a question away that has become void', () => {
 
 it('says what way an answer is about, and whether the 3D view shows it', () => {
   const told = { ...asking('root/left'), nodes: { 'root/left': node({ status: 'done', plan: PLAN }) } }
-  const way = { state: 'proposed', reason: '', length_m: 1.24, since_s: 0 }
-  const socket = live({ ...told, robots: { left: robot({ way }) } })
+  const path = { state: 'proposed', reason: '', length_m: 1.24, since_s: 0 }
+  const socket = live({ ...told, robots: { left: robot({ path }) } })
   show(<Asked />)
   const question = screen.getByRole('listitem', { name: 'Question of root/left' })
   expect(question).toHaveTextContent("left: 3.25 s for 1.24 m of the tool's path, found by RRTConnect in 0.12 s")

@@ -22,19 +22,19 @@ export function Data({ run, onShow }: DataProps) {
   const area = useRef<HTMLDivElement>(null)
   const isShown = useIsVisible(area)
   const [search, setSearch] = useState('')
-  const [told, setTold] = useState<{ readonly run: string; readonly scopes: Scopes; readonly problem: string }>()
+  const [latest, setLatest] = useState<{ readonly run: string; readonly scopes: Scopes; readonly problem: string }>()
 
   const past = usePastValues(run?.id, isShown)
 
   useData(isShown && run && !past ? { run: run.id } : undefined, (frame) => {
     if (frame.k !== 'userdata') return
-    setTold((before) => ({
+    setLatest((before) => ({
       run: frame.run,
       scopes: withChanges(before?.run === frame.run ? before.scopes : {}, frame.scopes, frame.first),
       problem: frame.problem,
     }))
   })
-  const current = past ?? (told?.run === run?.id ? told : undefined)
+  const current = past ?? (latest?.run === run?.id ? latest : undefined)
   const scopes = useMemo(() => shownScopes(current?.scopes ?? {}, search), [current, search])
 
   const tools = (

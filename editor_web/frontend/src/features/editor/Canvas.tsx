@@ -47,7 +47,7 @@ const NODE_TYPES = {
   rules: withLowDetail(RulesCard),
 }
 const NO_EDGES: CanvasEdge[] = []
-const EDGE_TYPES = { way: TransitionLine, branch: BranchLine }
+const EDGE_TYPES = { transition: TransitionLine, branch: BranchLine }
 const SELECT_KEYS = ['Shift', 'Meta', 'Control']
 
 export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: boolean }) {
@@ -88,7 +88,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const computed = useStableList(useMemo(() => canvasNodes(arranged), [arranged]))
   const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
   const [given, setGiven] = useState<Arranged>()
-  const [isWiring, setWiring] = useState(false)
+  const [isConnecting, setConnecting] = useState(false)
   const [isInPlace, setInPlace] = useState(false)
   const [lookedFor, setLookedFor] = useState<typeof shown>()
   const element = useRef<HTMLDivElement>(null)
@@ -223,7 +223,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const onSelectionDragStop = useCallbackRef((event: unknown, moved: CanvasNode[]) =>
     onDragStop(event, moved[0] as CanvasNode, moved),
   )
-  const onConnectStart = useCallbackRef(() => setWiring(true))
+  const onConnectStart = useCallbackRef(() => setConnecting(true))
   const onMoveStart = useCallbackRef((event: unknown) => {
     if (event) isFitted.current = false
   })
@@ -268,7 +268,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   }
 
   const onConnectEnd = useCallbackRef((event: MouseEvent | TouchEvent, state: FinalConnectionState): void => {
-    setWiring(false)
+    setConnecting(false)
     if (state.isValid || !state.fromNode || !state.fromHandle?.id || state.fromHandle.type !== 'source') return
     const point = 'changedTouches' in event ? event.changedTouches[0] : event
     if (!point) return
@@ -322,7 +322,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   return (
     <ReactFlow<CanvasNode, CanvasEdge>
       ref={element}
-      className={`${isInPlace ? 'is-in-place' : ''}${isWiring ? ' is-wiring' : ''}${isStale ? ' is-stale' : ''}`}
+      className={`${isInPlace ? 'is-in-place' : ''}${isConnecting ? ' is-wiring' : ''}${isStale ? ' is-stale' : ''}`}
       nodes={nodes}
       edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
       onlyRenderVisibleElements={hasMany && !isFar}

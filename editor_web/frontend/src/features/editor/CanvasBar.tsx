@@ -38,7 +38,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
   const hasFlow = useDataFlow((s) => s.isShown)
   return (
     <div className="canvas-bar">
-      <Way />
+      <Path />
       {isStale && (
         <span className="stale-note" role="status">
           The text cannot be read; this is how it was before.
@@ -77,7 +77,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
 }
 
 /** From the behavior down to what fills the canvas. */
-function Way() {
+function Path() {
   const scope = useEditor((s) => scopeOf(s)?.path ?? 'root')
   const root = useEditor(rootOf)
   const name = useEditor((s) => draftOf(s).document?.name ?? '')

@@ -141,15 +141,15 @@ function MarkIcon({ path, inside }: { path: string; inside: boolean }) {
 
 /** A row with a port for each way out. */
 function Ways({ path, data }: { path: string; data: CardData }) {
-  if (data.ways.length === 0) return null
+  if (data.transitions.length === 0) return null
   return (
     <div className="ways">
-      {data.ways.map((way) => (
-        <WayRow
-          key={way.outcome}
+      {data.transitions.map((transition) => (
+        <TransitionRow
+          key={transition.outcome}
           path={path}
-          way={way}
-          isDrawn={data.drawn.has(way.outcome)}
+          transition={transition}
+          isDrawn={data.drawn.has(transition.outcome)}
           isForeign={data.isForeign}
         />
       ))}
@@ -157,21 +157,21 @@ function Ways({ path, data }: { path: string; data: CardData }) {
   )
 }
 
-function WayRow({ path, way, isDrawn, isForeign }: { path: string; way: OutgoingTransition; isDrawn: boolean; isForeign: boolean }) {
-  const findings = useTransitionFindings(path, way.outcome)
-  const isLoose = way.target === undefined
-  const classes = `${isLoose ? ' is-loose' : ''}${isFailure(way.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`
+function TransitionRow({ path, transition, isDrawn, isForeign }: { path: string; transition: OutgoingTransition; isDrawn: boolean; isForeign: boolean }) {
+  const findings = useTransitionFindings(path, transition.outcome)
+  const isLoose = transition.target === undefined
+  const classes = `${isLoose ? ' is-loose' : ''}${isFailure(transition.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`
   return (
     <div className={`way${classes}`} title={findings.map((finding) => finding.message).join('\n') || undefined}>
-      <span className="way-name">{way.outcome}</span>
-      {!isDrawn && !isLoose && way.target !== way.outcome && <span className="way-target">→ {way.target}</span>}
-      {!isDrawn && way.target === way.outcome && <span className="way-target">↦</span>}
+      <span className="way-name">{transition.outcome}</span>
+      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className="way-target">→ {transition.target}</span>}
+      {!isDrawn && transition.target === transition.outcome && <span className="way-target">↦</span>}
       <Handle
         type="source"
-        id={way.outcome}
+        id={transition.outcome}
         position={Position.Right}
         className="out-port"
-        isConnectable={!isForeign && way.isOutcome}
+        isConnectable={!isForeign && transition.isOutcome}
         isConnectableEnd={false}
       />
     </div>

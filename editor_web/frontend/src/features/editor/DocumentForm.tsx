@@ -258,11 +258,11 @@ function AddName({ label, taken, onAdd }: { label: string; taken: readonly strin
       className="add-name"
       onSubmit={(event) => {
         event.preventDefault()
-        const wanted = name.trim()
-        if (!/^[A-Za-z_][A-Za-z0-9_]{0,63}$/.test(wanted)) showEditorRefusal(label, 'a name has letters, digits and _')
-        else if (taken.includes(wanted)) showEditorRefusal(label, `there is a ${wanted} already`)
+        const typed = name.trim()
+        if (!/^[A-Za-z_][A-Za-z0-9_]{0,63}$/.test(typed)) showEditorRefusal(label, 'a name has letters, digits and _')
+        else if (taken.includes(typed)) showEditorRefusal(label, `there is a ${typed} already`)
         else {
-          onAdd(wanted)
+          onAdd(typed)
           setName('')
         }
       }}

@@ -71,7 +71,7 @@ export function EditorPage(props: EditorPageProps) {
     if (onDisk !== undefined && onDisk !== editor().base.hash) void lookAtDisk()
   }, [onDisk])
   useEffect(() => refreshReferences(written), [written])
-  useLeaving()
+  useUnsavedGuard()
   if (phase === 'failed') return <Empty title="This behavior cannot be edited">{problem}</Empty>
   if (phase === 'loading') return <div className="page-wait" role="status" aria-label="Loading" />
   return (
@@ -84,7 +84,7 @@ export function EditorPage(props: EditorPageProps) {
 }
 
 /** What is not saved is kept in this browser, and the browser warns before the page goes. */
-function useLeaving(): void {
+function useUnsavedGuard(): void {
   useEffect(() => {
     const warn = (event: BeforeUnloadEvent) => {
       storeDraftNow()

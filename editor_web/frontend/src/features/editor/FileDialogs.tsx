@@ -90,7 +90,7 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
         deleteStoredDraft(id)
         closeFileDialog()
         openOther(to)
-        showEditorNotice(moved.followed.length > 0 ? `Renamed; ${moved.followed.length} follow` : 'Renamed')
+        showEditorNotice(moved.updated.length > 0 ? `Renamed; ${moved.updated.length} follow` : 'Renamed')
         if (moved.left.length > 0) showEditorRefusal('Rename', `not changed: ${moved.left.join(', ')}`, 'Change them by hand.')
       } else {
         await relations.duplicate(id, to)

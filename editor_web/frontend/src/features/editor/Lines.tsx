@@ -8,7 +8,7 @@ import { openInsertPalette } from './paletteRequests'
 import { useTransitionFindings } from './marks'
 import { ArrowHeads } from './ArrowHeads'
 
-export const TransitionLine = memo(function WayLine(props: EdgeProps<TransitionEdge>) {
+export const TransitionLine = memo(function TransitionPath(props: EdgeProps<TransitionEdge>) {
   const { id, source, data, selected } = props
   const findings = useTransitionFindings(source, data?.outcome ?? '')
   const points = data?.points

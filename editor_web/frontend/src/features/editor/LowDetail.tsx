@@ -88,8 +88,8 @@ function linesOf(nodes: readonly CanvasNode[], edges: readonly CanvasEdge[]): st
 
 function lineOf(edge: CanvasEdge, boxes: ReadonlyMap<string, Box>): string {
   const [from, to] = [boxes.get(edge.source), boxes.get(edge.target)]
-  if (!from || !to || (edge.type === 'way' && edge.data?.isQuiet)) return ''
-  const points = edge.type === 'way' ? edge.data?.points : undefined
+  if (!from || !to || (edge.type === 'transition' && edge.data?.isQuiet)) return ''
+  const points = edge.type === 'transition' ? edge.data?.points : undefined
   const ends: readonly Point[] =
     edge.type === 'branch'
       ? [

@@ -19,8 +19,8 @@ const LEVEL_WORDS: Record<string, string> = {
 export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode }) {
   const root = useEditor(rootOf)
   const outcomes = useEditor((s) => draftOf(s).document?.outcomes ?? NONE)
-  const ways = outgoingTransitions(parent, node).filter((way) => way.isOutcome)
-  if (!root || ways.length === 0) return null
+  const transitions = outgoingTransitions(parent, node).filter((transition) => transition.isOutcome)
+  if (!root || transitions.length === 0) return null
   const inside = parent.children.map((child) => child.name)
   const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
     (end) => !inside.includes(end),
@@ -36,19 +36,19 @@ export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode
           </tr>
         </thead>
         <tbody>
-          {ways.map((way) => (
-            <tr key={way.outcome}>
+          {transitions.map((transition) => (
+            <tr key={transition.outcome}>
               <th scope="row" className="mono">
-                {way.outcome}
+                {transition.outcome}
               </th>
               <td>
                 <select
-                  className={`plain-input${way.target === undefined ? ' is-loose' : ''}`}
-                  aria-label={`${way.outcome} leads to`}
-                  value={way.target ?? ''}
+                  className={`plain-input${transition.target === undefined ? ' is-loose' : ''}`}
+                  aria-label={`${transition.outcome} leads to`}
+                  value={transition.target ?? ''}
                   onChange={(event) => {
                     const target = event.currentTarget.value
-                    void (target ? connect(node.path, way.outcome, target) : disconnect(node.path, way.outcome))
+                    void (target ? connect(node.path, transition.outcome, target) : disconnect(node.path, transition.outcome))
                   }}
                 >
                   <option value="">not connected</option>
@@ -65,14 +65,14 @@ export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode
                         {name}
                       </option>
                     ))}
-                    {way.target && !inside.includes(way.target) && !ends.includes(way.target) && (
-                      <option value={way.target}>{way.target}</option>
+                    {transition.target && !inside.includes(transition.target) && !ends.includes(transition.target) && (
+                      <option value={transition.target}>{transition.target}</option>
                     )}
                   </optgroup>
                 </select>
               </td>
               <td>
-                <Autonomy node={node} outcome={way.outcome} />
+                <Autonomy node={node} outcome={transition.outcome} />
               </td>
             </tr>
           ))}
@@ -92,9 +92,9 @@ function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
       aria-label={`Autonomy of ${outcome}`}
       title={level ? LEVEL_WORDS[level] : 'passes by itself'}
       value={level}
-      onChange={({ currentTarget: { value: wanted } }) =>
+      onChange={({ currentTarget: { value: level } }) =>
         void performOn(node.path, `Autonomy of ${outcome}`, (now) => {
-          const next = wanted ? { ...now.autonomy, [outcome]: wanted } : without(now.autonomy, outcome)
+          const next = level ? { ...now.autonomy, [outcome]: level } : without(now.autonomy, outcome)
           return [setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null)]
         })
       }

@@ -95,7 +95,7 @@ function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly stri
   const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
     (outcome) => !inside.has(outcome),
   )
-  const present = outgoingTransitions(parent, nodeOf(root, from.path) ?? parent).find((way) => way.outcome === from.outcome)?.target
+  const present = outgoingTransitions(parent, nodeOf(root, from.path) ?? parent).find((transition) => transition.outcome === from.outcome)?.target
   return [
     ...parent.children.map((child): Choice => ({
       id: `to:${child.name}`,
@@ -142,15 +142,15 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
   const root = useEditor(rootOf)
   const node = nodeOf(root, path)
   const parent = nodeOf(root, parentPath(path))
-  const ways = node ? outgoingTransitions(parent, node).filter((way) => way.isOutcome) : []
-  const choices = ways.map((way): Choice => ({
-    id: way.outcome,
-    title: way.outcome,
+  const transitions = node ? outgoingTransitions(parent, node).filter((transition) => transition.isOutcome) : []
+  const choices = transitions.map((transition): Choice => ({
+    id: transition.outcome,
+    title: transition.outcome,
     group: 'Which outcome',
-    detail: way.target === undefined ? 'not connected' : `now leads to ${way.target}`,
-    icon: <IconCircleDot size={15} className={isFailure(way.outcome) ? 'is-failure' : ''} aria-hidden />,
+    detail: transition.target === undefined ? 'not connected' : `now leads to ${transition.target}`,
+    icon: <IconCircleDot size={15} className={isFailure(transition.outcome) ? 'is-failure' : ''} aria-hidden />,
     // In the same update: what is typed on goes to the next box.
-    run: () => openPortPalette(path, way.outcome),
+    run: () => openPortPalette(path, transition.outcome),
   }))
   return (
     <ChoiceBox

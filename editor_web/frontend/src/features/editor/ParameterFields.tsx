@@ -25,16 +25,16 @@ import { useEditor } from './store'
 export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly KeyView[] }) {
   const entries = useEditor((s) => s.catalogue?.entries ?? NO_ENTRIES)
   const known = new Set(keys.map((key) => key.name))
-  const stray = Object.keys(node.parameters).filter((name) => !known.has(name))
+  const undeclared = Object.keys(node.parameters).filter((name) => !known.has(name))
   return (
     <div className="edit-fields">
       {keys.map((key) => (
         <ParameterRow key={key.name} node={node} field={editFieldOf(key)} entries={entries} />
       ))}
-      {stray.map((name) => (
-        <StrayRow key={name} node={node} name={name} isKnown={keys.length > 0} />
+      {undeclared.map((name) => (
+        <UndeclaredRow key={name} node={node} name={name} isKnown={keys.length > 0} />
       ))}
-      {keys.length + stray.length === 0 && <p className="quiet">It has no parameters.</p>}
+      {keys.length + undeclared.length === 0 && <p className="quiet">It has no parameters.</p>}
     </div>
   )
 }
@@ -274,7 +274,7 @@ function nameIn(value: unknown): string | undefined {
 }
 
 /** A value that its state does not know, or a parameter of a state that is not known. */
-function StrayRow({ node, name, isKnown }: { node: EditNode; name: string; isKnown: boolean }) {
+function UndeclaredRow({ node, name, isKnown }: { node: EditNode; name: string; isKnown: boolean }) {
   return (
     <div className={`edit-field${isKnown ? ' has-problem' : ''}`}>
       <div className="edit-label">

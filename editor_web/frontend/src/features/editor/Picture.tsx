@@ -55,7 +55,7 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
         if (!source || !target || !from) return null
         const mark = markings?.get(edge.id)
         const colour = colourOf(mark, palette.edge, palette)
-        if (edge.type !== 'way') {
+        if (edge.type !== 'transition') {
           const [a, b] = [
             { x: source.x + source.width / 2, y: source.y + source.height },
             { x: target.x + target.width / 2, y: target.y },
@@ -67,7 +67,7 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
               : roundedPath([a, { x: a.x, y: bend }, { x: b.x, y: bend }, b])
           return <path key={edge.id} d={path} style={{ fill: 'none', stroke: colour, strokeWidth: 1.6 }} />
         }
-        const points = wayPoints(
+        const points = waypoints(
           edge.data?.points,
           from,
           source,
@@ -133,7 +133,7 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
 }
 
 /** Along the laid-out points, else as the canvas draws it from port to port. */
-function wayPoints(
+function waypoints(
   points: readonly Point[] | undefined,
   from: CanvasNode,
   source: Box,
@@ -143,16 +143,16 @@ function wayPoints(
 ): { readonly path: string; readonly end: Point } {
   const last = points?.at(-1)
   if (points && last) return { path: roundedPath(points, 7), end: last }
-  const ways = from.type === 'leaf' || from.type === 'frame' ? from.data.ways : []
+  const transitions = from.type === 'leaf' || from.type === 'frame' ? from.data.transitions : []
   const index = Math.max(
     0,
-    ways.findIndex((way) => way.outcome === outcome),
+    transitions.findIndex((transition) => transition.outcome === outcome),
   )
   const entry = to && 'entryY' in to.data ? Number(to.data['entryY']) : target.height / 2
   const end = { x: target.x, y: target.y + entry }
   const [path] = getSmoothStepPath({
     sourceX: source.x + source.width,
-    sourceY: source.y + portY(source.height, ways.length, index),
+    sourceY: source.y + portY(source.height, transitions.length, index),
     targetX: end.x,
     targetY: end.y,
     sourcePosition: Position.Right,

@@ -52,8 +52,8 @@ export function TemplateInput(props: TemplateInputProps) {
         index: 0,
       })
     } else if (options && !next.includes('${')) {
-      const wanted = next.trim().toLowerCase()
-      const fitting = next === value ? options : options.filter((option) => option.toLowerCase().includes(wanted))
+      const query = next.trim().toLowerCase()
+      const fitting = next === value ? options : options.filter((option) => option.toLowerCase().includes(query))
       setOffer(
         fitting.length > 0
           ? { items: fitting.slice(0, MOST).map((option) => ({ text: option, detail: '' })), index: -1 }

@@ -98,7 +98,7 @@ export async function remove(): Promise<void> {
   if (arrow) {
     const [machine = '', source = '', outcome = ''] = arrow.split('|')
     setEditor({ arrow: undefined })
-    await perform(`Disconnect ${outcome}`, [clearWay(`${machine}/${source}`, outcome)])
+    await perform(`Disconnect ${outcome}`, [disconnection(`${machine}/${source}`, outcome)])
     return
   }
   const paths = own(outermost(), 'Delete')
@@ -110,7 +110,7 @@ export async function remove(): Promise<void> {
   if (next && next !== editor().scope && nodeOf(rootOf(editor()), next)) choose([next])
 }
 
-function clearWay(path: string, outcome: string): Edit {
+function disconnection(path: string, outcome: string): Edit {
   const node = nodeOf(rootOf(editor()), path)
   if (node && !node.outcomes.includes(outcome)) {
     if (outcome === 'error') return setField(path, 'on_error', null)
@@ -230,7 +230,7 @@ export async function connect(path: string, outcome: string, target: string): Pr
 }
 
 export async function disconnect(path: string, outcome: string): Promise<void> {
-  await perform(`Disconnect ${outcome}`, [clearWay(path, outcome)])
+  await perform(`Disconnect ${outcome}`, [disconnection(path, outcome)])
 }
 
 export async function autoConnect(): Promise<void> {

@@ -98,13 +98,13 @@ export function itemIcon(kind: string, size = 16) {
 
 /** The state that goes to a named entry, with the entry as its target. */
 export function entryAddition(entry: EntryName, catalogue: CatalogueBody): Addition | undefined {
-  const wanted: Record<string, string> = {
+  const stateNames: Record<string, string> = {
     joints: 'motion.MoveJoints',
     pose: 'motion.MoveLinear',
     dmp: 'motion.FollowJointDmp',
     cart_dmp: 'motion.FollowCartDmp',
   }
-  const state = catalogue.states.find((each) => each.name === wanted[entry.kind])
+  const state = catalogue.states.find((each) => each.name === stateNames[entry.kind])
   if (!state) return undefined
   const parameter = state.parameters.find(
     (key) =>

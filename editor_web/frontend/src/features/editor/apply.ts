@@ -62,10 +62,10 @@ async function performNow(
     // What was typed, or came from the disk, while the server was asked is edited in its turn.
     while (editor().id === id) {
       const before = draftOf(editor())
-      const wanted = typeof edits === 'function' ? edits() : edits
-      if (wanted.length === 0) return undefined
-      const isLayout = areOfLayout(wanted) && before.isChecked
-      const answer = await documents.edit(id, before.text, wanted, { check: !isLayout, graph: before.hash || null })
+      const next = typeof edits === 'function' ? edits() : edits
+      if (next.length === 0) return undefined
+      const isLayout = areOfLayout(next) && before.isChecked
+      const answer = await documents.edit(id, before.text, next, { check: !isLayout, graph: before.hash || null })
       if (editor().id !== id) break
       if (draftOf(editor()).text !== before.text) continue
       if (answer.refused) {
@@ -141,14 +141,14 @@ export function draftFrom(answer: Read, text: string, before: Draft | undefined)
   }
 }
 
-let looking: Promise<void> | undefined
+let checking: Promise<void> | undefined
 
 /** Ask what is wrong with the present text, until that is known; edits go on meanwhile. */
 export function lookForFindings(): Promise<void> {
-  looking ??= Promise.resolve()
+  checking ??= Promise.resolve()
     .then(look)
     .catch((error: unknown) => showEditorRefusal('Check', ...reasonOf(error)))
-  return looking
+  return checking
 }
 
 async function look(): Promise<void> {
@@ -166,7 +166,7 @@ async function look(): Promise<void> {
     }
   } finally {
     // At once, not a turn later: a text that comes in between would wait for a look that is over.
-    looking = undefined
+    checking = undefined
     lookForTargets()
     void lookForNames()
   }

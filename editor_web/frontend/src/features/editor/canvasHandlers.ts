@@ -7,7 +7,7 @@ import type { CanvasEdge, CanvasNode } from './elements'
 import { setEditor } from './store'
 
 export function onEdgeClick(_event: unknown, edge: CanvasEdge): void {
-  if (edge.type === 'way') chooseArrow(edge.id)
+  if (edge.type === 'transition') chooseArrow(edge.id)
 }
 
 export function onNodeClick(): void {

@@ -38,11 +38,11 @@ export function forgetDataFlow(): void {
 }
 
 /** Keep the data flow in step with the draft for as long as `isWanted`. */
-export function useFreshDataFlow(isWanted: boolean): void {
+export function useFreshDataFlow(isNeeded: boolean): void {
   const id = useEditor((s) => s.id)
   const text = useEditor((s) => draftOf(s).text)
   useEffect(() => {
-    if (!isWanted || useDataFlow.getState().of === `${id} ${text}`) return
+    if (!isNeeded || useDataFlow.getState().of === `${id} ${text}`) return
     let isCurrent = true
     const timer = setTimeout(() => {
       relations.dataFlow(id, text).then(
@@ -54,7 +54,7 @@ export function useFreshDataFlow(isWanted: boolean): void {
       isCurrent = false
       clearTimeout(timer)
     }
-  }, [isWanted, id, text])
+  }, [isNeeded, id, text])
 }
 
 /** Go to where a node says what it reads or writes, and put the keyboard there; to the declarations where it is the behavior. */

@@ -20,7 +20,7 @@ import { kindLabel } from '../../document/tree'
 
 export interface CardData extends Record<string, unknown> {
   readonly node: EditNode
-  readonly ways: readonly OutgoingTransition[]
+  readonly transitions: readonly OutgoingTransition[]
   /** Ways that an arrow is drawn for; the others say where they lead. */
   readonly drawn: ReadonlySet<string>
   readonly isInitial: boolean
@@ -38,7 +38,7 @@ export type RulesNode = Node<{ node: EditNode }, 'rules'>
 export type CanvasNode = CardNode | PillNode | RulesNode
 export type TransitionEdge = Edge<
   { points: readonly Point[] | undefined; outcome: string; machine: string; isQuiet: boolean },
-  'way'
+  'transition'
 >
 export type BranchEdge = Edge<Record<string, unknown>, 'branch'>
 export type CanvasEdge = TransitionEdge | BranchEdge
@@ -105,7 +105,7 @@ function card(node: EditNode, around: Surroundings | undefined, { scope, arrange
   const box = arrangement.boxes.get(node.path)
   if (!box || !around) return []
   const { parent, frame, ends } = around
-  const ways = outgoingTransitions(parent, node)
+  const transitions = outgoingTransitions(parent, node)
   const isTwig = isTreePart(node.kind) && node.kind !== 'tree'
   const isShown = isOpen(node.path) && isFrame(node)
   const isInTree = isTreePart(parent.kind)
@@ -115,23 +115,23 @@ function card(node: EditNode, around: Surroundings | undefined, { scope, arrange
       type: isTwig ? 'twig' : isShown ? 'frame' : 'leaf',
       position: { x: box.x, y: box.y },
       ...sized(box),
-      handles: isTwig || isInTree ? twigHandles(box) : wayHandles(box, ways),
+      handles: isTwig || isInTree ? twigHandles(box) : transitionHandles(box, transitions),
       ...(frame === scope ? {} : { parentId: frame.path }),
       draggable: !around.isForeign,
       data: {
         node,
-        ways,
+        transitions,
         drawn: new Set(
-          ways.filter((way) => way.target !== undefined && ends.has(way.target)).map((way) => way.outcome),
+          transitions.filter((each) => each.target !== undefined && ends.has(each.target)).map((each) => each.outcome),
         ),
         isInitial: isMachine(parent.kind) && parent.initial === node.name,
         isOpen: isTwig ? isOpen(node.path) : isShown,
         isForeign: around.isForeign,
         isInTree,
         count: countInside(node),
-        entryY: entryY(box.height, ways.length),
+        entryY: entryY(box.height, transitions.length),
       },
-      ariaLabel: spoken(node, ways),
+      ariaLabel: spoken(node, transitions),
       sourcePosition: Position.Right,
       targetPosition: Position.Left,
     },
@@ -144,17 +144,17 @@ function sized({ width, height }: Box): Pick<CanvasNode, 'width' | 'height' | 'm
 }
 
 /** Where ports are in the node, as its styles put them. */
-function wayHandles(box: Box, ways: readonly OutgoingTransition[]): NodeHandle[] {
-  const outs = ways.map(({ outcome }, row): NodeHandle => ({
+function transitionHandles(box: Box, transitions: readonly OutgoingTransition[]): NodeHandle[] {
+  const outs = transitions.map(({ outcome }, row): NodeHandle => ({
     id: outcome,
     type: 'source',
     position: Position.Right,
     x: box.width - PORT / 2 - 0.5,
-    y: portY(box.height, ways.length, row) - PORT / 2,
+    y: portY(box.height, transitions.length, row) - PORT / 2,
     width: PORT,
     height: PORT,
   }))
-  return [inHandle(entryY(box.height, ways.length)), ...outs]
+  return [inHandle(entryY(box.height, transitions.length)), ...outs]
 }
 
 function inHandle(y: number): NodeHandle {
@@ -169,8 +169,8 @@ function twigHandles({ width, height }: Box): NodeHandle[] {
   ]
 }
 
-function spoken(node: EditNode, ways: readonly OutgoingTransition[]): string {
-  const leads = ways.map((way) => `${way.outcome} ${way.target === undefined ? 'not connected' : `to ${way.target}`}`)
+function spoken(node: EditNode, transitions: readonly OutgoingTransition[]): string {
+  const leads = transitions.map((each) => `${each.outcome} ${each.target === undefined ? 'not connected' : `to ${each.target}`}`)
   const inside = node.children.length > 0 ? `, ${countInside(node)} nodes inside` : ''
   return `${kindLabel(node.kind)} ${node.name}${node.title ? `, runs ${node.title}` : ''}${inside}${leads.length > 0 ? `; ${leads.join(', ')}` : ''}`
 }
@@ -206,11 +206,11 @@ export function canvasEdges(input: DrawnInput, selection: readonly string[]): re
   const open = [scope, ...drawnNodes(scope, isOpen).filter((node) => isOpen(node.path))]
   const chosen = new Set(selection)
   return open.flatMap((node): readonly CanvasEdge[] =>
-    isMachine(node.kind) ? ways(node, input, chosen) : isTreePart(node.kind) ? branches(node) : [],
+    isMachine(node.kind) ? transitionEdges(node, input, chosen) : isTreePart(node.kind) ? branches(node) : [],
   )
 }
 
-function ways(machine: EditNode, { arrangement, declared }: DrawnInput, chosen: ReadonlySet<string>): TransitionEdge[] {
+function transitionEdges(machine: EditNode, { arrangement, declared }: DrawnInput, chosen: ReadonlySet<string>): TransitionEdge[] {
   const paths = new Map(machine.children.map((child) => [child.name, child.path]))
   const { drawn, gathered } = pillsOf(machine, declared(machine))
   return machine.transitions.flatMap((t) => {
@@ -223,7 +223,7 @@ function ways(machine: EditNode, { arrangement, declared }: DrawnInput, chosen: 
     return [
       {
         id,
-        type: 'way' as const,
+        type: 'transition' as const,
         source,
         target,
         sourceHandle: t.outcome,

@@ -13,13 +13,13 @@ const NONE: readonly Fix[] = []
 const useFixes = create<{ readonly of: string; readonly found: readonly FixesBody[] }>(() => ({ of: '', found: [] }))
 
 /** Keep the fixes in step with the draft for as long as somebody looks; those of an earlier text fit where their finding still stands. */
-export function useFreshFixes(isWanted = true): readonly FixesBody[] {
+export function useFreshFixes(isShown = true): readonly FixesBody[] {
   const id = useEditor((s) => s.id)
   const text = useEditor((s) => draftOf(s).text)
   const findings = useEditor((s) => draftOf(s).findings)
   // Who may look only can make none, and may not ask.
   const mayEdit = useLive((s) => s.role === 'operator')
-  const isNeeded = isWanted && mayEdit && findings.length > 0
+  const isNeeded = isShown && mayEdit && findings.length > 0
   useEffect(() => {
     const of = `${id} ${text}`
     if (!isNeeded || useFixes.getState().of === of) return

@@ -81,7 +81,7 @@ function pickable(path: string, onPick: PartProps['onPick']) {
 
 export function Frame({ node, box, palette, mark, onPick }: PartProps) {
   const { node: of } = (node as CardNode).data
-  const ways = (node as CardNode).data.ways
+  const transitions = (node as CardNode).data.transitions
   return (
     <g {...pickable(node.id, onPick)}>
       <rect
@@ -108,10 +108,10 @@ export function Frame({ node, box, palette, mark, onPick }: PartProps) {
         <Rules
           node={of}
           palette={palette}
-          box={{ ...box, y: box.y + box.height - rowsHeight(ways.length) - tableHeight(of) }}
+          box={{ ...box, y: box.y + box.height - rowsHeight(transitions.length) - tableHeight(of) }}
         />
       )}
-      <Ways node={node as CardNode} box={box} palette={palette} />
+      <Transitions node={node as CardNode} box={box} palette={palette} />
       <Initial node={node as CardNode} box={box} palette={palette} />
       <Sign mark={mark} box={box} palette={palette} />
     </g>
@@ -119,7 +119,7 @@ export function Frame({ node, box, palette, mark, onPick }: PartProps) {
 }
 
 export function Leaf({ node, box, palette, mark, onPick }: PartProps) {
-  const { node: of, ways, count } = (node as CardNode).data
+  const { node: of, transitions, count } = (node as CardNode).data
   const below = of.title || (count === 0 ? `${kindLabel(of.kind)}, empty` : `${kindLabel(of.kind)} of ${count}`)
   return (
     <g {...pickable(node.id, onPick)}>
@@ -143,32 +143,32 @@ export function Leaf({ node, box, palette, mark, onPick }: PartProps) {
       <text x={box.x + 13} y={box.y + 37} style={{ fontFamily: MONO, fontSize: 11, fill: palette.quiet }}>
         {fitted(below, (box.width - 22) / 6.7)}
       </text>
-      {ways.length > 0 && (
+      {transitions.length > 0 && (
         <line
           x1={box.x}
           x2={box.x + box.width}
-          y1={box.y + box.height - rowsHeight(ways.length)}
-          y2={box.y + box.height - rowsHeight(ways.length)}
+          y1={box.y + box.height - rowsHeight(transitions.length)}
+          y2={box.y + box.height - rowsHeight(transitions.length)}
           style={{ stroke: palette.line, strokeWidth: 0.7 }}
         />
       )}
-      <Ways node={node as CardNode} box={box} palette={palette} />
+      <Transitions node={node as CardNode} box={box} palette={palette} />
       <Initial node={node as CardNode} box={box} palette={palette} />
       <Sign mark={mark} box={box} palette={palette} />
     </g>
   )
 }
 
-function Ways({ node, box, palette }: { node: CardNode; box: Box; palette: Palette }) {
-  const { ways, drawn } = node.data
-  return ways.map((way, index) => {
-    const y = box.y + portY(box.height, ways.length, index)
+function Transitions({ node, box, palette }: { node: CardNode; box: Box; palette: Palette }) {
+  const { transitions, drawn } = node.data
+  return transitions.map((transition, index) => {
+    const y = box.y + portY(box.height, transitions.length, index)
     const words =
-      way.target === undefined || drawn.has(way.outcome) || way.target === way.outcome
-        ? way.outcome
-        : `${way.outcome} → ${way.target}`
+      transition.target === undefined || drawn.has(transition.outcome) || transition.target === transition.outcome
+        ? transition.outcome
+        : `${transition.outcome} → ${transition.target}`
     return (
-      <g key={way.outcome}>
+      <g key={transition.outcome}>
         <text
           x={box.x + box.width - 13}
           y={y + 4}
@@ -176,7 +176,7 @@ function Ways({ node, box, palette }: { node: CardNode; box: Box; palette: Palet
             fontFamily: SANS,
             fontSize: 12,
             textAnchor: 'end',
-            fill: way.target === undefined ? palette.failed : palette.text,
+            fill: transition.target === undefined ? palette.failed : palette.text,
           }}
         >
           {fitted(words, (box.width - 26) / 6.2)}
@@ -185,7 +185,7 @@ function Ways({ node, box, palette }: { node: CardNode; box: Box; palette: Palet
           cx={box.x + box.width}
           cy={y}
           r={4.5}
-          style={{ fill: way.target === undefined ? palette.failed : palette.edge }}
+          style={{ fill: transition.target === undefined ? palette.failed : palette.edge }}
         />
       </g>
     )

@@ -37,8 +37,8 @@ async function look(): Promise<void> {
   if (areTargetsKnown || !id || level === 'off' || !(await mayAsk())) return
   try {
     const answer = await documents.targets(id, text, PAGE)
-    const isWanted = editor().id === id && draftOf(editor()).text === text && useTargets.getState().level === level
-    if (answer.dropped || !isWanted) return
+    const isCurrent = editor().id === id && draftOf(editor()).text === text && useTargets.getState().level === level
+    if (answer.dropped || !isCurrent) return
     useTargets.setState({ problem: answer.problem })
     take(answer.findings.map((each): FindingView => ({ ...each, severity: level })), true)
   } catch (error) {

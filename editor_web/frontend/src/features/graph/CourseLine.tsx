@@ -8,7 +8,7 @@ import type { CourseEdge } from './elements'
 export const CourseLine = memo(function CourseLine({ data }: EdgeProps<CourseEdge>) {
   const course = data?.course
   const [, source = '', outcome = ''] = (course?.id ?? '').split('|')
-  const taken = useNodePart(course?.machine ?? '', (live) => live?.followed === `${source}|${outcome}`)
+  const taken = useNodePart(course?.machine ?? '', (live) => live?.last_transition === `${source}|${outcome}`)
   if (!course) return null
   const state = `${taken ? ' is-taken' : ''}${/fail|error|abort/.test(course.outcome) ? ' is-failure' : ''}`
   return (

@@ -82,14 +82,14 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
 
 /** The ways out that are written here instead of drawn; the one that was taken is lit. */
 function Exits({ data }: { data: StepNode['data'] }) {
-  const followed = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.followed : undefined))
+  const lastTransition = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.last_transition : undefined))
   if (data.exits.length === 0) return null
   return (
     <div className="exits">
       {data.exits.map(({ outcome, target }) => (
         <span
           key={outcome}
-          className={`exit${followed === `${data.node.name}|${outcome}` ? ' is-taken' : ''}`}
+          className={`exit${lastTransition === `${data.node.name}|${outcome}` ? ' is-taken' : ''}`}
           title={`${outcome} ends the machine with ${target}`}
         >
           <IconLogout size={11} aria-hidden />

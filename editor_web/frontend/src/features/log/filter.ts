@@ -15,11 +15,11 @@ export interface Filter {
 /** The lines that pass, in order. */
 export function passing(lines: readonly LogLine[], filter: Filter): readonly LogLine[] {
   const least = RANK[filter.level] ?? 0
-  const wanted = filter.text.trim().toLowerCase()
+  const query = filter.text.trim().toLowerCase()
   return lines.filter(
     (line) =>
       (RANK[line.level] ?? 1) >= least &&
       (filter.path === '' || line.path === filter.path || line.path.startsWith(`${filter.path}/`)) &&
-      (wanted === '' || `${line.path} ${line.text} ${line.kind}`.toLowerCase().includes(wanted)),
+      (query === '' || `${line.path} ${line.text} ${line.kind}`.toLowerCase().includes(query)),
   )
 }

@@ -56,18 +56,18 @@ export function useStart(behavior: BehaviorView, onStarted: () => void) {
       }
       const { run } = await api.start(body, newKey())
       onStarted()
-      if (supervision.operates) await attend(run)
+      if (supervision.operates) await superviseRun(run)
     } catch (error) {
-      const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
-      const name = fields.find((f) => said.where === f.name || said.where.endsWith(`.${f.name}`))?.name
-      if (name) setProblems({ [name]: said.hint ? `${said.message} (${said.hint})` : said.message })
-      else showRefusal('Start', said.message, said.hint)
+      const answer = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
+      const name = fields.find((f) => answer.where === f.name || answer.where.endsWith(`.${f.name}`))?.name
+      if (name) setProblems({ [name]: answer.hint ? `${answer.message} (${answer.hint})` : answer.message })
+      else showRefusal('Start', answer.message, answer.hint)
       void loadCellConnection()
     }
   }
 
   /** Be its operator before its first node is entered, or it would ask nobody for the first outcomes. */
-  async function attend(run: string): Promise<void> {
+  async function superviseRun(run: string): Promise<void> {
     operate(run)
     if (supervision.startsPaused) return
     await attached(run)

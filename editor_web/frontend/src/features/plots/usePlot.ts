@@ -65,12 +65,12 @@ export function usePlot(isShown: boolean): Plot {
     goOn: () => setFrozen(undefined),
     panTo: (endS) => {
       const { curves } = freeze()
-      const newest = curves.length > 0 ? curves.time(curves.length - 1) : endS
+      const latest = curves.length > 0 ? curves.time(curves.length - 1) : endS
       const oldest = curves.length > 0 ? curves.time(0) : endS
-      setFrozen({ curves, endS: Math.min(newest, Math.max(oldest + Math.min(spanS, newest - oldest), endS)) })
+      setFrozen({ curves, endS: Math.min(latest, Math.max(oldest + Math.min(spanS, latest - oldest), endS)) })
     },
     spanS,
-    zoom: (wanted) => setSpanS(Math.min(120, Math.max(1, wanted))),
+    zoom: (chosenS) => setSpanS(Math.min(120, Math.max(1, chosenS))),
     revision,
     dropped,
   }

@@ -30,7 +30,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   const course = useEntryTrace(shown.kind, shown.name, isHere ? arm : '')
   useGhost(shown, isOpen && isHere ? arm : '')
   const close = useReturn(shown.by, onClose)
-  const said = obstacle(shown, arms, arm, isOpen) || course.problem || course.trace?.remark || ''
+  const message = obstacle(shown, arms, arm, isOpen) || course.problem || course.trace?.remark || ''
   const title = shown.name || 'No entry'
   const body = (
     <>
@@ -45,8 +45,8 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
       </header>
       <div className="preview-view">{view}</div>
       <div className="preview-words">
-        <p role="status" className={said ? 'preview-problem' : 'visually-hidden'}>
-          {said || (course.trace && `${arm} is shown at ${shown.name}`)}
+        <p role="status" className={message ? 'preview-problem' : 'visually-hidden'}>
+          {message || (course.trace && `${arm} is shown at ${shown.name}`)}
         </p>
         <EntryFacts course={course} />
       </div>

@@ -1,4 +1,4 @@
-/** Which arms wait because their way is blocked: by what, and for how long. */
+/** Which arms wait because their path is blocked: by what, and for how long. */
 import { IconBarrierBlock } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
@@ -11,11 +11,11 @@ export function BlockedPaths() {
     <div aria-live="polite" className="blocked-area">
       {blocked.length > 0 && (
         <ul className="plain-list" aria-label="Arms with a blocked path">
-          {blocked.map(({ robot, way }) => (
+          {blocked.map(({ robot, path }) => (
             <li key={robot} className="blocked-way">
               <IconBarrierBlock size={18} aria-hidden />
               <span>
-                <strong>{robot}</strong> waits: {way.reason || 'its way is blocked'}, since <Since sinceS={way.since_s} />
+                <strong>{robot}</strong> waits: {path.reason || 'its path is blocked'}, since <Since sinceS={path.since_s} />
               </span>
             </li>
           ))}

@@ -1,4 +1,4 @@
-/** The arms of the cell, those whose way is blocked, and a cell that is lost. */
+/** The arms of the cell, those whose path is blocked, and a cell that is lost. */
 import { fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { expect, it } from 'vitest'
 import { live, robot, server, show, snapshot } from '../../../testing/page'
@@ -71,8 +71,8 @@ it('lets a viewer, and a page without a server, change nothing', () => {
 })
 
 it('says for what an arm waits and since when; another reason is the same wait', () => {
-  const blocked = (reason: string) => told({ way: { state: 'blocked', reason, length_m: 1, since_s: 940 } })
-  const socket = live({ robots: { left: robot({ way: { state: 'moving', reason: '', length_m: 1, since_s: 0 } }) } })
+  const blocked = (reason: string) => told({ path: { state: 'blocked', reason, length_m: 1, since_s: 940 } })
+  const socket = live({ robots: { left: robot({ path: { state: 'moving', reason: '', length_m: 1, since_s: 0 } }) } })
   show(<BlockedPaths />)
   expect(screen.queryByRole('list')).toBeNull()
   socket.tell(blocked('left/fore would touch anna/hand'))

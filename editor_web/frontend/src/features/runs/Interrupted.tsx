@@ -43,8 +43,8 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
     } catch (error) {
       const asked = error instanceof ServerError ? error.questions : []
       setQuestions(asked.length > 0 ? asked : questions)
-      const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
-      setProblem(asked.length > 0 ? undefined : said)
+      const answer = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
+      setProblem(asked.length > 0 ? undefined : answer)
     } finally {
       setSent(false)
     }

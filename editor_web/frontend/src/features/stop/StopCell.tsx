@@ -36,14 +36,14 @@ export function StopCell() {
           Stop<span className="stop-rest"> the cell</span>
         </span>
       </button>
-      <StopNews />
+      <StopMessage />
     </section>,
     top,
   )
 }
 
 /** The area is there before anything is said in it, or it would not be read out. */
-function StopNews() {
+function StopMessage() {
   const stop = useStop((s) => s.stop)
   const report = stop && reportOf(stop)
   const isDone = report?.level === 'done'

@@ -110,8 +110,8 @@ function Differences({ things, fits }: { readonly things: readonly Compared[]; r
 
 /** Of a motion and a place it is the end of the motion that counts. */
 function differencesOf(before: Trace, after: Trace): readonly string[] {
-  const isWay = before.poses.length > 1 && after.poses.length > 1
-  return isWay ? changesOf(before, after) : changesOf(endOf(before), endOf(after))
+  const isMotion = before.poses.length > 1 && after.poses.length > 1
+  return isMotion ? changesOf(before, after) : changesOf(endOf(before), endOf(after))
 }
 
 function traceOf(fit: PrimitiveComparison | undefined): Trace | undefined {

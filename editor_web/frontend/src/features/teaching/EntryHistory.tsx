@@ -59,19 +59,19 @@ function Was({ arm, entry, revision }: WasProps) {
   const [before, after] = [fits.then, fits.now].map((fit) => fit?.demonstration ?? fit?.primitive ?? undefined)
   const joints = before?.joints.at(-1)
   const pose = before?.poses.at(-1)
-  const isWay = (before?.poses.length ?? 0) > 1
+  const isMotion = (before?.poses.length ?? 0) > 1
   return (
     <div className="was" role="group" aria-label={`Revision ${revision} of ${name}`}>
       <dl className="facts">
         {joints && (
           <>
-            <dt>{isWay ? 'Ends at joints' : 'Joints'}</dt>
+            <dt>{isMotion ? 'Ends at joints' : 'Joints'}</dt>
             <dd className="mono">{joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  ')}</dd>
           </>
         )}
         {pose && (
           <>
-            <dt>{isWay ? 'Ends at pose' : 'Pose'}</dt>
+            <dt>{isMotion ? 'Ends at pose' : 'Pose'}</dt>
             <dd className="mono">{poseWords(pose)}</dd>
           </>
         )}

@@ -46,17 +46,17 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   const [withPad, setWithPad] = useState(false)
   const isPadThere = usePadJog({ isOn: withPad, jog, space, share: share / 100, joints: arm.joint_names.length, obstacle })
 
-  function press(axis: number, way: 1 | -1): void {
+  function press(axis: number, direction: 1 | -1): void {
     if (obstacle !== undefined) return
     if (!isStepping) {
-      const velocity = jogVelocity(space, axis, (way * share) / 100, arm.joint_names.length)
-      jog.hold(`${rows[axis]?.name ?? ''}${way}`, () => velocity)
+      const velocity = jogVelocity(space, axis, (direction * share) / 100, arm.joint_names.length)
+      jog.hold(`${rows[axis]?.name ?? ''}${direction}`, () => velocity)
       return
     }
-    const turn_rad = (way * Number(stepDeg) * Math.PI) / 180
+    const turn_rad = (direction * Number(stepDeg) * Math.PI) / 180
     if (space === 'tool') {
       const speed_m_s = Math.max(0.005, (0.25 * share) / 100)
-      steps.send(`${arm.name}/step_tool`, { ...toolStep(axis, (way * Number(stepMm)) / 1000, turn_rad), frame, speed_m_s })
+      steps.send(`${arm.name}/step_tool`, { ...toolStep(axis, (direction * Number(stepMm)) / 1000, turn_rad), frame, speed_m_s })
     } else {
       const step_rad = arm.joint_names.map((_, at) => (at === axis ? turn_rad : 0))
       steps.send(`${arm.name}/step_joints`, { step_rad, speed: Math.max(0.01, (JOINT_STEP_SPEED * share) / 100) })
@@ -86,11 +86,11 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
       <ul className={`plain-list jog-rows is-${space}`} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
         {rows.map((row, axis) => (
           <li key={row.name} className="jog-row">
-            <JogKey row={row} axis={axis} way={-1} jog={jog} press={press} obstacle={obstacle} />
+            <JogKey row={row} axis={axis} direction={-1} jog={jog} press={press} obstacle={obstacle} />
             <span className="jog-name">{row.name}</span>
             <span className="jog-value">{row.value}</span>
             {space === 'joints' && <LimitBar share={row.share ?? 0.5} words={row.limits} />}
-            <JogKey row={row} axis={axis} way={1} jog={jog} press={press} obstacle={obstacle} />
+            <JogKey row={row} axis={axis} direction={1} jog={jog} press={press} obstacle={obstacle} />
           </li>
         ))}
       </ul>
@@ -102,7 +102,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
           const pressed = jogKey(space, event.key, event.shiftKey, rows.length)
           if (!pressed) return
           event.preventDefault()
-          if (!event.repeat) press(pressed.axis, pressed.way)
+          if (!event.repeat) press(pressed.axis, pressed.direction)
         }}
         onKeyUp={jog.letGo}
         onBlur={jog.letGo}
@@ -180,20 +180,20 @@ function LimitBar({ share, words }: { readonly share: number; readonly words: st
 interface JogKeyProps {
   readonly row: Row
   readonly axis: number
-  readonly way: 1 | -1
+  readonly direction: 1 | -1
   readonly jog: ReturnType<typeof useJog>
-  readonly press: (axis: number, way: 1 | -1) => void
+  readonly press: (axis: number, direction: 1 | -1) => void
   readonly obstacle: string | undefined
 }
 
-function JogKey({ row, axis, way, jog, press, obstacle }: JogKeyProps) {
-  const Icon = way > 0 ? IconPlus : IconMinus
+function JogKey({ row, axis, direction, jog, press, obstacle }: JogKeyProps) {
+  const Icon = direction > 0 ? IconPlus : IconMinus
   return (
     <HoldButton
-      label={`${row.name} ${way > 0 ? 'plus' : 'minus'}`}
-      isHeld={jog.held === `${row.name}${way}`}
+      label={`${row.name} ${direction > 0 ? 'plus' : 'minus'}`}
+      isHeld={jog.held === `${row.name}${direction}`}
       obstacle={obstacle}
-      onHold={() => press(axis, way)}
+      onHold={() => press(axis, direction)}
       onLetGo={jog.letGo}
     >
       <Icon size={16} aria-hidden />

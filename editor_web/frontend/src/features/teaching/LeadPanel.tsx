@@ -69,9 +69,9 @@ function PushPad({ arm, obstacle, onProblem }: { readonly arm: string; readonly 
     setHeld('')
   }
 
-  function hold(name: string, way: readonly number[]): void {
+  function hold(name: string, direction: readonly number[]): void {
     letGo()
-    const [x = 0, y = 0, z = 0] = way
+    const [x = 0, y = 0, z = 0] = direction
     const push = () =>
       void teach.push({ arm, force_n: [x * force_n, y * force_n, z * force_n], duration_s: PUSH_S }).then(
         () => onProblem(''),

@@ -19,7 +19,7 @@ interface PlayBackProps {
 export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
   const [stage, setStage] = useState<'idle' | 'asks' | 'moves'>('idle')
   const [percent, setPercent] = useState(10)
-  const [said, setSaid] = useState('')
+  const [message, setMessage] = useState('')
   const under = useRef<AbortController>(undefined)
   const off = useDisabledReason()
 
@@ -29,12 +29,12 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
     const control = new AbortController()
     under.current = control
     setStage('moves')
-    setSaid(`${arm} goes along ${words}`)
+    setMessage(`${arm} goes along ${words}`)
     teach
       .play({ arm, speed: percent / 100, revision: 0, ...what }, control.signal)
       .then(
-        (played) => setSaid(played.status === 'succeeded' ? `${arm} has gone along ${words}` : played.cause),
-        (error: unknown) => setSaid(control.signal.aborted ? 'Stopped' : wordsOf(error)),
+        (played) => setMessage(played.status === 'succeeded' ? `${arm} has gone along ${words}` : played.cause),
+        (error: unknown) => setMessage(control.signal.aborted ? 'Stopped' : wordsOf(error)),
       )
       .finally(() => {
         setStage('idle')
@@ -60,7 +60,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
           obstacle={off}
           onPress={() => {
             onLook()
-            setSaid('')
+            setMessage('')
             setStage('asks')
           }}
         />
@@ -79,7 +79,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
       )}
       {stage === 'moves' && <CommandButton label="Stop (Escape)" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} onPress={stop} />}
       <span className="quiet" role="status" aria-label="Play-back">
-        {said}
+        {message}
       </span>
     </div>
   )

@@ -22,7 +22,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
   const [form, setForm] = useState<Form>(capture.form)
   const [tags, setTags] = useState('')
   const [reason, setReason] = useState('')
-  const [said, setSaid] = useState('')
+  const [message, setMessage] = useState('')
   const [problem, setProblem] = useState('')
   const off = useDisabledReason()
   const fault = nameFault(name)
@@ -32,13 +32,13 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
   const obstacle = off ?? (fault || wrongTags || undefined)
 
   function save(): void {
-    setSaid('')
+    setMessage('')
     teach
       .save({ id: capture.id, name, form, tags: tagsOf(tags), replace: present.exists, by: 'the dashboard', reason })
       .then(
         () => {
           setProblem('')
-          setSaid(`Saved as ${form} ${name}.`)
+          setMessage(`Saved as ${form} ${name}.`)
           setName('')
         },
         (error: unknown) => setProblem(wordsOf(error)),
@@ -78,7 +78,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
       <div className="command-row">
         <CommandButton label={present.exists ? 'Overwrite' : 'Save'} tone={present.exists ? 'danger' : 'strong'} icon={<IconDeviceFloppy size={15} aria-hidden />} obstacle={obstacle} onPress={save} />
         <span className="quiet" role="status" aria-label="Saving">
-          {said}
+          {message}
         </span>
       </div>
       {problem && (

@@ -121,7 +121,7 @@ function TriggerText() {
   const [kept, setKept] = useState<TriggerDocument>()
   const [text, setText] = useState('')
   const [problem, setProblem] = useState('')
-  const [said, setSaid] = useState('')
+  const [message, setMessage] = useState('')
   const off = useDisabledReason()
 
   useEffect(() => {
@@ -138,11 +138,11 @@ function TriggerText() {
     teach.writeDocument(text).then(
       () => {
         setProblem('')
-        setSaid('Saved, and in force.')
+        setMessage('Saved, and in force.')
         setKept(kept && { ...kept, text })
       },
       (error: unknown) => {
-        setSaid('')
+        setMessage('')
         setProblem(placed(error))
       },
     )
@@ -154,7 +154,7 @@ function TriggerText() {
       <div className="command-row">
         <CommandButton label="Save the YAML" tone="strong" obstacle={off ?? (text === kept?.text ? 'nothing is changed' : undefined)} onPress={save} />
         <span className="quiet" role="status" aria-label="Saving the triggers">
-          {said}
+          {message}
         </span>
       </div>
       {problem && (

@@ -1,7 +1,7 @@
 /** Which keys jog what. */
 import type { Space } from '../../document/teaching'
 
-const TOOL_KEYS: Readonly<Record<string, readonly [axis: number, way: 1 | -1]>> = {
+const TOOL_KEYS: Readonly<Record<string, readonly [axis: number, direction: 1 | -1]>> = {
   ArrowUp: [0, 1],
   ArrowDown: [0, -1],
   ArrowLeft: [1, 1],
@@ -14,14 +14,14 @@ const SHIFTED = ['!', '@', '#', '$', '%', '^', '&']
 
 export interface JogKey {
   readonly axis: number
-  readonly way: 1 | -1
+  readonly direction: 1 | -1
 }
 
 export function jogKey(space: Space, key: string, withShift: boolean, rows: number): JogKey | undefined {
   if (space === 'tool') {
     const found = TOOL_KEYS[key]
-    return found && { axis: found[0] + (withShift ? 3 : 0), way: found[1] }
+    return found && { axis: found[0] + (withShift ? 3 : 0), direction: found[1] }
   }
   const digit = /^[1-9]$/.test(key) ? Number(key) - 1 : SHIFTED.indexOf(key)
-  return digit >= 0 && digit < rows ? { axis: digit, way: withShift ? -1 : 1 } : undefined
+  return digit >= 0 && digit < rows ? { axis: digit, direction: withShift ? -1 : 1 } : undefined
 }

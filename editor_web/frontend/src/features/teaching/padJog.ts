@@ -32,11 +32,11 @@ export function padVelocity(pad: Pad, space: Space, share: number, joints: numbe
   // Left and up are the positive ways, as they are for the keys.
   const [x = 0, y = 0, x2 = 0, y2 = 0] = Array.from({ length: STICKS }, (_, at) => -beyond(pad.axes[at] ?? 0))
   const first = space === 'tool' ? (isShifted ? 3 : 0) : isShifted ? STICKS : 0
-  const told = space === 'tool' ? [y, x, y2] : [x, y, x2, y2]
+  const sticks = space === 'tool' ? [y, x, y2] : [x, y, x2, y2]
   return Array.from({ length: width }, (_, at) => {
     const full = space === 'tool' && at < 3 ? MOST_M_S : MOST_RAD_S
     // Without the minus of a zero.
-    return (told[at - first] ?? 0) * share * full + 0
+    return (sticks[at - first] ?? 0) * share * full + 0
   })
 }
 

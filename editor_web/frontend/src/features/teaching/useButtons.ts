@@ -1,6 +1,6 @@
 /** Buttons of the keyboard and of gamepads on the bus; everything is let go when the page is left. */
 import { useEffect, useRef } from 'react'
-import { clearTeachRefusal, tellServer, useDisabledReason } from '../../api/teaching'
+import { clearTeachRefusal, sendToServer, useDisabledReason } from '../../api/teaching'
 import { padButtons, useButtonMap } from './buttonMap'
 
 const NOT_TYPED = new Set(['checkbox', 'radio', 'range', 'button'])
@@ -24,7 +24,7 @@ export function useButtons(): void {
     if (!isOn) return
     const held = down.current
 
-    function tell(source: string, button: string, value: boolean): void {
+    function send(source: string, button: string, value: boolean): void {
       const name = `${source}/${button}`
       if (held.has(name) === value) return
       if (value) {
@@ -32,13 +32,13 @@ export function useButtons(): void {
         held.add(name)
       } else held.delete(name)
       useButtonMap.setState({ pressed: new Set(held) })
-      tellServer({ k: 'button', source, button, value })
+      sendToServer({ k: 'button', source, button, value })
     }
 
     function letGo(): void {
       for (const name of [...held]) {
         const [source = '', button = ''] = name.split('/')
-        tell(source, button, false)
+        send(source, button, false)
       }
     }
 
@@ -48,17 +48,17 @@ export function useButtons(): void {
       event.preventDefault()
       // What the key does elsewhere, such as going to another tab, it does not while it is a button.
       event.stopPropagation()
-      if (!event.repeat) tell('keyboard', found.button, event.type === 'keydown')
+      if (!event.repeat) send('keyboard', found.button, event.type === 'keydown')
     }
 
     let frame = 0
     function look(): void {
       // A button is down where it is on any gamepad; one that is gone has let go of everything.
       const down = padButtons(navigator.getGamepads())
-      for (const button of down) tell('gamepad', button, true)
+      for (const button of down) send('gamepad', button, true)
       for (const name of [...held]) {
         const [source = '', button = ''] = name.split('/')
-        if (source === 'gamepad' && !down.has(button)) tell(source, button, false)
+        if (source === 'gamepad' && !down.has(button)) send(source, button, false)
       }
       frame = requestAnimationFrame(look)
     }

@@ -1,6 +1,6 @@
 /** Hold-to-run: an arm goes as long as something is held, and the server hears of it all the while. */
 import { useCallback, useEffect, useRef, useState } from 'react'
-import { clearTeachRefusal, tellServer, useTeach } from '../../api/teaching'
+import { clearTeachRefusal, sendToServer, useTeach } from '../../api/teaching'
 import type { Frame, Space } from '../../document/teaching'
 
 /** Two of these may be lost before the arm's own watchdog brings it to rest. */
@@ -24,7 +24,7 @@ export function useJog(arm: string, space: Space, frame: Frame): Jog {
     if (timer.current === undefined) return
     clearInterval(timer.current)
     timer.current = undefined
-    tellServer({ k: 'rest' })
+    sendToServer({ k: 'rest' })
     setHeld('')
   }, [])
 
@@ -32,10 +32,10 @@ export function useJog(arm: string, space: Space, frame: Frame): Jog {
     (what: string, velocity: () => readonly number[] | undefined) => {
       letGo()
       clearTeachRefusal('jog')
-      tellServer({ k: 'jog', arm, space, frame })
+      sendToServer({ k: 'jog', arm, space, frame })
       const go = () => {
         const now = velocity()
-        if (now) tellServer({ k: 'go', velocity: now })
+        if (now) sendToServer({ k: 'go', velocity: now })
         else letGo()
       }
       timer.current = setInterval(go, REPEAT_MS)

@@ -28,7 +28,7 @@ export function FailureView({ run, onShow }: FailureViewProps) {
   return (
     <Panel title="Failure" tools={failure && subject && <Tools failure={failure} onShow={show} />}>
       {failure && subject ? (
-        <Told failure={failure} onShow={show} />
+        <FailureText failure={failure} onShow={show} />
       ) : (
         <Empty icon={<IconCircleCheck size={26} stroke={1.4} aria-hidden />} title={problem || emptyTitle(run, isOver, failure)}>
           When a run fails, this tab tells where it began, why, and what to do.
@@ -88,7 +88,7 @@ function useFailure(subject: Subject | undefined, isOver: boolean): Found {
   return found
 }
 
-function Told({ failure, onShow: show }: { failure: RunFailure; onShow: (at: At) => void }) {
+function FailureText({ failure, onShow: show }: { failure: RunFailure; onShow: (at: At) => void }) {
   const { links, steps, around, hint, path } = failure
   return (
     <div className="failure" tabIndex={0} role="region" aria-label="How the run failed">

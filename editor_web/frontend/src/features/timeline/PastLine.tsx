@@ -16,7 +16,7 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
   const subject = useSubject(run)
   const timeS = useTimeline((s) => s.timeS)
   const problem = useTimeline((s) => s.problem)
-  const isUnderWay = useLive((s) => s.control !== null)
+  const isActive = useLive((s) => s.control !== null)
   useEffect(() => servesCell(hasCellView), [hasCellView])
   useEffect(() => (subject && !subject.isPast ? () => leave(subject) : undefined), [subject])
   if (!subject || timeS === undefined) return null
@@ -30,7 +30,7 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
             You see the past
           </span>
           <span aria-hidden>
-            You see <strong>{timeS.toFixed(2)} s</strong> of the past{isUnderWay && '; the bar above commands the run as it is now'}
+            You see <strong>{timeS.toFixed(2)} s</strong> of the past{isActive && '; the bar above commands the run as it is now'}
           </span>
           {problem && <span role="alert"> {problem}</span>}
         </span>

@@ -158,7 +158,7 @@ export function drawBars(on: CanvasRenderingContext2D, view: View, width: number
 
 function drawRow(on: CanvasRenderingContext2D, view: View, width: number, spans: readonly ActivationInterval[], y: number, nowS: number, colors: Colors, isContainer: boolean): void {
   let endX = -Infinity
-  for (let index = firstInSight(spans, view); index < spans.length; index += 1) {
+  for (let index = firstVisible(spans, view); index < spans.length; index += 1) {
     const span = spans[index]
     if (!span || span.start_s > view.untilS) return
     const x = Math.max(xOf(view, width, span.start_s), -2)
@@ -186,7 +186,7 @@ function writeInside(on: CanvasRenderingContext2D, label: string, x: number, y: 
 }
 
 /** The first span that does not end before what is seen. */
-function firstInSight(spans: readonly ActivationInterval[], view: View): number {
+function firstVisible(spans: readonly ActivationInterval[], view: View): number {
   let [low, high] = [0, spans.length]
   while (low < high) {
     const middle = (low + high) >> 1

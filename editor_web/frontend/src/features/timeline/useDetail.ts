@@ -13,19 +13,19 @@ interface Detail extends View {
 
 export function useDetail(subject: Subject | undefined, course: LoadedTimeline | undefined, view: View, isPart: boolean): ReadonlyMap<string, readonly ActivationInterval[]> {
   const [detail, setDetail] = useState<Detail>()
-  const isWanted = isPart && course?.merged === true && subject !== undefined
+  const isNeeded = isPart && course?.merged === true && subject !== undefined
   const { fromS, untilS } = view
-  const fits = detail !== undefined && isWanted && detail.fromS <= fromS && detail.untilS >= untilS && detail.seq === course.seq
+  const fits = detail !== undefined && isNeeded && detail.fromS <= fromS && detail.untilS >= untilS && detail.seq === course.seq
   useEffect(() => {
-    if (!isWanted || fits) return
+    if (!isNeeded || fits) return
     let isOver = false
     const length = untilS - fromS
     const [wideFromS, wideUntilS] = [Math.max(0, fromS - length / 2), untilS + length / 2]
     const timer = setTimeout(() => {
       pastApi.timeline(subject, 0, wideFromS, wideUntilS).then(
-        (told) => {
+        (loaded) => {
           if (isOver) return
-          setDetail({ fromS: wideFromS, untilS: wideUntilS, seq: told.seq, rows: new Map(told.rows.map((row) => [row.path, row.spans])) })
+          setDetail({ fromS: wideFromS, untilS: wideUntilS, seq: loaded.seq, rows: new Map(loaded.rows.map((row) => [row.path, row.spans])) })
         },
         // What is there already is good enough to go on with.
         () => undefined,
@@ -35,6 +35,6 @@ export function useDetail(subject: Subject | undefined, course: LoadedTimeline |
       isOver = true
       clearTimeout(timer)
     }
-  }, [isWanted, fits, fromS, untilS, subject, course?.seq])
+  }, [isNeeded, fits, fromS, untilS, subject, course?.seq])
   return fits ? detail.rows : (course?.rows ?? new Map<string, readonly ActivationInterval[]>())
 }

@@ -121,13 +121,13 @@ export const END = {
 /** The element at which a step is done, if it is in sight. */
 export function targetOf(step: Step): HTMLElement | undefined {
   for (const selector of step.targets) {
-    const found = [...document.querySelectorAll<HTMLElement>(selector)].find(isInSight)
+    const found = [...document.querySelectorAll<HTMLElement>(selector)].find(isVisible)
     if (found) return found
   }
   return undefined
 }
 
-function isInSight(element: HTMLElement): boolean {
+function isVisible(element: HTMLElement): boolean {
   const { width, height, right, bottom } = element.getBoundingClientRect()
   const isHidden = !element.checkVisibility({ visibilityProperty: true })
   return width > 0 && height > 0 && right > 0 && bottom > 0 && !isHidden
