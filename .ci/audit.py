@@ -1,7 +1,7 @@
 """Asks whether anything is known against the packages that are locked, Python's and npm's.
 
 Exits with 1 and a list where `.ci/advisories.toml` does not allow what was found. A service that does not answer in
-time is told as `skipped`, and no failure: without a network nothing can be asked.
+time is reported as `skipped`, and no failure: without a network nothing can be asked.
 """
 
 from __future__ import annotations

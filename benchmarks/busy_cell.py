@@ -33,7 +33,7 @@ _ROOT = Path(__file__).parents[1]
 
 @dataclass(kw_only=True)
 class BusyCell:
-    """A cell at work. `recording` and `viewer` tell what was written and seen, once it is closed."""
+    """A cell at work. `recording` and `viewer` report what was written and seen, once it is closed."""
 
     cell: OpenCell
     host: ProcessHost

@@ -200,7 +200,7 @@ def _cause(running: Server, run: str, word: str) -> str:
 
 
 def _runs_again(running: Server) -> str:
-    """Start a new run, wait until an arm moves, stop it, and wait until everything rests."""
+    """Start a new run, wait until an arm moves, stop it, and wait until everything is at rest."""
     moving_run(running)
     _stop(running)
     return "runs again"

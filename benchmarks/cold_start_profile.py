@@ -48,7 +48,7 @@ class Spans:
         self._open.pop()
 
     def is_importing(self) -> bool:
-        """Tell whether an import is under way: those that it makes belong to it."""
+        """Return whether an import is in progress: those that it makes belong to it."""
         return self._open[-1] == IMPORTS
 
     def total(self) -> dict[str, float]:

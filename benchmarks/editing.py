@@ -70,7 +70,7 @@ def _draw(text: str, context: ProjectContext) -> object:
 
 
 def kept_by_ruamel(text: str) -> bool:
-    """Tell whether ruamel.yaml, told to keep quotes and never to break lines, writes a text back as it was."""
+    """Return whether ruamel.yaml, set to keep quotes and never to break lines, writes a text back as it was."""
     # ruamel.yaml is partly untyped: Any contains it here.
     yaml: Any = import_module("ruamel.yaml").YAML()
     yaml.preserve_quotes = True

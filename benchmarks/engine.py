@@ -113,7 +113,7 @@ LOAD = Table(
     ratio=lambda r: r.cpu_us * r.samples[0].units,
 )
 SCALING = Table(
-    "Growth: transitions in a chain of so many states",
+    "Scaling: transitions in a chain of so many states",
     rows=tuple(
         Row(f"{name}, {states:,} states", function, (states,), (4,))
         for name, function in (

@@ -75,7 +75,7 @@ class Pass:
 
 
 class Wiping:
-    """One arm above a surface that is inclined by `slope` along the way and gives way along its normal.
+    """One arm above a surface that is inclined by `slope` along the path and gives way along its normal.
 
     `first_touch` replaces the share of a contact's force that is rigid at first touch (MuJoCo's solimp[0]).
     """
@@ -111,7 +111,7 @@ class Wiping:
         self._move_to(self._begin)
 
     def _surface(self, start: RigidTransform, slope: float) -> FixtureBody:
-        """Return a plate whose surface rises by `slope` along the way, `CLEARANCE_M` below the tool."""
+        """Return a plate whose surface rises by `slope` along the path, `CLEARANCE_M` below the tool."""
         thick = 0.01
         turn = RigidTransform(xyz=np.zeros(3), xyzw=quaternion_of(math.atan(slope) * np.cross(self._along, UP)))
         middle = (
@@ -146,7 +146,7 @@ class Wiping:
         return self._finished()[0]
 
     def wipe(self, *, learned: ForceRecord | None, peak_m_s: float, slow_per_n: float = 0.0) -> Pass:
-        """Press along the way, after a guarded approach, and go back above its beginning.
+        """Press along the path, after a guarded approach, and go back above its beginning.
 
         `learned` is what the pass before recorded; without it nothing is known of the surface.
         """
@@ -189,7 +189,7 @@ class Wiping:
 
 
 def pressing(trajectory: JointTrajectory, *, learned: ForceRecord | None, slow_per_n: float) -> ForceTask:
-    """Return the task to press down with 10 N on this way."""
+    """Return the task to press down with 10 N on this path."""
     samples = len(trajectory.position_rad)
     wrench = np.zeros((samples, 6))
     wrench[:, 2] = FORCE_N

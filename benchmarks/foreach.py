@@ -1,6 +1,6 @@
 """What a long `foreach` costs: `python -P -m benchmarks.foreach [--rounds N]`.
 
-Each round sets a value, which is collected. Told are the wall time of the whole run with its journal in a file, the
+Each round sets a value, which is collected. Reported are the wall time of the whole run with its journal in a file, the
 time of its first and last tenth, which are equal where each round costs the same, and how much the process has grown.
 """
 

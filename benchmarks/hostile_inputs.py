@@ -4,7 +4,7 @@ What a server does on worker threads is done there, what it does on the event lo
 longest block of the loop, the memory and every error that is none of the project's own are measured. A block
 counts in CPU time of the process, and the thread of the loop is scheduled first where the system permits it: else
 other programs on the machine keep it from running while the worker goes on, which counts as a block and is none. The
-text with the longest block is told by its number; `--first` begins there. Exit code 1 where a bound is exceeded.
+text with the longest block is reported by its number; `--first` begins there. Exit code 1 where a bound is exceeded.
 """
 
 from __future__ import annotations

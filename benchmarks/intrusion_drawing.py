@@ -1,4 +1,4 @@
-"""Draws whose hand gets where, when and how fast into the way of an arm that moves, and what is left out."""
+"""Draws whose hand gets where, when and how fast into the path of an arm that moves, and what is left out."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from robots.sim.physics.person_spec import PersonIndices
 from robots.sim.physics.physics import mujoco
 
 STEP_S = 0.05
-"""How finely ways of arm and person are compared."""
+"""How finely paths of arm and person are compared."""
 
 SEEN_M = 0.06
-"""Nearer than this to the rest of the way, a person is in the way: the margin of the motion and two voxels' halves."""
+"""Nearer than this to the rest of the path, a person is in the way: the margin of the motion and two voxels' halves."""
 
 CLEAR_M = 0.05
 """What the person must keep from where the arm still gets by itself."""
@@ -48,8 +48,8 @@ class UndisturbedMotion:
 class Intrusion:
     """`after_s` the start of the motion the hand of `person` leaves for `hand_m`; with `stay_s` None it stays there.
 
-    `near` is the body of the arm whose way the place was drawn at. Nobody reacting, the person would be in the
-    way of the rest of the motion `noticeable_s` after its start.
+    `near` is the body of the arm whose path the place was drawn at. Nobody reacting, the person would be in the
+    path of the rest of the motion `noticeable_s` after its start.
     """
 
     person: str
@@ -72,11 +72,11 @@ class _Reacher:
 
 
 class IntrusionDrawer:
-    """Draws intrusions into recorded ways of one arm of a cell.
+    """Draws intrusions into recorded paths of one arm of a cell.
 
     What is left out is what ISO 13855 calls standing within the minimum distance: where the arm would get by
-    itself within `stopping_s`, reaction and braking, of the moment when the person comes into its way. There
-    a contact is nobody's to avoid. Left out are also hands that do not come into the way at all.
+    itself within `stopping_s`, reaction and braking, of the moment when the person comes into its path. There
+    a contact is nobody's to avoid. Left out are also hands that do not come into the path at all.
     """
 
     def __init__(self, cell: CellModel, *, stopping_s: float) -> None:
@@ -94,7 +94,7 @@ class IntrusionDrawer:
         self.too_near = 0
 
     def draw(self, motion: UndisturbedMotion, random: np.random.Generator) -> Intrusion:
-        """Return an intrusion into a way.
+        """Return an intrusion into a path.
 
         Raises:
             ValueError: nobody reaches anything of it.
@@ -103,7 +103,7 @@ class IntrusionDrawer:
             found = self._tried(motion, random)
             if found is not None:
                 return found
-        raise ValueError("nobody gets into this way; let a shoulder stand nearer to it")
+        raise ValueError("nobody gets into this path; let a shoulder stand nearer to it")
 
     def _tried(self, motion: UndisturbedMotion, random: np.random.Generator) -> Intrusion | None:
         after_s = float(random.uniform(0.0, 0.9 * motion.duration_s))
@@ -147,7 +147,7 @@ class IntrusionDrawer:
     def _noticeable_s(
         self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], after_s: float
     ) -> float | None:
-        """Return when the person is first in the rest of the way, None for never."""
+        """Return when the person is first in the rest of the path, None for never."""
         for k, pose in enumerate(poses):
             at_s = after_s + k * STEP_S
             rest = motion.joints[min(round(at_s / STEP_S), len(motion.joints) - 1) :]

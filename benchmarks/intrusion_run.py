@@ -1,4 +1,4 @@
-"""One motion of an arm with a person's hand that gets into its way, in physics and virtual time."""
+"""One motion of an arm with a person's hand that gets into its path, in physics and virtual time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class IntrusionResult:
 
     `end` is `reached`, `waiting` before a hand that stayed, `failed`, or `stuck`: it did not get to its goal within a
     minute of the hand being gone again; `reason` says why it waits or failed. `in_motion` counts the contacts that
-    began while the arm moved, the others began when the person moved into an arm at rest. `stops` of a motion that
+    started while the arm moved, the others started when the person moved into an arm at rest. `stops` of a motion that
     waits or is stuck are at least as many.
     """
 
@@ -84,7 +84,7 @@ class IntrudedCell:
         return UndisturbedMotion(start=start, goal=goal, joints=np.array(rows))
 
     async def stopping_s(self, undisturbed: UndisturbedMotion) -> float:
-        """Return how long the arm takes to stop from half of a way, from where that way starts; it then goes it."""
+        """Return how long the arm takes to stop from half of a path, from where that path starts; it then goes it."""
         handle = self.bus.send_goal(JointTrapVel(joints=undisturbed.goal, speed=self._speed), to=self.arm)
         await self._until_it_moves(handle)
         await self.bus.clock.sleep(undisturbed.duration_s / 2.0)
@@ -96,7 +96,7 @@ class IntrudedCell:
         return stopped_s - started_s
 
     async def intruded(self, undisturbed: UndisturbedMotion, intrusion: Intrusion, *, adapts: bool) -> IntrusionResult:
-        """Go a way, with or without looking out, while the hand gets into it; the hand is back at the end."""
+        """Move along a path, monitoring it or not, while the hand gets into it; the hand is back at the end."""
         before = await self._count()
         handle = self._start(undisturbed, adapts=adapts)
         await self._until_it_moves(handle)

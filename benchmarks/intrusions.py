@@ -1,12 +1,12 @@
 """Measures intrusions: `python -P benchmarks/intrusions.py [--runs N] [--control N] [--seed S] [--json FILE]`.
 
-The arm of one of two people gets into the way of an arm that moves between two places, at a random moment, at or
-near a random place of the way that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s or for ever. Physics runs in virtual
+The arm of one of two people gets into the path of an arm that moves between two places, at a random moment, at or
+near a random place of the path that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s or for ever. Physics runs in virtual
 time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same ways with
 the same intrusions and does not look out: it must show contacts, or the others mean nothing.
 
 Left out is where the arm would itself get within its reaction and braking time from when the person comes into its
-way (ISO 13855: within the minimum distance), or has passed by then, and hands that do not get into the way.
+path (ISO 13855: within the minimum distance), or has passed by then, and hands that do not get into the path.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from robots.sim.physics.cell_model import build_cell
 
 CELL = Path(__file__).resolve().parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
 REACTION_S = 0.25
-"""Two images at 15 Hz, what is made of them, and one check of the way."""
+"""Two images at 15 Hz, what is made of them, and one check of the path."""
 
 _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ENDS = (Pose(xyz=(1.1, -0.7, 1.0), xyzw=_DOWN), Pose(xyz=(1.1, 0.7, 1.0), xyzw=_DOWN))
@@ -77,13 +77,13 @@ async def _undisturbed(document: Cell, speed: float) -> UndisturbedMotions:
 
 
 async def _trials(
-    document: Cell, ways: UndisturbedMotions, intrusions: Sequence[Numbered], *, group: str, speed: float
+    document: Cell, motions: UndisturbedMotions, intrusions: Sequence[Numbered], *, group: str, speed: float
 ) -> list[Trial]:
     """Carry out intrusions in a cell until one ends badly."""
     done: list[Trial] = []
     async with intruded_cell(document, speed=speed) as cell:
         for number, intrusion in intrusions:
-            undisturbed = ways.of(number)
+            undisturbed = motions.of(number)
             await cell.free(MotionTarget(joints=undisturbed.start))
             started_s = time.process_time()
             async with asyncio.timeout(_TRIAL_S):
@@ -112,12 +112,12 @@ def _with_people_on_both_sides(cell: Cell) -> Cell:
 
 
 def _group(
-    document: Cell, ways: UndisturbedMotions, drawn: Sequence[Numbered], *, group: str, speed: float
+    document: Cell, motions: UndisturbedMotions, drawn: Sequence[Numbered], *, group: str, speed: float
 ) -> list[Trial]:
     """Carry out all; after one that ended badly the next begins in a new cell."""
     done: list[Trial] = []
     while len(done) < len(drawn):
-        done += run_virtual(_trials(document, ways, drawn[len(done) :], group=group, speed=speed))
+        done += run_virtual(_trials(document, motions, drawn[len(done) :], group=group, speed=speed))
     return done
 
 
@@ -136,7 +136,7 @@ def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:
     lines = [
         (
             "| group | intrusions | with a contact | contacts | of these in motion | greatest force N "
-            "| reached | waiting while blocked | failed | stuck | stops | other ways | waited p50 s |"
+            "| reached | waiting while blocked | failed | stuck | stops | other paths | waited p50 s |"
         ),
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
@@ -156,7 +156,7 @@ def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:
 
 def main() -> None:
     """Draw, run, print, and write the JSON file if asked to."""
-    parser = argparse.ArgumentParser(description="Measures what happens when a person reaches into an arm's way.")
+    parser = argparse.ArgumentParser(description="Measures what happens when a person reaches into an arm's path.")
     parser.add_argument("--runs", type=int, default=200, help="intrusions into motions that look out (default 200)")
     parser.add_argument("--control", type=int, default=20, help="of these, also into motions that do not (default 20)")
     parser.add_argument("--seed", type=int, default=0, help="of the drawing (default 0)")
@@ -166,20 +166,21 @@ def main() -> None:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
     options = parser.parse_args()
     document = _with_people_on_both_sides(load_cell(options.cell))
-    ways = run_virtual(_undisturbed(document, options.speed))
-    drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + ways.stopping_s)
+    motions = run_virtual(_undisturbed(document, options.speed))
+    drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + motions.stopping_s)
     random = np.random.default_rng(options.seed)
-    drawn = [(number, drawer.draw(ways.of(number), random)) for number in range(options.runs)]
+    drawn = [(number, drawer.draw(motions.of(number), random)) for number in range(options.runs)]
     if options.only:
         drawn = [one for one in drawn if one[0] in options.only]
     print(
-        f"{document.name}: the way there takes {ways.there.duration_s:.2f} s, back {ways.back.duration_s:.2f} s; the "
-        f"arm stops within {ways.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} places "
-        f"drawn that are in reach, {drawer.too_near} left out as within the minimum distance or passed. {machine()}.\n",
+        f"{document.name}: there {motions.there.duration_s:.2f} s, back {motions.back.duration_s:.2f} s; "
+        f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} "
+        f"places drawn that are in reach, {drawer.too_near} left out as within the minimum distance or passed. "
+        f"{machine()}.\n",
         flush=True,
     )
-    control = _group(document, ways, drawn[: options.control], group="JointTrapVel", speed=options.speed)
-    free = _group(document, ways, drawn, group="MoveFree", speed=options.speed)
+    control = _group(document, motions, drawn[: options.control], group="JointTrapVel", speed=options.speed)
+    free = _group(document, motions, drawn, group="MoveFree", speed=options.speed)
     print(f"\n{_table((('JointTrapVel (control)', control), ('MoveFree', free)))}")
     if options.json is not None:
         everything = {"machine": machine(), "trials": [asdict(trial) for trial in (*control, *free)]}

@@ -50,8 +50,8 @@ def _machine(indent: str, names: list[str], leave: str, inside: Callable[[str, s
     for name, follower in pairwise([*names, leave]):
         lines += [f"{indent}    {name}:", *inside(f"{indent}      ", name)]
         outcomes = ("success", "failure") if lines[-1].strip().startswith("- {") else ("done",)
-        ways = ", ".join(f"{outcome}: {follower}" for outcome in outcomes)
-        lines.append(f"{indent}      transitions: {{{ways}}}")
+        transitions = ", ".join(f"{outcome}: {follower}" for outcome in outcomes)
+        lines.append(f"{indent}      transitions: {{{transitions}}}")
     return lines
 
 

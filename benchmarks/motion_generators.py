@@ -39,7 +39,7 @@ def swing(start: Array, duration_s: float) -> JointTrajectory:
 
 
 def cost_us(generator: MotionGenerator, setpoint: Array, state: ArmState, periods: int) -> float:
-    """Return the mean CPU time of a step; streams are told something new in every eighth."""
+    """Return the mean CPU time of a step; streams receive something new in every eighth."""
     spent_s = 0.0
     for period in range(periods):
         if isinstance(generator, StreamGenerator) and period % 8 == 0 and len(setpoint):

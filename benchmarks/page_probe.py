@@ -62,15 +62,15 @@ PROBE = """
     set onmessage(handler) {
       probe.handler = handler
       super.onmessage = (message) => {
-        const told = JSON.parse(message.data)
-        if (told.k === 'snapshot' || told.k === 'delta') { probe.seq = told.seq; probe.run = told.run }
-        if (!probe.isFed || told.k === 'ping') handler(message)
+        const frame = JSON.parse(message.data)
+        if (frame.k === 'snapshot' || frame.k === 'delta') { probe.seq = frame.seq; probe.run = frame.run }
+        if (!probe.isFed || frame.k === 'ping') handler(message)
       }
     }
     get onmessage() { return super.onmessage }
   }
   // Twenty nodes change with each frame of the stream; the script time until React has drawn them.
-  const IDLE = { outcome: null, entered_s: 0, duration_s: 1, followed: null, cause: '' }
+  const IDLE = { outcome: null, entered_s: 0, duration_s: 1, last_transition: null, cause: '' }
   const QUIET = { k: 'delta', ticking: true, runs: [], log: [], dropped: 0, control: null, robots: {} }
   probe.overlay = async (paths, times) => {
     probe.isFed = true

@@ -29,7 +29,7 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True)
 class Recording:
-    """Tasks of one page, and when its measures of one name began and ended."""
+    """Tasks of one page, and when its measures of one name started and ended."""
 
     tasks: tuple[Task, ...]
     measured: tuple[tuple[float, float], ...]
@@ -63,7 +63,7 @@ def stop_recording(browser: Browser, *, measure: str) -> Recording:
 
 
 def _spans(marks: list[dict[str, Any]]) -> Iterator[tuple[float, float]]:
-    """Return when each measure began and ended; the two are events of the same id."""
+    """Return when each measure started and ended; the two are events of the same id."""
     begun = {each["id2"]["local"]: float(each["ts"]) for each in marks if each["ph"] == "b"}
     for each in marks:
         if each["ph"] == "e":

@@ -3,7 +3,7 @@
 Prints the documents' experiments with all planners beside the documents' figures; random scenes of a Panda
 with shelf, table and clutter, ours beside OMPL with the same exact checker and beside RoboPlan, where that is
 installed; the problems of MotionBenchMaker, where a file of them is given (`planning_problems`); what scenes,
-trajectories, voxels and checks of ways cost; and how checker and spheres agree with MuJoCo's contacts.
+trajectories, voxels and checks of paths cost; and how checker and spheres agree with MuJoCo's contacts.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ _FAILED = {"IRB4600, one box": ("PRM", "PRMstar", "RRTstar")}
 class Line:
     """One planner in one case; times are CPU milliseconds of the whole answer, `search_ms` of the search alone (wall).
 
-    `exact` is how many of the ways found the exact checker confirms in steps of 5 mm, `turn_rad` the mean sum of
-    all changes of direction of a way, a measure of smoothness.
+    `exact` is how many of the paths found the exact checker confirms in steps of 5 mm, `turn_rad` the mean sum of
+    all changes of direction of a path, a measure of smoothness.
     """
 
     case: str
@@ -79,7 +79,7 @@ class Line:
 
 
 class Answers:
-    """The answers of one planner: CPU time of each, and the ways found."""
+    """The answers of one planner: CPU time of each, and the paths found."""
 
     def __init__(self, case: str, planner: str) -> None:
         self._case = case
@@ -90,7 +90,7 @@ class Answers:
         self._exact = 0
 
     def ask(self, plan: Callable[[], Found], checker: ExactChecker) -> None:
-        """Ask once; whether the exact checker confirms the way is looked at outside the timing."""
+        """Ask once; whether the exact checker confirms the path is looked at outside the timing."""
         gc.disable()
         start = time.process_time_ns()
         path, search_ms = plan()
@@ -142,7 +142,7 @@ def peers() -> tuple[str, ...]:
 
 
 def _asking(planner: str, case: Case, time_s: float) -> Callable[[int], Found]:
-    """Return what plans a case with a seed: the way and the milliseconds of the search alone (wall)."""
+    """Return what plans a case with a seed: the path and the milliseconds of the search alone (wall)."""
     if planner == ROBOPLAN:
         peer = RoboplanPlanner(case.request.scene)
         return lambda seed: (peer.plan(case.request, seed=seed, time_s=time_s), float("nan"))
@@ -266,9 +266,9 @@ def _length(path: Array) -> float:
 
 
 def _turn(path: Array) -> float:
-    ways = np.diff(path, axis=0)
-    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-12)
-    return float(np.arccos(np.clip((ways[:-1] * ways[1:]).sum(axis=1), -1.0, 1.0)).sum())
+    directions = np.diff(path, axis=0)
+    directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-12)
+    return float(np.arccos(np.clip((directions[:-1] * directions[1:]).sum(axis=1), -1.0, 1.0)).sum())
 
 
 def _document(line: Line) -> str:

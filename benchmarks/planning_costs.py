@@ -1,4 +1,4 @@
-"""What planning costs besides the search: prepared scenes, trajectories, what cameras see, checks of ways."""
+"""What planning costs besides the search: prepared scenes, trajectories, what cameras see, checks of paths."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CORNER_M = (-0.4, -0.9, 0.0)
 
 
 def other_costs(runs: int) -> dict[str, tuple[float, float]]:
-    """Return CPU milliseconds, p50 and p95, of everything besides the search (a Panda before its shelf if not said)."""
+    """Return CPU milliseconds, p50 and p95, of everything besides the search (a Panda before its shelf by default)."""
     shelf = msgspec.structs.replace(cases()[-1].request, speed=1.0)
     planner = ScenePlanner()
     two = two_pandas(0)
@@ -53,13 +53,13 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
         "answer with trajectory": _spent(runs, lambda k: msgspec.structs.replace(shelf, seed=k), planner.plan),
         "new voxels, 64 x 90 x 60: distances": _spent(runs, lambda k: grids[k], lambda g: voxels_of(g).field),
         "new voxels: octree": _spent(runs, lambda k: voxels_of(grids[k]), lambda v: v.octree),
-        "check of a way, scene and way known": _spent(runs, lambda _: path, planner.check_path),
-        "check of a way, new voxels, distances among it": _spent(runs, seeing, planner.check_path),
-        "check of a way, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_path),
-        "check of a way, UR10 around a box, voxels known": _spent(
+        "check of a path, scene and path known": _spent(runs, lambda _: path, planner.check_path),
+        "check of a path, new voxels, distances among it": _spent(runs, seeing, planner.check_path),
+        "check of a path, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_path),
+        "check of a path, UR10 around a box, voxels known": _spent(
             runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_path
         ),
-        "first check of a way that was not planned here": _spent(
+        "first check of a path that was not planned here": _spent(
             runs, lambda k: _other_path(path, k), planner.check_path
         ),
         "answer with trajectory, new voxels, all of it": _spent(runs, replan, planner.plan),
@@ -88,7 +88,7 @@ def two_pandas(moved: int) -> PlanningScene:
 
 
 def scatter(seed: int) -> OccupancyGrid:
-    """Return a map with some thousand voxels taken in clumps at the sides of a cell, none where the way leads."""
+    """Return a map with some thousand voxels taken in clumps at the sides of a cell, none where the path leads."""
     random = np.random.default_rng(seed)
     taken = np.zeros(_SHAPE, dtype=np.uint8)
     for _ in range(40):

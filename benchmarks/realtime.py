@@ -53,7 +53,7 @@ class Row:
 
 
 class Reactions:
-    """Posts to a bus from a thread at random moments, and times how soon its loop takes what was posted."""
+    """Posts to a bus from a thread at random times, and times how soon its loop takes what was posted."""
 
     def __init__(self, bus: SkillBus) -> None:
         self._bus = bus

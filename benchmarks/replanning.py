@@ -1,9 +1,9 @@
-"""How soon an arm answers to what cameras see in its way: `replanning.py [--rounds N]`.
+"""How soon an arm answers to what cameras see in its path: `replanning.py [--rounds N]`.
 
 A Panda of the demo cell moves to and fro in real time; physics and planners run in processes of their own. Ten times
 a second comes an occupancy map of 64 x 90 x 60 voxels of 2 cm, such as `robots.vision` makes of depth images of
 640 x 480, with some thousand voxels about the cell that are others each time. At a random moment of each motion
-an arm of a person is in it, across the rest of the way. Cameras themselves are measured by `perception.py`.
+an arm of a person is in it, across the rest of the path. Cameras themselves are measured by `perception.py`.
 Run it with `python -P`.
 """
 
@@ -54,7 +54,7 @@ _QUIET_S = 12.0
 
 @dataclass
 class Round:
-    """One intrusion, seconds from its map: the check answered, the arm at rest, another way confirmed, and begun."""
+    """One intrusion, seconds from its map: the check answered, the arm at rest, another path confirmed, and begun."""
 
     answered_s: float | None = None
     rest_s: float | None = None
@@ -76,7 +76,7 @@ class Cameras:
     _subscribers: list[Callable[[], None]] = field(default_factory=list[Callable[[], None]])
 
     def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Tell of every map."""
+        """Report every map."""
         self._subscribers.append(callback)
         return lambda: self._subscribers.remove(callback)
 
@@ -93,7 +93,7 @@ class Cameras:
         """They know nothing."""
 
     def see(self) -> None:
-        """Make the next map and tell of it."""
+        """Make the next map and report it."""
         taken = np.zeros(SHAPE, dtype=bool)
         # About the edges of the box, where no arm comes.
         x, y = self._random.integers(0, SHAPE[0], _SCATTER), self._random.integers(0, 6, _SCATTER)
@@ -115,27 +115,27 @@ class Cameras:
 
 
 class TimedPlanners(PlanningServices):
-    """Notes when answers came: of checks, and of ways that were confirmed."""
+    """Notes when answers came: of checks, and of paths that were confirmed."""
 
     checked: list[tuple[float, float]]
     planned: list[tuple[float, float]]
 
     async def check_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where a way is blocked."""
+        """Return where a path is blocked."""
         started_s = time.perf_counter()
         answer = await super().check_path(request)
         self.checked.append((started_s, time.perf_counter()))
         return answer
 
     async def confirm_path(self, request: PathCheckRequest) -> PathCheck:
-        """Return where a new way is blocked."""
+        """Return where a new path is blocked."""
         started_s = time.perf_counter()
         answer = await super().confirm_path(request)
         self.checked.append((started_s, time.perf_counter()))
         return answer
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a way."""
+        """Return a path."""
         started_s = time.perf_counter()
         answer = await super().plan(request)
         self.planned.append((started_s, time.perf_counter()))

@@ -48,7 +48,7 @@ class Reactions:
     """Posts events from a thread of its own, each once the engine waits, and times the reactions.
 
     The engine calls `waiting` when it has begun to wait and `entered` in the state after. Events
-    come at random moments within `spread_s`, which must cover the period of an engine that polls.
+    come at random times within `spread_s`, which must cover the period of an engine that polls.
     """
 
     def __init__(self, events: int, post: Callable[[], None], *, spread_s: float = 0.01) -> None:
@@ -79,7 +79,7 @@ class Reactions:
         return Sample(len(latencies_s), time.process_time() - cpu_s, time.perf_counter() - wall_s, latencies_s)
 
     def _send(self) -> None:
-        # Moments of posting need not repeat from run to run; only their spread matters.
+        # Times of posting need not repeat from run to run; only their spread matters.
         random_times = random.Random(1)
         for _ in range(self._due):
             self._waiting.acquire()

@@ -88,7 +88,7 @@ def _wait(server: subprocess.Popen[bytes], asking: Sequence[Future[bool]]) -> No
 
 
 def _ask(address: tuple[str, int], token: str, gate: Barrier, ended: Event) -> bool:
-    """Ask for every path a few times, over connections that begin anew; tell whether all were answered."""
+    """Ask for every path a few times, over connections that begin anew; return whether all were answered."""
     gate.wait()
     return all(_answered(address, path, token, ended) for _ in range(_ROUNDS) for path in _PATHS)
 

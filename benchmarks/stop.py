@@ -3,8 +3,8 @@
 A real `flexcell serve` moves an arm; STOP is given by a click of the mouse on the page in Chromium, over the relay's
 HTTP port, by `flexcell stop`, or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or
 holding the interpreter) or busy with the costliest expressions, 200 clients ask all the time, or the engine is
-suspended or killed. Told are the times until STOP is acknowledged (in the page: from the click until it says so) and
-until the world's own process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
+suspended or killed. Reported are the times until STOP is acknowledged (in the page: from the click until it says so)
+and until the world's own process measures that everything is at rest (the arm is in mid-motion, at 0.4 of its speed).
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ _HOW = {"state": "sleep", "interpreter": "hold", "expression": "expression"}
 _LISTEN = """() => {
   const news = document.querySelector('.stop-news')
   const epochMs = (eventMs) => Date.now() - performance.now() + eventMs
-  window.stopTimes = new Promise((told) => {
+  window.stopTimes = new Promise((resolve) => {
     let pressedMs
-    const look = () => /acknowledged|at rest/.test(news.textContent) && told([pressedMs, epochMs(performance.now())])
+    const look = () => /acknowledged|at rest/.test(news.textContent) && resolve([pressedMs, epochMs(performance.now())])
     document.querySelector('.stop-button').addEventListener(
       'click', (click) => { pressedMs = epochMs(click.timeStamp) }, { once: true, capture: true })
     new MutationObserver(look).observe(news, { subtree: true, childList: true, characterData: true })

@@ -19,7 +19,7 @@ _BY_RAD = (0.4, 0.2, -0.3, 0.3, 0.3, -0.3, 0.5)
 
 
 def swings() -> tuple[JointTrajectory, JointTrajectory]:
-    """Return the way to and fro, from where a Panda is at home."""
+    """Return the path to and fro, from where a Panda is at home."""
     home = np.array(model_by_name("panda").home_rad)
     there = home + np.array(_BY_RAD)
     return _swing(home, there), _swing(there, home)

@@ -74,6 +74,6 @@ def merged(timings: Sequence[LoopTiming]) -> LoopTiming:
 
 
 def _disturbed(due_s: Array, late_s: Array, start_s: float, stop_s: float) -> bool:
-    """Tell whether a turn of the empty loop that was due, or came, in a window was late."""
+    """Return whether a turn of the empty loop that was due, or came, in a window was late."""
     met = (due_s <= stop_s) & (due_s + late_s >= start_s)
     return bool((late_s[met] > _LATE_S).any())

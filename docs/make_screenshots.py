@@ -3,7 +3,7 @@
     python docs/make_screenshots.py [NAME …]
 
 `dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
-planned way that waits for its operator, `shared` an arm that waits because a person reaches into its way, `editor` a
+planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path, `editor` a
 behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches. Needs the extras
 `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
 """
@@ -86,7 +86,7 @@ def in_motion(page: Page) -> None:
 
 
 def asked(page: Page) -> None:
-    """Start below full autonomy, and wait for the question about the planned way."""
+    """Start below full autonomy, and wait for the question about the planned path."""
     is_narrow = page.viewport_size is not None and page.viewport_size["width"] < DESKTOP[0]
     if not is_narrow:
         drawn(page)

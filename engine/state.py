@@ -111,7 +111,7 @@ class Context(Protocol):
         ...
 
     async def latest(self, topic: str, kind: type[S]) -> S:
-        """Return the newest message of a topic; wait for the first one."""
+        """Return the latest message of a topic; wait for the first one."""
         ...
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
@@ -209,5 +209,5 @@ def goal_cause(what: str, goal: Action[Any, Any], end: GoalEnd[Any], *, to: str,
 
 
 def is_path_blocked(end: GoalEnd[Any]) -> bool:
-    """Tell whether a goal was refused because the planning scene blocks its path."""
+    """Return whether a goal was refused because the planning scene blocks its path."""
     return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

@@ -110,7 +110,7 @@ class _PreparingLoader(Loader):
 
 
 class _Importer(MetaPathFinder):
-    """Finds the modules of the prepared packages with the other finders."""
+    """Finds the modules of the prepared packages with the other importers."""
 
     def __init__(self) -> None:
         self.packages: set[str] = set()

@@ -44,7 +44,7 @@ _numba: Any = _load_numba()
 def compiled(*signatures: str) -> Callable[[_F], _F]:
     """Return a decorator that compiles a function, which then runs without the global interpreter lock.
 
-    With `signatures` (numba's notation) the function is compiled when its module is imported, so that no
+    With `signatures` (in the syntax of numba) the function is compiled when its module is imported, so that no
     call is slow; without, when another compiled function first needs it. Arithmetic keeps the order of the
     source, so that results are reproducible. Functions that call one another belong in one file: the cache
     detects changes of a function's own file only.

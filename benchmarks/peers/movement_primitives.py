@@ -16,7 +16,7 @@ Learned = Callable[[], Array]
 
 
 def installed() -> bool:
-    """Tell whether the library and pytransform3d, which it needs, are there."""
+    """Return whether the library and pytransform3d, which it needs, are there."""
     return find_spec("movement_primitives") is not None and find_spec("pytransform3d") is not None
 
 

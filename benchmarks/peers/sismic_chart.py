@@ -13,7 +13,7 @@ from sismic.runner import AsyncRunner
 from benchmarks.sample import Reactions, Sample, Stopwatch
 
 _INTERVAL_S = 0.1
-"""How often the runner looks for events when it is not told otherwise."""
+"""How often the runner looks for events by default."""
 
 
 def chain(watch: Stopwatch, states: int) -> Sample:

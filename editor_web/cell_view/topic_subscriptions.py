@@ -19,7 +19,7 @@ from engine.skills.planning_scene import PlanningSceneState
 from engine.skills.vision import Detections
 
 _log = logging.getLogger("flexcell.cell_view")
-# By type, not by name: the cell chooses the names of arms and cameras. Descriptions come first, because they tell
+# By type, not by name: the cell chooses the names of arms and cameras. Descriptions come first, because they say
 # which bodies of the scene belong to arms.
 _ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, PathPreview, CameraInfo)
 # Cameras take images only while their data is subscribed.
@@ -54,7 +54,7 @@ class TopicSubscriptions:
 
     Args:
         topics: The source of the topics.
-        newest: Receives every message.
+        latest: Receives every message.
         shown: Returns the groups that are shown now.
     """
 

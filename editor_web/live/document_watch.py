@@ -19,7 +19,7 @@ class DocumentWatch:
     Args:
         documents: The documents.
         changed: Called with the hash of each changed document, by id; None for a deleted one.
-        wanted: Returns whether a page is connected.
+        is_needed: Returns whether a page is connected.
         period_s: Polling period.
     """
 

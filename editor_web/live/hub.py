@@ -201,7 +201,7 @@ class LiveHub:
             return None
 
     def is_settled(self, run_id: str) -> bool:
-        """Tell whether the backend's status of a run agrees with the run's events."""
+        """Return whether the backend's status of a run agrees with the run's events."""
         return not self.live_run(run_id).state.ended or self.backend.run(run_id).status not in ("running", "stopping")
 
     def _on_change(self, live: LiveRun, change: LiveRunChange) -> None:

@@ -25,7 +25,7 @@ class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", ta
     """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
     `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run
-    is active; `lock_reasons` are what the operator said, by the path of the locked node.
+    is active; `lock_reasons` are the texts of the operator, by the path of the locked node.
     """
 
     run: str

@@ -21,7 +21,7 @@ _AROUND_KINDS = frozenset(
 class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     """A failed run: the failure originated at event `seq`, at node `path` (empty if in no node).
 
-    `hint` tells what to do, `links` are the causes without it. `steps` tell how the nodes from the root to the origin
+    `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin
     ended, `around` are the requests, answers and writes of the origin.
     """
 

@@ -23,7 +23,7 @@ class PastRunQuery:
     until_s: float
 
     def matches(self, run: PastRun) -> bool:
-        """Tell whether a run contains all words and started in the time range; the kind is not compared."""
+        """Return whether a run contains all words and started in the time range; the kind is not compared."""
         if not self.since_s <= run.started_at_s <= self.until_s:
             return False
         text = f"{run.id} {run.behavior} {run.status} {run.outcome or ''} {run.cause}".lower()

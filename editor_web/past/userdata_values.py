@@ -26,7 +26,7 @@ class UserdataCheckpoints:
     """The userdata of one run. Not thread-safe.
 
     Args:
-        book: The userdata history of the run before its first event; None if the executed behavior is unknown.
+        checkpoint: The userdata history of the run before its first event; None if the executed behavior is unknown.
     """
 
     def __init__(self, checkpoint: UserdataHistory | None) -> None:

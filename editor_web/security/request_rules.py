@@ -42,7 +42,7 @@ class RequestRefusal:
 
 
 def is_unsafe(scope: Scope) -> bool:
-    """Tell whether a request may change something: a websocket, or any method that is not read-only."""
+    """Return whether a request may change something: a websocket, or any method that is not read-only."""
     return scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
 
 
@@ -96,12 +96,12 @@ def refuse_unproven_cookie(scope: Scope, headers: Mapping[str, str]) -> RequestR
 
 
 def _opens_page(scope: Scope, headers: Mapping[str, str]) -> bool:
-    """Tell whether a request is a navigation to the page itself, which contains no data."""
+    """Return whether a request is a navigation to the page itself, which contains no data."""
     return _navigates(scope, headers, to="document") and not scope["path"].startswith(_DATA_PATHS)
 
 
 def _opens_frame(scope: Scope, headers: Mapping[str, str]) -> bool:
-    """Tell whether a page of this machine opens the request in a frame."""
+    """Return whether a page of this machine opens the request in a frame."""
     return headers.get("sec-fetch-site") == "same-site" and _navigates(scope, headers, to="iframe")
 
 

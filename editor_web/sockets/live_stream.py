@@ -66,7 +66,7 @@ class _Operator:
         try:
             self._attached = self._session.operate(run_id)
         except FlexcellError as error:
-            # The run may have ended; its events and control state tell the page whether it operates the run.
+            # The run may have ended; its events and control state show the page whether it operates the run.
             _log.info("a page cannot operate a run: %s", error)
 
     def lose(self) -> None:

@@ -66,7 +66,7 @@ class HandleDrag:
         view: The 3D view.
         page: Name of the page in the view.
         joggers: The active jogger of each arm, for all pages.
-        tell: Receives the messages to the page.
+        send: Receives the messages to the page.
     """
 
     def __init__(

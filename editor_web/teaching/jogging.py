@@ -27,7 +27,7 @@ class Jogger:
     Args:
         bus: The bus of the arms.
         taken: The jogged arms of all pages; shared by all joggers of a server.
-        tell: Receives the messages to the page.
+        send: Receives the messages to the page.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Jogger:
         await asyncio.wait({task})
         if self._task is task:
             self._task = None
-            # A task that was cancelled before it began has released nothing.
+            # A task that was cancelled before it started has released nothing.
             self._release()
 
     def _release(self) -> None:

@@ -15,7 +15,7 @@ TOO_LARGE = f"a request may have at most {MAX_BODY_BYTES / 1e6:g} MB"
 
 
 def declares_too_large(headers: Mapping[str, str]) -> bool:
-    """Tell whether a request declares a body above the limit."""
+    """Return whether a request declares a body above the limit."""
     length = headers.get("content-length", "")
     return length.isascii() and length.isdigit() and int(length) > MAX_BODY_BYTES
 

@@ -111,7 +111,7 @@ class GoalHandle(Generic[R, F]):
 
     @property
     def feedback(self) -> F | None:
-        """The newest feedback."""
+        """The latest feedback."""
         return self._goal.latest_feedback
 
     def on_feedback(self, listener: Callable[[F], None]) -> None:

@@ -87,17 +87,17 @@ class Topic(Generic[M]):
 
     @property
     def latest(self) -> M | None:
-        """The newest message, or the message that the provider makes now; None before the first."""
+        """The latest message, or the message that the provider makes now; None before the first."""
         return self._provider() if self._provider is not None else self._latest
 
     @property
     def latest_at_s(self) -> float | None:
-        """Time of the newest message on the bus's clock; None before the first."""
+        """Time of the latest message on the bus's clock; None before the first."""
         return self._stamps_s[-1] if self._stamps_s else None
 
     @property
     def is_made_on_demand(self) -> bool:
-        """Whether a provider makes the newest message when it is read."""
+        """Whether a provider makes the latest message when it is read."""
         return self._provider is not None
 
     @property

@@ -15,16 +15,16 @@ def cobertura_report(coverages: tuple[BehaviorCoverage, ...], *, version: str, t
     """Return the report; `version` is the version of the program, `time_s` the report time in Unix time."""
     files = by_file(coverages)
     covered, valid = sum(file.lines_covered for file in files), sum(len(file.lines) for file in files)
-    taken, ways = sum(file.branches_taken for file in files), sum(file.branches for file in files)
+    taken, branches = sum(file.branches_taken for file in files), sum(file.branches for file in files)
     root = Element(
         "coverage",
         {
             "line-rate": _rate(covered, valid),
-            "branch-rate": _rate(taken, ways),
+            "branch-rate": _rate(taken, branches),
             "lines-covered": str(covered),
             "lines-valid": str(valid),
             "branches-covered": str(taken),
-            "branches-valid": str(ways),
+            "branches-valid": str(branches),
             "complexity": "0",
             "version": version,
             "timestamp": str(int(time_s * 1000)),

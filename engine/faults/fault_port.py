@@ -104,7 +104,7 @@ class FaultPort:
         return send_faulty_goal(rule, sending, self._scene)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Return the newest message of a topic, unless a fault intervenes."""
+        """Return the latest message of a topic, unless a fault intervenes."""
 
         async def read() -> S:
             return await self._inner.latest(topic, kind, holder=holder)

@@ -68,7 +68,7 @@ class BoundedConnection(sqlite3.Connection):
 def open_sqlite(path: Path, *, schema: SqliteMigrations, busy_timeout_s: float) -> BoundedConnection:
     """Open or create `path` in WAL mode with a sync at every commit; transactions are opened explicitly.
 
-    An older format is migrated to the newest. The file, and a folder created for it, are private to the owner.
+    An older format is migrated to the latest. The file, and a folder created for it, are private to the owner.
     The connection may move between threads; one thread uses it at a time.
 
     Raises:

@@ -34,7 +34,7 @@ class SqliteMigrations:
 
     @property
     def version(self) -> int:
-        """The newest version."""
+        """The latest version."""
         return len(self.steps)
 
     def verify(self, connection: sqlite3.Connection) -> int:
@@ -62,7 +62,7 @@ class SqliteMigrations:
         return found
 
     def upgrade(self, connection: sqlite3.Connection) -> None:
-        """Migrate a file to the newest version in one transaction.
+        """Migrate a file to the latest version in one transaction.
 
         Raises:
             FormatTooNew: a newer version of this program wrote the file.

@@ -43,7 +43,7 @@ def require_whole_log(path: Path) -> None:
     """Refuse a database whose log continues after the part that SQLite reads: durable commits would be lost silently.
 
     Call it before opening the database: the first writing connection drops the unread part when it is closed.
-    Damage in the newest commit looks like a write cut by a power failure, and is ignored as SQLite does.
+    Damage in the latest commit looks like a write cut by a power failure, and is ignored as SQLite does.
     Takes about 80 µs of CPU time per page of the log.
 
     Raises:

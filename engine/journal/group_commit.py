@@ -97,18 +97,18 @@ class CommitWaiter:
 
 
 class GroupCommitWriter:
-    """Writes the queued ledgers: `flush` on the calling thread, or `start` a writer thread.
+    """Writes the queues with data: `flush` on the calling thread, or `start` a writer thread.
 
-    A run only appends to its ledger; encoding happens when the group is written.
+    A run only appends to its write queue; encoding happens when the group is written.
     """
 
     def __init__(self, database: JournalDatabase) -> None:
         self.queue: deque[RunWriteQueue | CommitWaiter] = deque()
-        """Ledgers with pending data, and waiting commits."""
+        """Write queues with pending data, and waiting commits."""
         self.failure: JournalError | None = None
         """Set when the journal is closed and nothing can be written."""
         self.last_failure: JournalError | None = None
-        """The newest write failure; later writes may succeed."""
+        """The latest write failure; later writes may succeed."""
         self._database = database
         self._lock = threading.Lock()
         self._wake = threading.Event()
@@ -161,7 +161,7 @@ class GroupCommitWriter:
     def flush(self, *, asking: RunWriteQueue | None = None) -> None:
         """Write all queued data in one group and notify the waiters.
 
-        A failure ends writing of the runs whose events were in the group, and of no others; their ledgers keep it.
+        A failure ends writing of the runs whose events were in the group, and of no others; their queues keep it.
 
         Args:
             asking: The run that checks its own failure afterwards.
@@ -187,7 +187,7 @@ class GroupCommitWriter:
                         write_queue.notify(write_queue.failure)
 
     def _requeue(self, write_queues: Iterable[RunWriteQueue]) -> None:
-        """Queue ledgers again that received data while they were emptied: such data queues no ledger itself."""
+        """Queue those again that received data while they were emptied: such data queues nothing itself."""
         if nonempty := [each for each in write_queues if each.events or each.worlds]:
             self.queue.extend(nonempty)
 

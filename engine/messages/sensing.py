@@ -37,7 +37,7 @@ class OccupancyGrid(Message, frozen=True, kw_only=True):
     `corner_m` is the box's lowest corner, `shape` the number of voxels along x, y and z. `occupied` are bits,
     x slowest and z fastest, packed eight to a byte with the first one highest (`numpy.packbits`). The arms,
     their held parts and the known obstacles are excluded. `revision` increases with every change,
-    `time_s` is the time of the newest image in the grid.
+    `time_s` is the time of the latest image in the grid.
     """
 
     time_s: float
@@ -66,7 +66,7 @@ class OccupancyState(Message, frozen=True, kw_only=True):
 
     `stale_reason` is empty while the grid is reliable. `made` describes how the depth images are made. `looks`
     counts the image times since the cell was opened, `dropped` those skipped because the previous one was
-    still being mapped. `image_s` and `mapping_s` are the durations of making and mapping the newest images.
+    still being mapped. `image_s` and `mapping_s` are the durations of making and mapping the latest images.
     """
 
     stale_reason: str

@@ -58,7 +58,7 @@ class TopicStatistics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GoalInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """An active goal: its run and node, and its newest feedback."""
+    """An active goal: its run and node, and its latest feedback."""
 
     id: str
     address: str
@@ -130,7 +130,7 @@ class BusInspector:
         return self._bus.find_topic(name)
 
     def latest(self, name: str) -> object | None:
-        """Return the newest message of a topic; None when there is none or its device cannot provide it now."""
+        """Return the latest message of a topic; None when there is none or its device cannot provide it now."""
         try:
             return self._bus.find_topic(name).latest
         except FlexcellError:

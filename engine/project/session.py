@@ -342,14 +342,14 @@ class Session:
         return self._recordings.files(run_id) if self._recordings is not None else ()
 
     def latest(self, topic: str) -> object | None:
-        """Return the newest message of a bus topic, or None."""
+        """Return the latest message of a bus topic, or None."""
         try:
             return self.cell.bus.find_topic(topic).latest
         except FlexcellError:
             return None  # this cell has no such topic, which is not an error of the viewer
 
     def subscribe_topic(self, topic: str, callback: Callable[[Any], None]) -> Callable[[], None]:
-        """Call back with every new message of a topic, beginning immediately with the newest one.
+        """Call back with every new message of a topic, beginning immediately with the latest one.
 
         Raises:
             BusError: this cell has no such topic.

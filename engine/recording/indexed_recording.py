@@ -1,6 +1,6 @@
 """Random access to the topics of a recording by time, through its index, also during recording.
 
-Times are the run's: seconds since it began, as its events have them.
+Times are the run's: seconds since it started, as its events have them.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ class IndexedRecording:
                 self._scan()
 
     def at(self, topic: str, time_s: float) -> StoredMessage | None:
-        """Return the newest message of a topic at a time; None before the first.
+        """Return the latest message of a topic at a time; None before the first.
 
         Raises:
             RecordingError: it is damaged.

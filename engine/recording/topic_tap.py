@@ -67,11 +67,11 @@ class TopicTap:
         self._unwatch: Callable[[], None] = lambda: None
 
     def open(self, bus: SkillBus) -> None:
-        """Start recording, beginning with the newest message of each topic."""
+        """Start recording, beginning with the latest message of each topic."""
         self._unwatch = bus.watch_topics(self._add)
 
     def close(self) -> None:
-        """Record the newest message of each topic if it was dropped, and stop."""
+        """Record the latest message of each topic if it was dropped, and stop."""
         self._unwatch()
         for topic, subscription in self._subscriptions:
             subscription.close()

@@ -11,10 +11,10 @@ from engine.replay.recorded_schedule import RecordedSchedule
 
 
 class RecordedEntrySchedule:
-    """The entries of a story, by path and visit.
+    """The expected entries of a recording, by path and visit.
 
     Args:
-        story: The events to come again.
+        expected: The events to come again.
         timetable: Hands them out.
     """
 

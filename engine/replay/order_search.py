@@ -2,7 +2,7 @@
 
 In the recorded run an answer took some turns of the loop from its device to the state that waited,
 during which others that were ready at that instant did things that left no event. How many turns
-is not recorded, and must not make a difference where any number gives the story again.
+is not recorded, and must not make a difference where any number gives the expected events again.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from engine.replay.replay_loop import ReplayLoop
 
 BEFORE_CANCEL = -1
-"""In place of a number of turns: what seems to have been told to stop before it ended was told so after."""
+"""In place of a number of turns: what seems to have been asked to stop before it ended was asked after it."""
 _DRIFT_S = 0.1
 """Tolerance within which a request is answered at the recorded time."""
 

@@ -37,7 +37,7 @@ _PATIENCE_S = 10.0
 _REAL_PATIENCE_S = 3600.0
 NO_VERSIONS: Mapping[int, Plan] = {}
 _BEFORE = (RunStarted, StopRequested, OperatorCommanded, OperatorChanged, PauseConfirmed, MessageLogged)
-"""What can be in a story before its first node."""
+"""What can be expected before its first node."""
 
 
 class ReplayRun:
@@ -46,7 +46,7 @@ class ReplayRun:
     Args:
         recording: What was recorded.
         plan: The behavior to run.
-        story: The events to come again.
+        expected: The events to come again.
         turns: By how many turns of the loop answers come later within their instant, by place.
         versions: What took over in hot changes, by the number of the event.
     """

@@ -225,13 +225,13 @@ class Run:
         return report
 
     async def step_back(self, path: str = "") -> tuple[str, ...]:
-        """Undo the node that began last in one branch of this paused run; returns the undone nodes, in order.
+        """Undo the node that started last in one branch of this paused run; returns the undone nodes, in order.
 
         The `undo` of its states undoes it, its userdata is restored, and the run then waits before its entry, paused
         again. A failed undo is logged; the run then keeps its position.
 
         Args:
-            path: The branch; by default the one in which something began last.
+            path: The branch; by default the one in which something started last.
 
         Raises:
             ControlError: the run is not paused, or a node cannot be undone; nothing has moved.

@@ -28,7 +28,7 @@ async def request_step_back(
     """Plan a step back of a paused run and let the branch execute it; see `engine.runtime.run.Run.step_back`.
 
     Args:
-        path: The branch; by default the one in which something began last.
+        path: The branch; by default the one in which something started last.
         plan: Returns the current plan of the run.
         execution: The execution of the run.
         control: The control of the run.

@@ -117,7 +117,7 @@ class StopDispatcher:
         return self.status()
 
     def status(self) -> StopStatus:
-        """Return the status of the newest stop."""
+        """Return the status of the latest stop."""
         number = self._latest.stop
         devices = tuple(
             DeviceStop(

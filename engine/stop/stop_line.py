@@ -51,7 +51,7 @@ class StopLine:
 
     @property
     def awaits_rest(self) -> bool:
-        """Whether the newest stop still awaits `report_at_rest`."""
+        """Whether the latest stop still awaits `report_at_rest`."""
         return not self._rest_reported
 
     def poll(self) -> str:

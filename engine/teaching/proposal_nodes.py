@@ -24,7 +24,7 @@ class ProposalNodeBuilder:
 
     @property
     def takes_width(self) -> bool:
-        """True if the tool is told the width of the part that it grasps."""
+        """True if the tool is given the width of the part that it grasps."""
         return "width_m" in installed_state(self.tool.hold).__struct_fields__
 
     def free(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:

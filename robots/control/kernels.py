@@ -52,7 +52,7 @@ def interpolate_setpoint(
 
 @compiled(f"void({_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
 def pose_error(target_xyz: Array, target_xyzw: Array, xyz: Array, xyzw: Array, error: Array) -> None:
-    """Write the error of a pose against the wanted one: translation and rotation vector (6,), in the axes of both."""
+    """Write the error of a pose against the target one: translation and rotation vector (6,), in the axes of both."""
     for axis in range(3):
         error[axis] = target_xyz[axis] - xyz[axis]
     ax, ay, az, aw = target_xyzw[0], target_xyzw[1], target_xyzw[2], target_xyzw[3]

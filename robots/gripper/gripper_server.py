@@ -94,7 +94,7 @@ class GripperServer:
         if abs(sample.width_m - width_m) > _AT_WIDTH_M and not handle.cancel_requested:
             raise SkillFailed(
                 f"the fingers stopped at {sample.width_m * 1e3:.1f} mm{_touching(sample)},"
-                f" wanted {width_m * 1e3:.1f} mm",
+                f" instead of {width_m * 1e3:.1f} mm",
                 where=handle.address,
                 hint="clear what is between or beside the fingers",
             )

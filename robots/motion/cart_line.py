@@ -30,7 +30,7 @@ _FARTHEST_M = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class _Line:
-    """The wanted path: `distance_m` along a line and `angle_rad` about one axis."""
+    """The requested path: `distance_m` along a line and `angle_rad` about one axis."""
 
     start: RigidTransform
     end: RigidTransform

@@ -40,7 +40,7 @@ class PoseGoal(msgspec.Struct, frozen=True, kw_only=True, tag="pose"):
     match: Literal["pose", "position", "axis"] = "pose"
 
 
-class PathGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
+class PathGoal(msgspec.Struct, frozen=True, kw_only=True, tag="path"):
     """A given path of straight joint lines, radians, n each: it is validated and timed, without a search.
 
     Its first waypoint is the start configuration.
@@ -97,7 +97,7 @@ class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
     timing_s: float
     checks: int
     exact_checks: int
-    refused_ways: int
+    refused_paths: int
     found_by: str
 
 

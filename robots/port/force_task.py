@@ -15,13 +15,13 @@ from robots.port.trajectory import JointTrajectory
 
 @dataclass(frozen=True, kw_only=True)
 class ForceTask:
-    """A tool path with wanted forces, followed with an admittance.
+    """A tool path with target forces, followed with an admittance.
 
     Attributes:
         trajectory: The nominal joints over time; starts at the set point at rest and ends at rest.
         offset: Feed-forward offset of the tool from the nominal path, (samples, 6), metres and rotation
             vector, in the task frame; learned in an earlier pass.
-        wrench: Wanted force and torque of the environment on the tool, (samples, 6), in the task frame.
+        wrench: Target force and torque of the environment on the tool, (samples, 6), in the task frame.
         task_xyzw: Orientation in the world of the task frame that the `frame` of the admittance names.
         admittance: Response of the path to measured forces.
         slow_per_n: Phase stopping: the pace slows to 1 / (1 + slow_per_n · |force error|); 0 for never.

@@ -40,8 +40,8 @@ class SlidingGear:
     def opening(self) -> tuple[float, float]:
         """Return the sum of the fingers' travels."""
         indices, physics = self._indices, self._physics
-        ways, speeds = physics.positions[indices.qpos], physics.velocities[indices.dof]
-        return float(np.add.reduce(ways)), float(np.add.reduce(speeds))
+        positions, speeds = physics.positions[indices.qpos], physics.velocities[indices.dof]
+        return float(np.add.reduce(positions)), float(np.add.reduce(speeds))
 
     def press(self, force_n: float) -> None:
         """Set both motors."""

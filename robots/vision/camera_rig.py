@@ -22,7 +22,7 @@ class CameraRig:
     """The cameras of a simulated cell; owned by the thread that created it.
 
     Args:
-        sight: The cell and its cameras.
+        setup: The cell and its cameras.
         repeatable: Whether the images must be identical on every machine.
 
     Raises:

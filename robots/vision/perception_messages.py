@@ -40,7 +40,7 @@ class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
 
 
 class PerceptionResult(msgspec.Struct, frozen=True, kw_only=True, tag="seen"):
-    """The map after a request, the wanted images, and the times for rendering and mapping.
+    """The map after a request, the requested images, and the times for rendering and mapping.
 
     `grid` is None without a map, or if no images were taken.
     """

@@ -29,7 +29,7 @@ class Region(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     height_m: Pair | None = None
 
     def contains(self, xyz: Vector3) -> bool:
-        """Tell whether a point lies inside, edges included."""
+        """Return whether a point lies inside, edges included."""
         inside = all(abs(xyz[axis] - self.center_m[axis]) <= self.size_m[axis] / 2 for axis in (0, 1))
         low, high = self.height_m or (-math.inf, math.inf)
         return inside and low <= xyz[2] <= high

@@ -113,7 +113,7 @@ class PlacePart(State, frozen=True, kw_only=True):
         )
 
     def _is_support_contact(self, pair: TouchingPair) -> bool:
-        """Tell whether a pair is the part and its support: no link of an arm, and at most `CONTACT_M` deep."""
+        """Return whether a pair is the part and its support: no link of an arm, and at most `CONTACT_M` deep."""
         other = pair.second if pair.first == self.part else pair.first
         return self.part in (pair.first, pair.second) and "/" not in other and pair.depth_m <= CONTACT_M
 

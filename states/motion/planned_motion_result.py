@@ -15,5 +15,5 @@ def inner_cause_text(cause: Cause) -> str:
 
 
 def is_blocked_timeout(end: GoalEnd[FreeMotionResult]) -> bool:
-    """Tell whether a motion was aborted because its path stayed blocked until the timeout."""
+    """Return whether a motion was aborted because its path stayed blocked until the timeout."""
     return end.status == "aborted" and end.result is not None and bool(end.result.blocked)

@@ -69,7 +69,7 @@ def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop
         row.click()
         detail = page.get_by_role("region", name="plant/joint_state")
         expect(detail).to_contain_text("Measured joint state of one robot")
-        tree = page.get_by_role("list", name="Newest message of plant/joint_state")
+        tree = page.get_by_role("list", name="Latest message of plant/joint_state")
         expect(tree).to_contain_text("[0, 0.5]")
         shop.on_loop(lambda: plant.publish(2.0))
         expect(tree).to_contain_text("[0.9093, -0.32682]")
@@ -161,7 +161,7 @@ def test_the_bus_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme)
     """Every kind, in both themes."""
     with at_bus(browser, shop, scheme=scheme) as page:
         entry(page, "joint_state").click()
-        expect(page.get_by_role("list", name="Newest message of plant/joint_state")).to_be_visible()
+        expect(page.get_by_role("list", name="Latest message of plant/joint_state")).to_be_visible()
         require_accessible(page, "topics", part=".dock")
         page.get_by_label("Part of the bus").get_by_text("Actions", exact=True).click()
         entry(page, "travel").click()

@@ -238,8 +238,8 @@ async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
         await read(
             socket,
             "/voxels/occupied",
-            "/ways/left/line",
-            "/ways/left/ghost/fore/",
+            "/paths/left/line",
+            "/paths/left/ghost/fore/",
             "/obstacles/post/0",
             "/people/anna.hand/",
             "/cell/left.fore/",

@@ -48,7 +48,7 @@ class BodyLayer:
         self._frames: dict[str, list[viser.FrameHandle]] = {}
         self._drawn: dict[str, WorldPose] = {}
         self._shapes: list[tuple[str, GeometryHandle, Rgb]] = []
-        self._ways: Mapping[str, PathPreview] = {}
+        self._paths: Mapping[str, PathPreview] = {}
         self._marked: frozenset[str] = frozenset()
 
     def draw(self, latest: LatestMessages) -> None:
@@ -56,15 +56,15 @@ class BodyLayer:
         scene, poses, arms = latest.scene, latest.frames, frozenset(latest.descriptions)
         if scene is not None and (scene is not self._scene or arms != self._arms):
             self._scene, self._arms, self._poses = scene, arms, None
-            self._ways, self._marked = {}, frozenset()
+            self._paths, self._marked = {}, frozenset()
             with self._server.atomic():
                 self._build(scene, latest)
         if poses is not None and poses is not self._poses:
             self._poses = poses
             self._move(poses_by_frame(poses))
-        if latest.ways is not self._ways:
-            self._ways = latest.ways
-            self._mark(bodies_in_contact(latest.ways, {name for name, _, _ in self._shapes}))
+        if latest.paths is not self._paths:
+            self._paths = latest.paths
+            self._mark(bodies_in_contact(latest.paths, {name for name, _, _ in self._shapes}))
 
     def _build(self, scene: SceneDescription, latest: LatestMessages) -> None:
         known = poses_by_frame(latest.frames)

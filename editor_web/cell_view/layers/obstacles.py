@@ -50,13 +50,13 @@ class ObstacleLayer:
 
     def draw(self, latest: LatestMessages) -> None:
         """Draw the changes."""
-        state, scene, ways = latest.planning_scene, latest.scene, latest.ways
+        state, scene, paths = latest.planning_scene, latest.scene, latest.paths
         if state is None:
             return
         read = self._read
-        if read is None or read[0] is not state or read[1] is not scene or read[2] is not ways:
-            self._read = (state, scene, ways)
-            shown = _shown(state, scene, ways)
+        if read is None or read[0] is not state or read[1] is not scene or read[2] is not paths:
+            self._read = (state, scene, paths)
+            shown = _shown(state, scene, paths)
             # A moving part changes the scene, but is drawn by the body layer.
             if shown != self._drawn:
                 self._drawn, self._poses = shown, None
@@ -102,11 +102,11 @@ class ObstacleLayer:
                     root.position, root.wxyz = now.xyz, now.wxyz
 
 
-def _shown(state: PlanningSceneState, scene: SceneDescription | None, ways: Mapping[str, PathPreview]) -> _Shown:
+def _shown(state: PlanningSceneState, scene: SceneDescription | None, paths: Mapping[str, PathPreview]) -> _Shown:
     # A fixture with several bodies has `name/0`, `name/1`.
     known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
     held = {part.name for part in state.held}
-    blocking = bodies_in_contact(ways, [each.name for each in (*state.obstacles, *state.held)])
+    blocking = bodies_in_contact(paths, [each.name for each in (*state.obstacles, *state.held)])
     return _Shown(
         obstacles=tuple(
             each

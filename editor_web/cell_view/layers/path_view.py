@@ -39,13 +39,13 @@ class PathLayer:
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
-        self._root = root_of("ways", under=under)
+        self._root = root_of("paths", under=under)
         self._arms: dict[str, _ArmPathDrawing] = {}
 
     def draw(self, latest: LatestMessages, now_s: float, *, is_shown: bool) -> float | None:
         """Draw the changes; return the time of the next call if a ghost moves and is shown."""
         due: list[float] = []
-        for name, preview in latest.ways.items():
+        for name, preview in latest.paths.items():
             if name not in self._arms:
                 self._arms[name] = _ArmPathDrawing(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
             drawing = self._arms[name]

@@ -20,7 +20,7 @@ class SceneLayers:
 
     def __init__(self, canvas: Canvas, *, under: str = "") -> None:
         self._bodies = BodyLayer(canvas, under=under)
-        self._ways = PathLayer(canvas, under=under)
+        self._paths = PathLayer(canvas, under=under)
         self._obstacles = ObstacleLayer(canvas, under=under)
         self._voxels = VoxelLayer(canvas, under=under)
         self._cameras = CameraLayer(canvas, under=under)
@@ -33,7 +33,7 @@ class SceneLayers:
         self._obstacles.draw(latest)
         self._detections.draw(latest)
         due = (
-            self._ways.draw(latest, now_s, is_shown="ways" in shown),
+            self._paths.draw(latest, now_s, is_shown="paths" in shown),
             self._voxels.draw(latest, now_s),
             self._cameras.draw(latest, now_s),
         )

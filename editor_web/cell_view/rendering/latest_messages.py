@@ -14,7 +14,7 @@ from engine.skills.vision import Detections
 class LatestMessages:
     """One reference per kind, the latest message wins; `arrived` is set with every message.
 
-    `descriptions`, `ways`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
+    `descriptions`, `paths`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
     frozen, so that a reader always sees a complete one.
     """
 
@@ -25,7 +25,7 @@ class LatestMessages:
         self.planning_scene: PlanningSceneState | None = None
         self.occupancy: OccupancyGrid | None = None
         self.descriptions: dict[str, RobotDescription] = {}
-        self.ways: dict[str, PathPreview] = {}
+        self.paths: dict[str, PathPreview] = {}
         self.occupancy_state: OccupancyState | None = None
         self.cameras: dict[str, CameraInfo] = {}
         self.depths: dict[str, DepthImage] = {}
@@ -49,7 +49,7 @@ class LatestMessages:
             case RobotDescription():
                 self.descriptions = {**self.descriptions, name: message}
             case PathPreview():
-                self.ways = {**self.ways, name: message}
+                self.paths = {**self.paths, name: message}
             case DepthImage():
                 self.depths = {**self.depths, name: message}
             case Detections():

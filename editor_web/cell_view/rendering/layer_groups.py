@@ -15,9 +15,9 @@ import viser
 from editor_web.cell_view.rendering.canvas import CELL, PAST, TAUGHT
 from editor_web.cell_view.rendering.viser_gateway import PAGE
 
-LayerGroup = Literal["voxels", "ways", "obstacles", "cameras", "detections", "people", "frames"]
-LAYER_GROUPS: tuple[LayerGroup, ...] = ("voxels", "ways", "obstacles", "cameras", "detections", "people", "frames")
-SHOWN_AT_FIRST: frozenset[LayerGroup] = frozenset({"voxels", "ways", "obstacles", "detections", "people"})
+LayerGroup = Literal["voxels", "paths", "obstacles", "cameras", "detections", "people", "frames"]
+LAYER_GROUPS: tuple[LayerGroup, ...] = ("voxels", "paths", "obstacles", "cameras", "detections", "people", "frames")
+SHOWN_AT_FIRST: frozenset[LayerGroup] = frozenset({"voxels", "paths", "obstacles", "detections", "people"})
 _KEPT_PAGES = 200
 
 

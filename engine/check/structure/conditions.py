@@ -99,7 +99,7 @@ class _Search:
     """Searches for combinations of child outcomes that satisfy no condition.
 
     Only outcomes that conditions name matter, so the choices of each child are those and one other that
-    represents the rest. Partial combinations that satisfy a condition are pruned. A child that a condition may
+    represents the rest. Partial combinations that satisfy a condition are left out. A child that a condition may
     preempt can also end with the outcome `_PREEMPTED`, where that condition holds.
     """
 

@@ -27,7 +27,7 @@ _MODES: tuple[StepMode, ...] = ("into", "over", "out")
 _RESTING = frozenset({"gate", "pause_confirmed", "run_ended"})
 """The tags of the events after which a run may rest."""
 _PRINTED = frozenset({"outcome_requested", "gate", "pause_confirmed", "stepped_back", "operator"})
-"""The tags of the events that an operator is told."""
+"""The tags of the events that are printed for the operator."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class OperatorConsole:
             self._input.release()
 
     def wait(self) -> None:
-        """Read no further line until the run rests: paused and confirmed, locked, or asking."""
+        """Read no further line until the run is at rest: paused and confirmed, locked, or asking."""
         self._input.hold()
         self._waiting = asyncio.get_running_loop().create_task(self._until_rest(), name="operator waits")
 
@@ -353,7 +353,7 @@ COMMANDS: Mapping[str, _Command] = {
     "autonomy": _Command("autonomy off|low|high|full", "outcomes that pass without a question", _autonomy),
     "reload": _Command("reload [preempt]", "continue with the current file", _reload),
     "where": _Command("where", "show the state of the run", _where),
-    "wait": _Command("wait", "read no further line until the run rests or asks", _wait),
+    "wait": _Command("wait", "read no further line until the run is at rest or asks", _wait),
     "detach": _Command("detach", "continue the run without operator", _detach),
     "stop": _Command("stop [REASON]", "stop the run", _stop),
     "help": _Command("help", "list the commands", _help),

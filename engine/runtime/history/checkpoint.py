@@ -30,4 +30,4 @@ class Checkpoint:
     taken: Mapping[str, str] = field(default_factory=dict[str, str])
     """The states that exit with a given outcome instead, by path."""
     stepping_back: str = ""
-    """The state that a step back was undoing when the engine died; empty for none."""
+    """The state that a step back was about to undo when the engine died; empty for none."""

@@ -317,7 +317,7 @@ class RunReducer(RunStatePart):
                 self._nodes[path] = msgspec.structs.replace(node, status="stopped", duration_s=duration_s)
 
     def _started_by(self, path: str, time_s: float) -> NodeLive:
-        """Return a node that ends now; one that was never entered, or whose entry was taken back, began now."""
+        """Return a node that ends now; one that was never entered, or whose entry was taken back, started now."""
         node = self.state.node(path)
         return NodeLive(entered_s=time_s) if node == IDLE else node
 

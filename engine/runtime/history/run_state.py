@@ -101,9 +101,9 @@ class RunState:
         self.locks: dict[str, str] = {}
         """The reason of each lock that an operator has set, by path."""
         self.stepping_back = ""
-        """The state that an unfinished step back began to undo last; empty while there is none."""
+        """The state that an unfinished step back started to undo last; empty while there is none."""
         self.nodes: dict[str, NodeLive] = {}
-        """Every node of which an event has told anything."""
+        """Every node that an event is about."""
         self.active: dict[str, None] = {}
         """The nodes that were entered and not left, in order of entry."""
         self.exits: dict[str, dict[str, str]] = {}
@@ -117,7 +117,7 @@ class RunState:
         return self.end is not None
 
     def node(self, path: str) -> NodeLive:
-        """Return a node; idle where no event has told anything about it."""
+        """Return a node; idle where no event is about it."""
         return self.nodes.get(path, IDLE)
 
     def copy(self) -> RunState:

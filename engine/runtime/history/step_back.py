@@ -1,6 +1,6 @@
 """Plans one step back of a paused run, or states why it is impossible; changes nothing.
 
-It undoes the node that began last and was not undone yet, in one branch: a node that has begun is undone and waits
+It undoes the node that started last and was not undone yet, in one branch: a node that has begun is undone and waits
 before its entry again; where the node has not begun, its predecessor in the machine is undone. The activations inside
 are undone in reverse order, so each of them must declare an undo.
 """
@@ -63,7 +63,7 @@ def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition
         plan: The current plan of the run.
         events: All events of the run.
         position: The position of the run.
-        path: The branch; by default the one in which something began last.
+        path: The branch; by default the one in which something started last.
 
     Raises:
         ControlError: no node in that branch can be undone; the message states the reason.

@@ -111,7 +111,7 @@ class UndoLog(RunStatePart):
 
         Args:
             path: The node.
-            since: The event after which they began; by default the one with which the run reached the node.
+            since: The event after which they started; by default the one with which the run reached the node.
         """
         first = self.since(path) if since is None else since
         activations = [each for each in self._done.values() if each.seq > first and is_inside(path, each.path)]

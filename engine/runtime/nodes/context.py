@@ -151,7 +151,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         return end
 
     async def latest(self, topic: str, kind: type[S]) -> S:
-        """Return the newest message of a topic, waiting for the first one."""
+        """Return the latest message of a topic, waiting for the first one."""
         self._count_progress()
         return self._received(topic, await self._execution.skills.latest(topic, kind, holder=self._holder))
 

@@ -116,7 +116,7 @@ class ObservingContext:
         raise asyncio.CancelledError
 
     async def latest(self, topic: str, kind: type[S]) -> S:
-        """Return the newest message of a topic, waiting for the first one."""
+        """Return the latest message of a topic, waiting for the first one."""
         self.topics.add(topic)
         return await self._execution.skills.latest(topic, kind, holder=self._holder)
 

@@ -65,7 +65,7 @@ class SkillPort(Protocol):
         ...
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Return the newest message of a topic, waiting for the first one."""
+        """Return the latest message of a topic, waiting for the first one."""
         ...
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
@@ -110,7 +110,7 @@ class BusPort:
         return self._bus.send_goal(goal, to=to, holder=holder, goal_id=goal_id)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
-        """Return the newest message of a topic, waiting for the first one."""
+        """Return the latest message of a topic, waiting for the first one."""
         message = self._bus.topic(topic, kind).latest
         return message if message is not None else await self.next_message(topic, kind, holder=holder)
 

@@ -235,7 +235,7 @@ def _schedule_tick(tree_timers: TreeTimers, path: str, every_s: float, *, hidden
 class DecoratorSite:
     """What a decorator finds in the activation of its tree.
 
-    `clear` halts a subtree whose tick was interrupted by an error; `record_retry` is told the number of the next
+    `clear` halts a subtree whose tick was interrupted by an error; `record_retry` receives the number of the next
     attempt, the wait, and the error before it, if any.
     """
 

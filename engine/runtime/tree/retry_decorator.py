@@ -26,7 +26,7 @@ class Retry(TreeDecorator):
         spec: The number of retries, the first wait, which doubles each time, and whether errors below are retried.
         tree_timers: The timers of the tree.
         clear: Halts a subtree whose tick was interrupted by an error.
-        tell: Called with the number of the next attempt, the wait, and the error before it, if any.
+        report: Called with the number of the next attempt, the wait, and the error before it, if any.
     """
 
     def __init__(

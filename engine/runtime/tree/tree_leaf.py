@@ -131,7 +131,7 @@ class TreeLeaf(Behaviour):
             counted = self.status is not _INVALID
         else:
             self._leaves.halt(activation)
-            # An activation that never began recorded nothing; an earlier end remains valid.
+            # An activation that never started recorded nothing; an earlier end remains valid.
             counted = activation.begun or self._counted
         if counted:
             self._statuses.reset(self.plan.node.path)

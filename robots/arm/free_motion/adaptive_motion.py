@@ -309,7 +309,7 @@ class AdaptiveMotion:
         segment = await self._answer(search)
         if isinstance(segment, PlanRefusal):
             return f"; {segment.message}"
-        # Only this check covers changes since the search began.
+        # Only this check covers changes since the search started.
         collision = await self._answer(self._monitor.along(segment))
         if collision is not None:
             return f"; on the new path {collision.reason}"

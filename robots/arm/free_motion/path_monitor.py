@@ -1,4 +1,4 @@
-"""Monitors the scene for one moving arm: whether its path is free, and what moves near it while it rests."""
+"""Monitors the scene for one moving arm: whether its path is free, and what moves near it while it is at rest."""
 
 from __future__ import annotations
 

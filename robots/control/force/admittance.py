@@ -7,7 +7,7 @@ import numpy as np
 from engine.skills.dmp import Compliance
 from robots.port import Array
 
-# While the loop only yields, forces up to this much above the wanted ones are tolerated.
+# While the loop only yields, forces up to this much above the target ones are tolerated.
 _BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
 _AXES = 6
 
@@ -34,13 +34,13 @@ class AdmittanceLoop:
         return self._axes
 
     def press(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
-        """Advance so that the measured wrench converges to the wanted one, (6,); `total` is the whole offset."""
+        """Advance so that the measured wrench converges to the target one, (6,); `total` is the whole offset."""
         for axis in self._axes:
             self._move(axis, step_s, float(measured[axis] - target[axis]), float(feed_forward[axis]))
         self._add_up(feed_forward)
 
     def relieve(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
-        """Come to rest; move only away from forces clearly above the wanted ones, never towards them."""
+        """Come to rest; move only away from forces clearly above the target ones, never towards them."""
         for axis in self._axes:
             excess = float(measured[axis] - target[axis])
             towards = excess * float(target[axis]) < 0.0

@@ -30,9 +30,9 @@ _AT_LIMIT_RAD = 0.01
 class ForceTracking:
     """Implements `MotionGenerator`: nominal path plus learned offset plus admittance offset.
 
-    Along the path, the admittance of the task acts on the measured wrench minus the wanted one.
+    Along the path, the admittance of the task acts on the measured wrench minus the target one.
     When held, cancelled, failed or at its end, the path stops and the tool stops pressing: the
-    offset comes to rest and yields only to forces clearly above the wanted ones, so that a tool that
+    offset comes to rest and yields only to forces clearly above the target ones, so that a tool that
     lost its surface does not chase it, and nothing is crushed. Under a persistent push it pauses
     every other second, so that a motion can always end. On resume, force tracking restarts
     at once. `data` is an encoded `ForceRecord` of the times of progress along the path.
@@ -52,7 +52,7 @@ class ForceTracking:
         self._tracker = ToolTracker(limits=limits, start=self._playback.position)
         self._recorder = ForceRecorder(task.record_s)
         self._task_axes = RigidTransform.of((0.0, 0.0, 0.0), task.task_xyzw).rotation
-        # Feed-forward offset and wanted wrench side by side, for one lookup.
+        # Feed-forward offset and target wrench side by side, for one lookup.
         self._rows = np.hstack((task.offset, task.wrench), dtype=np.float64)
         self._row = self._rows[0]
         self._passed_s = 0.0

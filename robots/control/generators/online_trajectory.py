@@ -110,7 +110,7 @@ class OnlineTrajectoryGenerator:
     def run_together(self, step_s: float, *, velocity: Array, turning: Array) -> None:
         """Bring the joints to velocities within their limits, along a straight line in velocity space.
 
-        `turning` (n,) is the rate of change of the wanted velocities, rad/s²; the reached share follows it.
+        `turning` (n,) is the rate of change of the target velocities, rad/s²; the reached share follows it.
         """
         now, before = np.array(self._now[1]), np.array(self._now[2])
         square = float(velocity @ velocity)

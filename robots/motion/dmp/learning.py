@@ -180,7 +180,7 @@ def _weights(
 ) -> tuple[tuple[float, ...], ...]:
     """Return the weights, one row for each column of the forcing term (T, n), by least squares.
 
-    An arm that rests at the end needs zero force afterwards too: otherwise the last kernel, active
+    An arm at rest at the end needs zero force afterwards too: otherwise the last kernel, active
     while the phase decays, would hold the arm away from its goal.
     """
     if rest_ends.end:

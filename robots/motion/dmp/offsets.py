@@ -1,4 +1,4 @@
-"""Values over the phase as kernel sums: learned offsets and wanted forces, evaluated and fitted (RCL table 8).
+"""Values over the phase as kernel sums: learned offsets and target forces, evaluated and fitted (RCL table 8).
 
 Learning is iterative (Gams et al. 2014): a pass adds the offsets of the previous passes and records the
 total offset of force control; the next pass adds that record, smoothed by the kernels. So the force error
@@ -27,7 +27,7 @@ def offsets_at(offsets: CartOffsets, phase: Array) -> Array:
 
 
 def wrench_at(force: ForceReference, phase: Array) -> Array:
-    """Return the wanted force (N) and torque (Nm) at each phase, (T, 6)."""
+    """Return the target force (N) and torque (Nm) at each phase, (T, 6)."""
     return _sum(GaussianKernels.of(force.c_f, force.sigma_f), np.array(force.weights), phase)
 
 

@@ -243,7 +243,7 @@ class _Attempt:
             timing_s=self._spent["timing"],
             checks=self._budget.checks,
             exact_checks=self._exact_checks,
-            refused_ways=self._refused,
+            refused_paths=self._refused,
             found_by=name,
         )
         rows: list[list[float]] = path.tolist()

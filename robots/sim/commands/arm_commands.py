@@ -50,7 +50,7 @@ class StartGuiding(CommandToArm, frozen=True, kw_only=True, tag="float"):
     damping: float
 
 
-class Setpoint(CommandToArm, frozen=True, kw_only=True, tag="tell"):
+class Setpoint(CommandToArm, frozen=True, kw_only=True, tag="setpoint"):
     """Target positions or velocities of a stream, sent `age_s` ago."""
 
     motion: int

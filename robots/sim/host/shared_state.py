@@ -15,7 +15,7 @@ import numpy as np
 from robots.port import Array
 
 _COUNT_BYTES = 8
-# A reader overtaken by two writes while it copies retries; it never needs more retries than this.
+# A reader superseded by two writes while it copies retries; it never needs more retries than this.
 _TRIES = 100
 
 

@@ -43,7 +43,7 @@ class LiveOccupancyMap:
         age_s = self._now_s() - self._looked_at_s
         if math.isinf(age_s):
             return "no camera image since the cell was restored to an earlier state"
-        return f"the newest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""
+        return f"the latest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""
 
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
         """Call `callback` whenever the revision or the stale reason has changed."""

@@ -27,14 +27,14 @@ def test_a_ghost_stands_beside_the_planned_way_and_goes_when_nobody_looks(server
     planned, ghosts = PathLayer(server), GhostLayer(server)
     planned.draw(newest, 0.0, is_shown=True)
     ghosts.draw({("left", 0): planned_path("left"), ("left", 2): planned_path("left")}, newest, 0.0)
-    for node in ("/ways/left", "/taught/left.0", "/taught/left.2"):
+    for node in ("/paths/left", "/taught/left.0", "/taught/left.2"):
         assert server.scene.get_handle_by_name(f"{node}/line") is not None
         assert server.scene.get_handle_by_name(f"{node}/ghost") is not None
     ghosts.draw({("left", 0): NOBODY_LOOKS}, newest, 1.0)
     assert server.scene.get_handle_by_name("/taught/left.0/line") is None
     assert server.scene.get_handle_by_name("/taught/left.2/line") is not None
     ghost, planned_ghost = (
-        server.scene.get_handle_by_name(f"{name}/ghost") for name in ("/taught/left.0", "/ways/left")
+        server.scene.get_handle_by_name(f"{name}/ghost") for name in ("/taught/left.0", "/paths/left")
     )
     assert ghost is not None
     assert not ghost.visible
@@ -63,7 +63,7 @@ async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
         view.show("mine", frozenset({"voxels"}))
         async with viser_page(view, "mine") as page:
             view.show_ghost("mine", planned_path("left"), place=1)
-            await page.until(lambda: page.is_seen("/taught/left.1/line") and not page.is_seen("/ways/left/line"))
+            await page.until(lambda: page.is_seen("/taught/left.1/line") and not page.is_seen("/paths/left/line"))
             view.show_ghost("mine", NOBODY_LOOKS, place=1)
             await page.until(lambda: not page.is_seen("/taught/left.1/line"))
 

@@ -120,7 +120,7 @@ async def test_a_page_comes_back_to_the_present_as_it_is_then(tmp_path: Path) ->
 
 
 async def test_what_was_not_there_yet_is_not_shown(tmp_path: Path) -> None:
-    things = ("/past/obstacles/post", "/past/voxels/occupied", "/past/ways/left/line")
+    things = ("/past/obstacles/post", "/past/voxels/occupied", "/past/paths/left/line")
     async with opened(tmp_path) as (_, past), viser_page(past.view, "one") as one:
 
         def seen() -> list[bool]:
@@ -149,11 +149,11 @@ async def test_a_page_hides_in_the_past_what_it_hides_in_the_present(tmp_path: P
     async with opened(tmp_path) as (_, past), viser_page(past.view, "one") as one:
         past.view.show("one", frozenset({"voxels"}))
         await past.show("one", "run", 7.0)
-        line = "/past/ways/left/line"
+        line = "/past/paths/left/line"
         await one.until(lambda: one.is_seen("/past/voxels/occupied") and one.node(line) is not None)
         await one.until(lambda: not one.is_seen(line))
-        past.view.show("one", frozenset({"ways"}))
-        await one.until(lambda: one.is_seen("/past/ways/left/line") and not one.is_seen("/past/voxels/occupied"))
+        past.view.show("one", frozenset({"paths"}))
+        await one.until(lambda: one.is_seen("/past/paths/left/line") and not one.is_seen("/past/voxels/occupied"))
 
 
 async def test_pages_see_different_instants_of_different_runs(tmp_path: Path) -> None:

@@ -4,9 +4,9 @@ import type { ShowLayers } from './types'
 
 export type LayerGroup = ShowLayers['groups'][number]
 
-export const LAYER_GROUPS: readonly LayerGroup[] = ['voxels', 'ways', 'obstacles', 'people', 'cameras', 'detections', 'frames']
-const AT_FIRST: readonly LayerGroup[] = ['voxels', 'ways', 'obstacles', 'people', 'detections']
-const KEPT = 'flexcell.shown'
+export const LAYER_GROUPS: readonly LayerGroup[] = ['voxels', 'paths', 'obstacles', 'people', 'cameras', 'detections', 'frames']
+const AT_FIRST: readonly LayerGroup[] = ['voxels', 'paths', 'obstacles', 'people', 'detections']
+const KEPT = 'flexcell.layers'
 
 /** What this page calls itself in the path of its 3D view; another page shows what it wants. */
 export const PAGE = Array.from(crypto.getRandomValues(new Uint32Array(3)), (part) => part.toString(36)).join('')

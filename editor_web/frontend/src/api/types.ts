@@ -741,7 +741,7 @@ export interface GoalHeld {
   readonly goal: string
 }
 
-/** An active goal: its run and node, and its newest feedback. */
+/** An active goal: its run and node, and its latest feedback. */
 export interface GoalInfo {
   readonly id: string
   readonly address: string
@@ -1002,7 +1002,7 @@ export interface LiveDelta {
   readonly robots: Dict<RobotLive>
 }
 
-/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active; `lock_reasons` are what the operator said, by the path of the locked node. */
+/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the locked node. */
 export interface LiveSnapshot {
   readonly k: "snapshot"
   readonly run: string
@@ -1527,7 +1527,7 @@ export interface RunEnded {
   readonly cause?: Cause | null
 }
 
-/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `hint` tells what to do, `links` are the causes without it. `steps` tell how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
+/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
 export interface RunFailure {
   readonly seq: number
   readonly time_s: number
@@ -1720,7 +1720,7 @@ export interface ShowHandle {
 export interface ShowLayers {
   readonly k: "show"
   readonly page: string
-  readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
+  readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
 }
 
 /** One numeric field of a topic: its path `position_rad.0`, its label `position_rad joint1`, its unit. */

@@ -32,7 +32,7 @@ def messages() -> LatestMessages:
 @pytest.fixture
 def node(server: viser.ViserServer) -> Callable[[str], Any]:
     """What is drawn of the left arm's way, None where nothing is."""
-    return lambda name: server.scene.get_handle_by_name(f"/ways/left/{name}")
+    return lambda name: server.scene.get_handle_by_name(f"/paths/left/{name}")
 
 
 @given(rows, st.floats(0, 1))

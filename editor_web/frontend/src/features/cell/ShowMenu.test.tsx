@@ -18,9 +18,9 @@ it('tells the server what the view of this page shows, and keeps it in the brows
   expect(menu.getByLabelText(/^Cameras/)).not.toBeChecked()
   await user.click(menu.getByLabelText(/^Voxels/))
   await user.click(menu.getByLabelText(/^Cameras/))
-  const groups = ['ways', 'obstacles', 'people', 'detections', 'cameras']
+  const groups = ['paths', 'obstacles', 'people', 'detections', 'cameras']
   expect(socket.sent.at(-1)).toMatchObject({ k: 'show', groups })
-  expect(JSON.parse(localStorage.getItem('flexcell.shown') ?? '[]')).toEqual(groups)
+  expect(JSON.parse(localStorage.getItem('flexcell.layers') ?? '[]')).toEqual(groups)
   await user.keyboard('{Escape}')
   expect(screen.getByRole('button', { name: 'Show' })).toHaveFocus()
 })

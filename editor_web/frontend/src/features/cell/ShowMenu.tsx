@@ -6,7 +6,7 @@ import { LAYER_GROUPS, setLayerShown, useShownLayers, type LayerGroup } from '..
 
 const WORDS: Record<LayerGroup, readonly [label: string, description: string]> = {
   voxels: ['Voxels', 'Where the cameras see something unknown'],
-  ways: ['Planned ways', 'Blue: proposed, green: active, red: blocked'],
+  paths: ['Planned paths', 'Blue: proposed, green: active, red: blocked'],
   obstacles: ['Planning scene', 'Obstacles of the planning scene, and held parts'],
   people: ['People', 'Their arms in a simulated cell'],
   cameras: ['Cameras', 'Their poses and depth images'],
