@@ -116,10 +116,16 @@ def open_for_reading(path: Path) -> Generator[BinaryIO]:
     Raises:
         RecordingError: the file cannot be read, is not an MCAP file, or is damaged.
     """
+    with damage_reported(path), path.open("rb") as stream:
+        _require_magic(stream, path)
+        yield stream
+
+
+@contextmanager
+def damage_reported(path: Path) -> Generator[None]:
+    """Raise any error of the block as a RecordingError: the file cannot be read, or it is damaged."""
     try:
-        with path.open("rb") as stream:
-            _require_magic(stream, path)
-            yield stream
+        yield
     except RecordingError:
         raise
     except OSError as error:

@@ -9,8 +9,7 @@ import struct
 from array import array
 from bisect import bisect_right
 from collections import OrderedDict
-from collections.abc import Generator, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -22,10 +21,9 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema
 from mcap.writer import MCAP0_MAGIC
 
-from engine.errors import RecordingError
 from engine.journal import decode_event
 from engine.recording.chunk_decompression import decompress_chunk
-from engine.recording.file_content import lock_against_removal, new_read_budget, read_index
+from engine.recording.file_content import damage_reported, lock_against_removal, new_read_budget, read_index
 from engine.recording.finalization import EVENT_TOPIC, PART
 from engine.recording.read_budget import MAX_RECORD
 
@@ -81,7 +79,7 @@ class IndexedRecording:
         Raises:
             RecordingError: it cannot be read, or is damaged.
         """
-        with _as_recording_error(path):
+        with damage_reported(path):
             stream = path.open("rb")
             try:
                 lock_against_removal(stream)
@@ -128,7 +126,7 @@ class IndexedRecording:
             RecordingError: it is damaged.
         """
         if self._growing:
-            with _as_recording_error(self.path):
+            with damage_reported(self.path):
                 self._scan()
 
     def at(self, topic: str, time_s: float) -> StoredMessage | None:
@@ -139,7 +137,7 @@ class IndexedRecording:
         """
         if self._zero_ns is None:
             return None
-        with _as_recording_error(self.path):
+        with damage_reported(self.path):
             track = self._track(f"/{topic}")
             if track is None:
                 return None
@@ -281,18 +279,3 @@ class IndexedRecording:
 def _is_other(topic: str) -> bool:
     """Events come from the journal, and Foxglove views duplicate recorded messages."""
     return topic.startswith((_SHOWN_ELSEWHERE, EVENT_TOPIC))
-
-
-@contextmanager
-def _as_recording_error(path: Path) -> Generator[None]:
-    try:
-        yield
-    except RecordingError:
-        raise
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise RecordingError(f"cannot read this file: {reason}", where=path, hint="check its path") from error
-    except Exception as error:
-        # The parser raises various exceptions; for the reader each means a damaged file.
-        what = " ".join(str(error).split()) or type(error).__name__
-        raise RecordingError(f"this file is damaged: {what}", where=path, hint="record it again") from error

@@ -25,6 +25,11 @@ Recording = Annotated[
 ]
 
 
+def _new_entry(kind: str) -> Meta:
+    description = f"Name of the entry of kind `{kind}` to write"
+    return Meta(min_length=1, description=description, extra_json_schema={"new_entry": kind})
+
+
 class LearnJointDmp(State, frozen=True, kw_only=True):
     """Learn a joint-space movement primitive from a recorded motion and store it as an entry of kind `dmp`.
 
@@ -39,14 +44,7 @@ class LearnJointDmp(State, frozen=True, kw_only=True):
 
     robot: RobotName
     recording: Recording
-    save_as: Annotated[
-        str,
-        Meta(
-            min_length=1,
-            description="Name of the entry of kind `dmp` to write",
-            extra_json_schema={"new_entry": "dmp"},
-        ),
-    ]
+    save_as: Annotated[str, _new_entry("dmp")]
     kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 chooses it from the fit")] = 0
 
     async def run(self, ctx: Context) -> Outcome:
@@ -75,14 +73,7 @@ class LearnCartDmp(State, frozen=True, kw_only=True):
 
     robot: RobotName
     recording: Recording
-    save_as: Annotated[
-        str,
-        Meta(
-            min_length=1,
-            description="Name of the entry of kind `cart_dmp` to write",
-            extra_json_schema={"new_entry": "cart_dmp"},
-        ),
-    ]
+    save_as: Annotated[str, _new_entry("cart_dmp")]
     kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 chooses it from the fit")] = 0
 
     async def run(self, ctx: Context) -> Outcome:

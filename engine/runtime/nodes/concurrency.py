@@ -15,7 +15,7 @@ from engine.preemption import BackgroundPreemptions, preempt, raise_failure
 from engine.runtime.nodes.diagnosis import explain_exit, is_failure
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node import Node, overdue_policy
-from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
+from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.record.node_checkpoint import NodeCheckpoint
 from engine.runtime.record.node_exit import PREEMPTED, ContainerOutcome, NodeExit
 from engine.runtime.userdata.userdata import Scope
@@ -23,7 +23,7 @@ from engine.state import Outcome
 
 
 @dataclass(frozen=True, kw_only=True)
-class Concurrency:
+class Concurrency(WithoutEntry):
     """Children by name and conditions, both in document order."""
 
     children: Mapping[str, Node]
@@ -66,15 +66,6 @@ class Concurrency:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return the initial values of its scope."""
         return self.userdata
-
-    @property
-    def constant(self) -> NodeEntry:
-        """The empty entry."""
-        return EMPTY_ENTRY
-
-    def enter(self, scope: Scope) -> NodeEntry:
-        """Return the empty entry: the children evaluate their own inputs."""
-        return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Start all children, evaluate the conditions whenever some finish, preempt and await the others."""

@@ -13,7 +13,7 @@ from engine.runtime.nodes.diagnosis import Diagnosis
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.livelock_detector import LivelockDetector
 from engine.runtime.nodes.node import Node
-from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
+from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.scheduling.wait_counters import BusyLoopCounter
 from engine.runtime.userdata.userdata import Scope
@@ -22,7 +22,7 @@ from engine.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)
-class Machine:
+class Machine(WithoutEntry):
     """Children by name in document order; `initial` runs first."""
 
     initial: str
@@ -56,15 +56,6 @@ class Machine:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return the initial values of its scope."""
         return self.userdata
-
-    @property
-    def constant(self) -> NodeEntry:
-        """The empty entry."""
-        return EMPTY_ENTRY
-
-    def enter(self, scope: Scope) -> NodeEntry:
-        """Return the empty entry: the children evaluate their own inputs."""
-        return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run children until a transition names an outcome of this machine."""

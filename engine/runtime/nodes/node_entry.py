@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from engine.runtime.record.node_checkpoint import NodeCheckpoint
+from engine.runtime.userdata.userdata import Scope
 from engine.state import State
 
 
@@ -23,3 +24,16 @@ class NodeEntry:
 
 
 EMPTY_ENTRY = NodeEntry()
+
+
+class WithoutEntry:
+    """Work with an empty entry: what runs in it evaluates its own inputs."""
+
+    @property
+    def constant(self) -> NodeEntry:
+        """The empty entry."""
+        return EMPTY_ENTRY
+
+    def enter(self, scope: Scope) -> NodeEntry:
+        """Return the empty entry."""
+        return EMPTY_ENTRY

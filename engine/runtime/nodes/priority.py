@@ -10,13 +10,13 @@ from engine.node_path import is_inside
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.machine import Machine
 from engine.runtime.nodes.node import Node
-from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
+from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome
 
 
 @dataclass(frozen=True, kw_only=True)
-class Priority:
+class Priority(WithoutEntry):
     """Runs `machine`; all other branches are held meanwhile, as in a pause."""
 
     machine: Machine
@@ -44,15 +44,6 @@ class Priority:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return the initial values of its scope."""
         return self.machine.userdata
-
-    @property
-    def constant(self) -> NodeEntry:
-        """The empty entry."""
-        return EMPTY_ENTRY
-
-    def enter(self, scope: Scope) -> NodeEntry:
-        """Return the empty entry: the children evaluate their own inputs."""
-        return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Hold the other branches, run the machine, release them; a nested priority holds more branches.

@@ -16,7 +16,7 @@ from engine.runtime.nodes.behavior_reference import BehaviorReference
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import Node, NodeWork
-from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
+from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome, State
 from engine.suggestions import did_you_mean
@@ -26,7 +26,7 @@ SUBSTITUTE = "substitute"
 
 
 @dataclass(frozen=True, kw_only=True)
-class SubstituteWork:
+class SubstituteWork(WithoutEntry):
     """Replaces `original`: each activation ends with the next of `endings`; the last one repeats."""
 
     original: NodeWork
@@ -57,15 +57,6 @@ class SubstituteWork:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return nothing: it has no scope of its own."""
         return {}
-
-    @property
-    def constant(self) -> NodeEntry:
-        """The empty entry."""
-        return EMPTY_ENTRY
-
-    def enter(self, scope: Scope) -> NodeEntry:
-        """Return the empty entry: the inputs of the original may be missing in a test."""
-        return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Wait, write the outputs, and end."""

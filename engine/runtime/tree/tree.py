@@ -9,7 +9,7 @@ from functools import cached_property
 from engine.document.nodes.node_spec import TREE_OUTCOMES
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node import Node
-from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
+from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.tree.runner import TreeRunner
 from engine.runtime.tree.tree_history import decode_tree_events
 from engine.runtime.tree.tree_node import TreeNode
@@ -18,7 +18,7 @@ from engine.state import Outcome
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tree:
+class Tree(WithoutEntry):
     """Work of a tree node of a plan."""
 
     root: TreeNode
@@ -51,15 +51,6 @@ class Tree:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return nothing: its scope starts empty."""
         return {}
-
-    @property
-    def constant(self) -> NodeEntry:
-        """The empty entry."""
-        return EMPTY_ENTRY
-
-    def enter(self, scope: Scope) -> NodeEntry:
-        """Return the empty entry: the leaves evaluate their own inputs."""
-        return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Tick the tree to its end; from its checkpoint, if it is resumed."""

@@ -43,6 +43,13 @@ class ForceTracking:
         joints: Joint names, for messages.
     """
 
+    contact = False
+    """Contact does not end this motion."""
+    goal: Array | None = None
+    """Pressing keeps a compliant arm off its set point."""
+    leads = True
+    """The arm follows."""
+
     def __init__(self, task: ForceTask, *, limits: JointLimits, joints: tuple[str, ...]) -> None:
         self._task = task
         self._joints = joints
@@ -79,24 +86,9 @@ class ForceTracking:
         return self._playback.complete and self.stopped
 
     @property
-    def contact(self) -> bool:
-        """False: contact does not end this motion."""
-        return False
-
-    @property
     def progress(self) -> float:
         """Elapsed share of the path's time."""
         return self._playback.progress
-
-    @property
-    def goal(self) -> Array | None:
-        """None: pressing keeps a compliant arm off its set point."""
-        return None
-
-    @property
-    def leads(self) -> bool:
-        """True: the arm follows."""
-        return True
 
     @property
     def failure(self) -> str:

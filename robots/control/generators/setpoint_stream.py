@@ -22,6 +22,13 @@ class SetpointStream:
         watchdog_s: Maximum silence.
     """
 
+    contact = False
+    """It ends on `finish`."""
+    goal: Array | None = None
+    """It may end anywhere."""
+    failure = ""
+    """It can always come to rest."""
+
     def __init__(self, *, shaper: OnlineTrajectoryGenerator, values: int, watchdog_s: float) -> None:
         self._shaper = shaper
         self._watchdog_s = watchdog_s
@@ -49,29 +56,14 @@ class SetpointStream:
         return self._finishing and self.stopped
 
     @property
-    def contact(self) -> bool:
-        """False: it ends on `finish`."""
-        return False
-
-    @property
     def progress(self) -> float:
         """0 until it is complete, then 1: a stream has no length."""
         return 1.0 if self.complete else 0.0
 
     @property
-    def goal(self) -> Array | None:
-        """None: it may end anywhere."""
-        return None
-
-    @property
     def leads(self) -> bool:
         """True: the arm follows."""
         return True
-
-    @property
-    def failure(self) -> str:
-        """Empty: it can always come to rest."""
-        return ""
 
     def receive(self, values: Array, *, age_s: float = 0.0) -> None:
         """Set the latest values; the watchdog counts from when they were sent, `age_s` ago."""

@@ -27,6 +27,13 @@ class TrajectoryPlayback:
         shortest_stop_s: Minimum time from the nominal pace to a stop; it makes slow stops gentle.
     """
 
+    contact = False
+    """It ends only at its goal."""
+    leads = True
+    """The arm follows."""
+    failure = ""
+    """A path can always be followed."""
+
     def __init__(
         self, trajectory: JointTrajectory, *, acceleration_rad_s2: Array, shortest_stop_s: float = SHORTEST_STOP_S
     ) -> None:
@@ -65,21 +72,6 @@ class TrajectoryPlayback:
     def complete(self) -> bool:
         """True at the end of the path."""
         return self.at_end
-
-    @property
-    def contact(self) -> bool:
-        """False: it ends only at its goal."""
-        return False
-
-    @property
-    def leads(self) -> bool:
-        """True: the arm follows."""
-        return True
-
-    @property
-    def failure(self) -> str:
-        """Empty: a path can always be followed."""
-        return ""
 
     @property
     def progress(self) -> float:

@@ -1,7 +1,7 @@
 /** The file and the draft have both changed: what each has, side by side, and which text to go on with. */
-import { useMemo, useState } from 'react'
+import { useState } from 'react'
 import { Dialog } from '../../components/Dialog'
-import { folded, sideBySide } from '../../document/editing/textChange'
+import { LineDiff } from './LineDiff'
 import { resolve, type Side } from './session'
 import { draftOf, setEditor, useEditor } from './store'
 
@@ -9,9 +9,8 @@ export function ConflictDialog() {
   const conflict = useEditor((s) => s.conflict)
   const mine = useEditor((s) => draftOf(s).text)
   const [against, setAgainst] = useState<Side>('theirs')
-  const right = against === 'merged' ? (conflict?.merged ?? '') : (conflict?.theirs ?? '')
-  const lines = useMemo(() => (conflict ? folded(sideBySide(mine, right)) : []), [conflict, mine, right])
   if (!conflict) return null
+  const right = against === 'merged' ? (conflict.merged ?? '') : conflict.theirs
   const isMergeable = conflict.merged !== null
   const close = () => setEditor({ conflict: undefined, isOutdated: true })
   return (
@@ -29,21 +28,7 @@ export function ConflictDialog() {
             {isMergeable && <Against label="Merged" side="merged" now={against} onChoose={setAgainst} />}
           </div>
         </div>
-        <div className="diff" role="region" tabIndex={0} aria-label="Differences, yours on the left">
-          {lines.length === 0 && <div className="diff-fold">The two are the same.</div>}
-          {lines.map((line, index) =>
-            line === undefined ? (
-              <div key={index} className="diff-fold">
-                …
-              </div>
-            ) : (
-              <div key={index} className={`diff-line${line.isSame ? '' : ' is-changed'}`}>
-                <code className={line.left === undefined ? 'is-missing' : ''}>{line.left ?? ''}</code>
-                <code className={line.right === undefined ? 'is-missing' : ''}>{line.right ?? ''}</code>
-              </div>
-            ),
-          )}
-        </div>
+        <LineDiff label="Differences, yours on the left" left={mine} right={right} />
         <div className="command-row">
           {isMergeable && (
             <button type="button" className="command is-strong" onClick={() => void resolve('merged')}>

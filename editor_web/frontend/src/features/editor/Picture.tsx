@@ -94,27 +94,11 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
         const box = boxOf(boxes, node.id)
         switch (node.type) {
           case 'leaf':
-            return (
-              <Leaf
-                key={node.id}
-                node={node}
-                box={box}
-                palette={palette}
-                mark={markings?.get(node.id)}
-                onPick={onPick}
-              />
-            )
-          case 'twig':
-            return (
-              <Twig
-                key={node.id}
-                node={node}
-                box={box}
-                palette={palette}
-                mark={markings?.get(node.id)}
-                onPick={onPick}
-              />
-            )
+          case 'twig': {
+            const Part = node.type === 'leaf' ? Leaf : Twig
+            const mark = markings?.get(node.id)
+            return <Part key={node.id} node={node} box={box} palette={palette} mark={mark} onPick={onPick} />
+          }
           case 'pill':
             return <Pill key={node.id} node={node} box={box} palette={palette} />
           case 'rules':

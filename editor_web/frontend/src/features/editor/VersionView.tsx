@@ -3,8 +3,8 @@ import { useEffect, useMemo, useState } from 'react'
 import type { DocumentDiff } from '../../api/types'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange, type Marking } from '../../document/editing/changes'
 import type { EditNode } from '../../document/editing/model'
-import { folded, sideBySide } from '../../document/editing/textChange'
 import { drawingOf, openWith, type Drawing } from './drawing'
+import { LineDiff } from './LineDiff'
 import { Picture } from './Picture'
 import { OF_PAGE } from './pictureParts'
 
@@ -138,29 +138,14 @@ function Drawn({ of, markings, rowPx }: { of: Shown; markings: ReadonlyMap<strin
 }
 
 function TextDifference({ before, after }: { before: Shown | undefined; after: Shown }) {
-  const lines = useMemo(() => (before ? folded(sideBySide(before.text, after.text)) : undefined), [before, after])
-  if (!lines || !before) return <pre className="version-text">{after.text}</pre>
+  if (!before) return <pre className="version-text">{after.text}</pre>
   return (
     <>
       <div className="conflict-heads">
         <strong>{before.words}</strong>
         <strong>{after.words}</strong>
       </div>
-      <div className="diff" role="region" tabIndex={0} aria-label="Differences, the older one on the left">
-        {before.text === after.text && <div className="diff-fold">The two are the same.</div>}
-        {lines.map((line, index) =>
-          line === undefined ? (
-            <div key={index} className="diff-fold">
-              …
-            </div>
-          ) : (
-            <div key={index} className={`diff-line${line.isSame ? '' : ' is-changed'}`}>
-              <code className={line.left === undefined ? 'is-missing' : ''}>{line.left ?? ''}</code>
-              <code className={line.right === undefined ? 'is-missing' : ''}>{line.right ?? ''}</code>
-            </div>
-          ),
-        )}
-      </div>
+      <LineDiff label="Differences, the older one on the left" left={before.text} right={after.text} />
     </>
   )
 }

@@ -79,21 +79,19 @@ function pickable(path: string, onPick: PartProps['onPick']) {
   return onPick ? { onClick: () => onPick(path), style: { cursor: 'pointer' } } : {}
 }
 
+type BodyProps = Pick<PartProps, 'box' | 'palette' | 'mark'> & { readonly of: EditNode; readonly fill: string }
+
+function Body({ of, fill, box, palette, mark }: BodyProps) {
+  const stroke = colourOf(mark, palette.line, palette)
+  const strokeDasharray = of.kind === 'concurrency' ? '5 4' : undefined
+  return <rect {...box} rx={10} style={{ fill, stroke, strokeWidth: mark ? 2.6 : 1.5, strokeDasharray }} />
+}
+
 export function Frame({ node, box, palette, mark, onPick }: PartProps) {
-  const { node: of } = (node as CardNode).data
-  const transitions = (node as CardNode).data.transitions
+  const { node: of, transitions } = (node as CardNode).data
   return (
     <g {...pickable(node.id, onPick)}>
-      <rect
-        {...box}
-        rx={10}
-        style={{
-          fill: palette.frame,
-          stroke: colourOf(mark, palette.line, palette),
-          strokeWidth: mark ? 2.6 : 1.5,
-          strokeDasharray: of.kind === 'concurrency' ? '5 4' : undefined,
-        }}
-      />
+      <Body of={of} fill={palette.frame} box={box} palette={palette} mark={mark} />
       <text
         x={box.x + 14}
         y={box.y + FRAME_HEAD / 2 + 5}
@@ -123,16 +121,7 @@ export function Leaf({ node, box, palette, mark, onPick }: PartProps) {
   const below = of.title || (count === 0 ? `${kindLabel(of.kind)}, empty` : `${kindLabel(of.kind)} of ${count}`)
   return (
     <g {...pickable(node.id, onPick)}>
-      <rect
-        {...box}
-        rx={10}
-        style={{
-          fill: palette.card,
-          stroke: colourOf(mark, palette.line, palette),
-          strokeWidth: mark ? 2.6 : 1.5,
-          strokeDasharray: of.kind === 'concurrency' ? '5 4' : undefined,
-        }}
-      />
+      <Body of={of} fill={palette.card} box={box} palette={palette} mark={mark} />
       <text
         x={box.x + 13}
         y={box.y + 21}
