@@ -20,7 +20,8 @@ from engine.event import Event, NodeEntered
 from engine.journal import Journal
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 
 _BEHAVIOR = """
 flexcell: 1

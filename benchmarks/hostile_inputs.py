@@ -37,7 +37,8 @@ from engine.errors import FlexcellError
 from engine.host.thread_switch_interval import short_switch_interval
 from engine.registry import load_states
 from engine.runtime.plan import Catalogue, Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.state import Context, Outcome, State
 
 PROJECT = Path(__file__).resolve().parents[1]

@@ -27,9 +27,10 @@ from engine.recording import RecordedDocuments, RecordingOptions
 from engine.recording.recorded_run import document_snapshot, read_run
 from engine.runtime.plan import Plan
 from engine.runtime.record.skill_port import BusPort
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
 from engine.runtime.run_id import new_run_id
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 from engine.stop import StopRelay
 
 

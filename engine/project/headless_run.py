@@ -16,7 +16,7 @@ from engine.project.cell_runner import CellSetup, execute_within, open_cell_runn
 from engine.project.run_request import RunRequest, require_simulation
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.runtime.record.recorder import Watcher
-from engine.runtime.run import RunResult
+from engine.runtime.run_result import RunResult
 
 T = TypeVar("T")
 

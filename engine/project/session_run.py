@@ -14,7 +14,7 @@ from engine.journal import RunRecord
 from engine.project.cell_runner import PreparedRun
 from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.run_view import RunView
-from engine.runtime.run import RunResult
+from engine.runtime.run_result import RunResult
 
 
 class InterruptedRun(msgspec.Struct, frozen=True, kw_only=True):

@@ -30,7 +30,8 @@ from engine.replay.replay_difference import ReplayDifference
 from engine.replay.replay_loop import ReplayLoop
 from engine.replay.replay_port import ReplayPort
 from engine.runtime.plan import Plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 
 _PATIENCE_S = 10.0
 """Time after the last recorded event beyond which a run on the virtual clock counts as stuck."""

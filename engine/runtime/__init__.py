@@ -8,7 +8,7 @@ from engine.lazy_face import lazy_face
 _HOMES = {
     "Run": "engine.runtime.run",
     "RunOptions": "engine.runtime.run_options",
-    "RunResult": "engine.runtime.run",
+    "RunResult": "engine.runtime.run_result",
     "Supervision": "engine.runtime.run_options",
     "decode_nonfinite": "engine.runtime.record.nonfinite",
 }

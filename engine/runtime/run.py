@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import random
 from collections.abc import Awaitable, Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import msgspec
 
@@ -27,26 +26,9 @@ from engine.runtime.record.recorder import Recorder, Watcher
 from engine.runtime.record.skill_port import BusPort, RunAwarePort, SkillPort
 from engine.runtime.run_log import RunLog
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 from engine.runtime.scheduling.hold import BranchHolds
 from engine.runtime.userdata.userdata import Scope
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunResult:
-    """Result of a run: `status` is finished, stopped or errored; `success` only for a declared success outcome."""
-
-    run: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: Cause | None
-    duration_s: float
-    userdata: Mapping[str, object]
-    stood_in_for: tuple[str, ...] = ()
-    """The nodes that a test replaced by substitutes."""
-    abandoned: tuple[str, ...] = ()
-    """States that did not end when preempted; their devices may still move and stay leased."""
 
 
 class Run:

@@ -18,8 +18,9 @@ from engine.journal import NullJournal
 from engine.messages import JointState, PartPoses, Pose
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 SAMPLE_S = 0.05

@@ -7,7 +7,7 @@ from pathlib import Path
 from engine.cause_chain import describe_cause, link_text, links_from_root
 from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
 from engine.runtime.plan import Plan
-from engine.runtime.run import RunResult
+from engine.runtime.run_result import RunResult
 
 
 def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, seed: int | None, clock: str) -> None:

@@ -14,7 +14,7 @@ from engine.cause_chain import link_text, links_from_root
 from engine.cli.output.output_file import write
 from engine.event import Cause, Event
 from engine.journal import encode_event_log
-from engine.runtime.run import RunResult
+from engine.runtime.run_result import RunResult
 
 
 def report_run(result: RunResult, log: Sequence[Event], *, as_json: bool, events: Path | None) -> None:

@@ -26,8 +26,9 @@ from engine.host.thread_switch_interval import short_switch_interval
 from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun, execute_within, open_cell_runner
 from engine.runtime.plan import Plan
 from engine.runtime.record.recorder import Watcher
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 from engine.runtime.watchdog import LoopWatchdog
 from engine.stop import StopNotice, StopRelay
 

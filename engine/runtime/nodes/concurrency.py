@@ -14,8 +14,9 @@ from engine.event import BranchesPreempted, Cause
 from engine.preemption import BackgroundPreemptions, preempt, raise_failure
 from engine.runtime.nodes.diagnosis import explain_exit, is_failure
 from engine.runtime.nodes.execution import Execution
-from engine.runtime.nodes.node import Node, overdue_policy
+from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
+from engine.runtime.nodes.overdue_nodes import overdue_policy
 from engine.runtime.record.node_checkpoint import NodeCheckpoint
 from engine.runtime.record.node_exit import PREEMPTED, ContainerOutcome, NodeExit
 from engine.runtime.userdata.userdata import Scope

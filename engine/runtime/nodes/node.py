@@ -9,19 +9,20 @@ import asyncio
 from collections.abc import Awaitable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from engine.cause_chain import cause_of, describe_cause, wrap_cause
 from engine.document.duration import LONGEST_S
 from engine.document.expression.expression_cost import MAX_STEPS
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, NodeRetried
-from engine.preemption import OverduePolicy, being_cancelled, preempt, raise_failure, take_order_preemption
+from engine.preemption import being_cancelled, preempt, raise_failure, take_order_preemption
 from engine.runtime.control.gate import OperatorOrder
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
 from engine.runtime.nodes.node_events import record_diverted, record_entry, record_exit
 from engine.runtime.nodes.node_policies import GuardPolicy, RetryPolicy, TimeoutPolicy
+from engine.runtime.nodes.overdue_nodes import overdue_policy
 from engine.runtime.record.node_checkpoint import NodeCheckpoint
 from engine.runtime.record.node_exit import NodeExit, exit_from_outcome, guard_closed_cause
 from engine.runtime.userdata.userdata import Scope
@@ -396,22 +397,3 @@ async def _ended(outcome: Outcome) -> Outcome:
 
 async def _raised(error: BaseException) -> Outcome:
     raise error
-
-
-def overdue_policy(execution: Execution, path: str) -> OverduePolicy:
-    """Return the policy that logs nodes inside `path` with overdue clean-up, and finally abandons them."""
-
-    def report(late: str, waited_s: float) -> None:
-        execution.recorder.log(late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
-
-    def abandon(task: asyncio.Task[Any], waited_s: float) -> None:
-        execution.abandon(task, task.get_name(), waited_s)
-
-    # The innermost level abandons first, or every level around it would be abandoned with it.
-    grace_s = 0.1 * max(0, 20 - path.count("/"))
-    return OverduePolicy(
-        report=report,
-        abandon=abandon,
-        abandon_after_s=execution.abandon_after_s + grace_s,
-        stands_still=execution.branch_holds.stands_still,
-    )

@@ -15,7 +15,7 @@ import msgspec
 
 from engine.preemption import preempt
 from engine.runtime.nodes.execution import Execution
-from engine.runtime.nodes.node import overdue_policy
+from engine.runtime.nodes.overdue_nodes import overdue_policy
 from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.scheduling.eager_start import start_eagerly
 from engine.runtime.tree.scope_access import ScopeAccess

@@ -21,8 +21,8 @@ from engine.event import Event, MessageReceived, UserdataAppended, UserdataWritt
 from engine.node_path import is_inside
 from engine.preemption import preempt
 from engine.runtime.nodes.execution import Execution
-from engine.runtime.nodes.node import overdue_policy
 from engine.runtime.nodes.observation import Observation, observe
+from engine.runtime.nodes.overdue_nodes import overdue_policy
 from engine.runtime.scheduling.timer import Timer
 from engine.runtime.tree.active_leaves import CHECK_TIMEOUT_S
 from engine.runtime.tree.branching import WhileDoElse

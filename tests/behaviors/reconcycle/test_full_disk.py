@@ -16,7 +16,8 @@ from engine.event import Event, GoalFinished, GoalSent, NodeExited
 from engine.messages import JointState
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 REST_RAD_S = 0.02

@@ -23,7 +23,8 @@ from engine.journal import NullJournal, encode_event_log
 from engine.messages import JointState
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from robots.port import Array
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import ArmIndices, build_cell

@@ -17,7 +17,8 @@ from engine.clock import new_clock, run_virtual
 from engine.document import Behavior, parse_behavior
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "how-to" / "write-behaviors-in-python.md").read_text(encoding="utf-8")

@@ -16,8 +16,9 @@ from engine.faults import FaultPort, parse_faults
 from engine.messages import GripperState
 from engine.runtime.plan import new_plan
 from engine.runtime.record.skill_port import BusPort
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 from engine.skills.gripper import GraspResult, GripperFeedback, GripperGrasp, ReadGripper
 from engine.state import Context, Outcome, State
 from tests.engine.fake_states import CATALOGUE

@@ -10,7 +10,8 @@ from engine.clock import new_clock, run_virtual
 from engine.document import Behavior
 from engine.event import Event
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.reference.act import CATALOGUE
 
 

@@ -22,8 +22,9 @@ from engine.recording import RecordedDocuments, Recording, RecordingOptions, Run
 from engine.replay import ReplayReport, replay
 from engine.runtime.plan import new_plan
 from engine.runtime.record.skill_port import BusPort, SkillPort
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 from engine.skill import Action, Service
 from engine.state import ActivationRecord, Context, Outcome, State
 from tests.engine.fake_states import CATALOGUE as PLAIN

@@ -18,7 +18,8 @@ from engine.journal import Journal, encode_event_log, list_runs, read_events
 from engine.project.session import Session
 from engine.registry import load_states
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 WAVE = """

@@ -16,7 +16,8 @@ from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.skills.dmp import JointDMP
 from engine.skills.entries import ListEntries
 from engine.skills.gripper import GripperMove, GripperSetting

@@ -18,7 +18,7 @@ import { CaptureList } from '../features/teaching/CaptureList'
 import { EntryList } from '../features/teaching/EntryList'
 import { JogPanel } from '../features/teaching/JogPanel'
 import { LeadPanel } from '../features/teaching/LeadPanel'
-import '../features/teaching/styles/teaching.css'
+import '../features/teaching/styles/index.css'
 import { TriggerTable } from '../features/teaching/TriggerTable'
 import { useButtons } from '../features/teaching/useButtons'
 

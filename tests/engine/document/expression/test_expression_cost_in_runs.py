@@ -11,7 +11,8 @@ from engine.clock import new_clock, run_virtual
 from engine.document.expression.expression_cost import MAX_STEPS
 from engine.document.expression.step_meter import METER
 from engine.event import NodeEntered
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.run_document import ObservedRun, plan_of, run_document
 
 XS = f"[{', '.join(map(str, range(250)))}]"

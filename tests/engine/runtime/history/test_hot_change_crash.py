@@ -13,7 +13,8 @@ from engine.event import BehaviorChanged, Event, NodeEntered, RunEnded
 from engine.journal import MemoryRunJournal
 from engine.runtime.history.resume import read_history, resume_checkpoint
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.fake_states import WITH_FLOW
 from tests.engine.run_document import HEAD
 from tests.engine.runtime.control.operate import operate, pause, resume

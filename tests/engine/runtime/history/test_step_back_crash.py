@@ -16,7 +16,8 @@ from engine.event import Event, GoalFinished, MessageLogged, RunEnded, RunSteppe
 from engine.journal import MemoryRunJournal
 from engine.runtime.history.resume import read_history, resume_checkpoint
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.at_once import at_once
 from tests.engine.fake_states import WITH_FLOW
 from tests.engine.run_document import HEAD

@@ -8,7 +8,8 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import load_behavior
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.fake_states import CATALOGUE
 
 COUNTER = """

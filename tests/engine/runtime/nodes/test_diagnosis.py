@@ -10,7 +10,8 @@ from engine.clock import new_clock, run_virtual
 from engine.event import Cause, Event
 from engine.runtime.history.resume import read_history, resume_checkpoint
 from engine.runtime.plan import Plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.run_document import plan_of, run_document
 
 LOOKED_FOR = """

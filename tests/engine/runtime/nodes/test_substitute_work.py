@@ -18,7 +18,8 @@ from engine.errors import ControlError, DocumentError, Position
 from engine.event import Event, NodeEntered, NodeExited
 from engine.project.run_request import require_simulation
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.state import Context, Outcome, State
 from engine.testing import SubstituteEnding, run_behavior
 from tests.engine.fake_states import WITH_FLOW

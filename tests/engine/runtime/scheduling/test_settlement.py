@@ -12,7 +12,8 @@ from engine.clock import new_clock
 from engine.document import parse_behavior
 from engine.event import BranchesPreempted, Event
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.state import Context, Outcome, State
 
 TEXT = """

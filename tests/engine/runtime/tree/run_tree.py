@@ -12,7 +12,8 @@ from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.event import Event, MessageLogged, NodeDiverted, NodeEntered, NodeExited, NodeRetried, StatusChanged
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.runtime.tree.scripted_states import CATALOGUE, COUNTS
 
 HEAD = "flexcell: 1\nname: test\noutcomes: [success, failure]\nsuccess: [success]\n"

@@ -12,7 +12,8 @@ from py_trees.blackboard import Blackboard
 from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.errors import DocumentError
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from tests.engine.runtime.tree.foreign_behaviours import CALLS
 from tests.engine.runtime.tree.run_tree import run_tree, tree_plan
 

@@ -18,7 +18,8 @@ from engine.messages import Message
 from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.skill import Service
 from engine.state import Context, Outcome, State
 from states.flow.decide import Decide

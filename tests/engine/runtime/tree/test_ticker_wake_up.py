@@ -12,7 +12,8 @@ from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.event import Event, NodeEntered, NodeExited
 from engine.runtime.plan import Plan, new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from engine.skill import Service
 from engine.state import Context, Outcome, State
 from tests.engine.runtime.tree.run_tree import HEAD, run_plan, tree_plan

@@ -15,7 +15,8 @@ from engine.project.cell_runner import CellRunner
 from engine.project.run_request import RunRequest
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
-from engine.runtime.run import Run, RunResult
+from engine.runtime.run import Run
+from engine.runtime.run_result import RunResult
 from robots.port import Array
 from tests.robots.sim.demo_cell import joint_state, opened_cell, part_height_m
 
