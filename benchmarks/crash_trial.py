@@ -29,8 +29,8 @@ from engine.project.run_request import RunRequest
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.runtime.history.resume import ResumeDecisionRequired
 from engine.runtime.plan import new_plan
-from engine.runtime.run_result import RunResult
 from engine.runtime.run_options import RunOptions
+from engine.runtime.run_result import RunResult
 
 SEED = 3
 

@@ -26,7 +26,7 @@ def test_mutated_documents_go_through_check_editor_and_run() -> None:
 def _require_calm(made: HostileInputProbe, texts: list[str]) -> None:
     before = METER.spent
     made.pass_through(enumerate(text for text in texts if len(text) < 5 * MAX_TEXT))
-    assert [error for tally in made.tallies for error in tally.errors] == []
+    assert [error for tally in made.probes for error in tally.errors] == []
     assert made.checking.refused > 0
     assert made.running.count > 0
     # What the runs on this thread cost, in steps: at most a small part of a second of the loop for each.

@@ -27,7 +27,7 @@ ARMS_AND_LAWS = pytest.mark.parametrize(
 def test_on_a_flat_surface_ten_newtons_stay_within_half_a_newton_while_moving(
     subject: Subject, law: ControllerName
 ) -> None:
-    wiping = Wiping(subject, slope=0.0, way_m=0.12, settings=ControlSettings(controller=law))
+    wiping = Wiping(subject, slope=0.0, length_m=0.12, settings=ControlSettings(controller=law))
     made = wiping.wipe(learned=None, peak_m_s=0.1)
     assert made.report.end is MotionEnd.REACHED
     assert np.abs(made.steady(after_s=SETTLED_S, step_s=0.001)).max() < 0.5
@@ -39,7 +39,7 @@ def test_on_an_unknown_slope_every_pass_presses_better_than_the_one_before(
     subject: Subject, law: ControllerName
 ) -> None:
     passes = three_passes(
-        Wiping(subject, slope=0.05, way_m=0.12, settings=ControlSettings(controller=law)), peak_m_s=0.1
+        Wiping(subject, slope=0.05, length_m=0.12, settings=ControlSettings(controller=law)), peak_m_s=0.1
     )
     errors = [rms(made.steady(after_s=SETTLED_S, step_s=0.001)) for made in passes]
     assert errors[0] > 2.0 * errors[1] > 2.0 * errors[2]

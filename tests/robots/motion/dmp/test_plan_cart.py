@@ -13,13 +13,15 @@ from hypothesis import strategies as st
 from engine.errors import RobotError
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp
+from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, quaternion_of
 from robots.model.transform import product as turned
-from robots.motion.dmp import integrate_pose, learn_cart_dmp, plan_cart_dmp, transform_dmp
+from robots.motion.dmp import integrate_pose, learn_cart_dmp, plan_cart, plan_cart_dmp, transform_dmp
 from robots.motion.dmp.plan_cart import resting_pose
 from robots.motion.dmp.quaternions import exp, product
 from robots.motion.min_jerk import min_jerk
-from robots.port import JointTrajectory
+from robots.motion.tool_path import ToolPath
+from robots.port import Array, JointTrajectory
 from tests.robots.motion.dmp.demonstrations import seeds
 from tests.robots.motion.dmp.test_integration import new_cart_dmp
 from tests.robots.panda_arm import BASE, home, panda_kinematics, panda_model, played
@@ -175,6 +177,22 @@ def test_too_fast_is_refused_and_the_tau_it_asks_for_suffices() -> None:
 def test_a_path_that_the_arm_cannot_follow_is_refused(move: tuple[float, float, float], words: str) -> None:
     with pytest.raises(RobotError, match=words):
         plan(led_tool_from_home(move=move, duration_s=5.0))
+
+
+def test_how_far_a_short_path_can_be_followed_is_a_share_of_its_own_length(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 10 cm as of metres: the end is at 1, which messages show as 100%."""
+    paths: list[ToolPath] = []
+
+    def refused(_kinematics: ArmKinematics, _start: Array, path: ToolPath) -> Array:
+        paths.append(path)
+        raise RobotError("refused")
+
+    monkeypatch.setattr(plan_cart, "follow_tool_path", refused)
+    with pytest.raises(RobotError, match="refused"):
+        plan(led_tool_from_home(move=(0.1, 0.0, 0.0)))
+    (path,) = paths
+    assert (path.shares[0], path.shares[-1]) == (0.0, pytest.approx(1.0))
+    assert (np.diff(path.shares) >= 0.0).all()
 
 
 def test_a_tool_elsewhere_is_refused_with_the_distance() -> None:

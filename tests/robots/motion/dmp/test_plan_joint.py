@@ -17,7 +17,7 @@ from robots.motion.dmp import integrate_joints, learn_joint_dmp, plan_joint_dmp
 from robots.motion.dmp.plan_joint import resting_joints
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array, JointTrajectory
-from tests.robots.motion.dmp.demonstrations import seeds
+from tests.robots.motion.dmp.demonstrations import led_joints, seeds
 from tests.robots.motion.dmp.test_integration import new_joint_dmp
 from tests.robots.panda_arm import home, panda_model, played
 
@@ -72,6 +72,16 @@ def test_an_arm_at_the_start_follows_the_primitive_itself() -> None:
     dmp = led_from_home()
     way = plan(dmp, np.array(dmp.y0))
     assert np.abs(way.position_rad - integrate_joints(dmp).position).max() < 1e-3
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_moves_at_the_end_of_the_primitive_comes_to_rest_there_without_a_jump(seed: int) -> None:
+    """One step before the end almost nothing moves any more, in rate as in position, radians a tau."""
+    dmp = learn_joint_dmp(led_joints(seed).recorded).dmp
+    assert np.abs(integrate_joints(dmp).rate[-1]).max() > 2e-3
+    path = resting_joints(dmp, np.array(dmp.y0))
+    assert np.abs(path.rate[-2]).max() < 5e-4
+    assert np.abs(path.position[-1] - path.position[-2]).max() < 5e-4 * (path.shares[-1] - path.shares[-2])
 
 
 @settings(max_examples=10, deadline=None)
