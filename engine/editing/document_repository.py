@@ -18,15 +18,15 @@ from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.text.yaml_source import MAX_BYTES, parse_source
+from engine.editing.analysis.data_flow import KeyFlow, data_flow
+from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
-from engine.editing.data_flow import KeyFlow, data_flow
-from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash
-from engine.editing.draft import Draft
 from engine.editing.draft_cache import DraftCache, EditAnswer
-from engine.editing.edit import AnyEdit
+from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
 from engine.editing.templates import new_text
-from engine.editing.three_way_merge import MergeConflict, merge_texts
+from engine.editing.text.draft import Draft
+from engine.editing.text.three_way_merge import MergeConflict, merge_texts
 from engine.editing.versions import DocumentVersion, VersionHistory, write_atomically
 from engine.errors import DocumentError, Position
 from engine.host.state_folder_names import STATE_FOLDER

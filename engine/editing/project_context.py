@@ -14,7 +14,7 @@ from engine.document.nodes.node_kind import MACHINES
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
 from engine.document.text.yaml_source import load_source
-from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
+from engine.editing.text.outline import NodeRef, Outline, Plain, transition_entries
 from engine.errors import DocumentError, StateError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import cast
 
-from engine.editing.syntax import Collection, Member, Scalar
+from engine.editing.text.syntax import Collection, Member, Scalar
 
 EntryMatch = tuple[str | None, object, Member | None]
 """A key (None in a list), its value, and the original entry in the text, if any."""

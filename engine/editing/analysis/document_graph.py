@@ -12,10 +12,10 @@ import msgspec
 
 from engine.document.nodes.concurrency_condition import ConcurrencyCondition
 from engine.document.nodes.node_kind import MACHINES, SLOTS
-from engine.editing.draft import Draft
-from engine.editing.outline import NodeRef, Outline, Plain
 from engine.editing.project_context import NodeOutcomes, ProjectContext, rules, texts
-from engine.editing.syntax import Collection
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import NodeRef, Outline, Plain
+from engine.editing.text.syntax import Collection
 from engine.library.behavior_graph import GraphNode, GraphTransition
 
 _SHOWN_APART = frozenset(("states", "initial", "conditions", "otherwise", "userdata", "children", "child"))

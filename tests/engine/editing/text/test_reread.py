@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from benchmarks.edits import flat_document
 from benchmarks.large_document import large_document
 from engine.editing import Draft, apply_edits
-from engine.editing.apply import apply_edits_to_draft
-from engine.editing.outline import Outline
-from engine.editing.reread import is_equal_data
-from engine.editing.syntax import Member, Scalar, Syntax
+from engine.editing.edits.apply import apply_edits_to_draft
+from engine.editing.text.outline import Outline
+from engine.editing.text.reread import is_equal_data
+from engine.editing.text.syntax import Member, Scalar, Syntax
 from engine.errors import DocumentError
 from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import context, read_edits

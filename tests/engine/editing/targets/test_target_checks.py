@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.editing.target_checks import TargetChecks
-from engine.editing.target_messages import TargetFindings
-from engine.editing.target_process import target_findings
+from engine.editing.targets.target_checks import TargetChecks
+from engine.editing.targets.target_messages import TargetFindings
+from engine.editing.targets.target_process import target_findings
 from engine.registry import load_states
 from tests.engine.editing.target_texts import FAR, IN_POST, REACH, written
 

@@ -6,13 +6,13 @@ from itertools import product
 from typing import cast
 
 from engine.document.nodes.node_kind import GROUPS, MACHINES, SLOTS
-from engine.editing.draft import EditRefused
-from engine.editing.edit import CanvasPoint, GroupNodes, SetPositions
-from engine.editing.edit_session import EditSession, ReferenceUpdate, insert_key, named_children
-from engine.editing.field_edits import set_positions
-from engine.editing.node_edits import detach_node, outermost
-from engine.editing.node_insertion import set_tree_node_name
-from engine.editing.outline import NodeRef, Plain, transition_entries
+from engine.editing.edits.edit import CanvasPoint, GroupNodes, SetPositions
+from engine.editing.edits.edit_session import EditSession, ReferenceUpdate, insert_key, named_children
+from engine.editing.edits.field_edits import set_positions
+from engine.editing.edits.node_edits import detach_node, outermost
+from engine.editing.edits.node_insertion import set_tree_node_name
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.outline import NodeRef, Plain, transition_entries
 
 _MARGIN_PX = (40, 60)
 """Offset between the corner of a container and its first child."""

@@ -9,9 +9,9 @@ from typing import cast
 
 from engine.document.nodes.concurrency_condition import AT_LEAST, PREEMPT, WHEN
 from engine.document.nodes.node_kind import MACHINES, NAMED, SLOTS
-from engine.editing.draft import Draft
-from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
 from engine.editing.project_context import NodeOutcomes, ProjectContext
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import NodeRef, Outline, Plain, transition_entries
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
 DanglingTarget = Callable[[Plain, str], "str | None"]

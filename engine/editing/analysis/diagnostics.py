@@ -10,11 +10,11 @@ import msgspec
 
 from engine.check import Finding, check_survey
 from engine.document.loader import survey_behavior
-from engine.editing.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
-from engine.editing.draft import Draft
-from engine.editing.draft_source import keep_nodes, syntax_source
-from engine.editing.outline import Outline, Plain
+from engine.editing.analysis.document_graph import DocumentInfo, DocumentNode, DrawnGraph, draw_graph, info_of
 from engine.editing.project_context import ProjectContext
+from engine.editing.text.draft import Draft
+from engine.editing.text.draft_source import keep_nodes, syntax_source
+from engine.editing.text.outline import Outline, Plain
 from engine.errors import DocumentError, Position
 from engine.library.behavior_library import FindingView
 

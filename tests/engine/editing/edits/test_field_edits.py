@@ -7,7 +7,7 @@ import json
 import pytest
 
 from tests.engine.editing.edit_fixtures import changed, difference, edited, refusal
-from tests.engine.editing.test_node_edits import TEXT, TREE
+from tests.engine.editing.edits.test_node_edits import TEXT, TREE
 
 
 def test_a_transition_is_set_where_it_stands() -> None:

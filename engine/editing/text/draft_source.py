@@ -10,9 +10,9 @@ from typing import cast
 
 from engine.document.behavior import Behavior
 from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree, parse_source
-from engine.editing.draft import Draft
-from engine.editing.outline import Outline
-from engine.editing.syntax import Collection, Member, Syntax
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import Outline
+from engine.editing.text.syntax import Collection, Member, Syntax
 from engine.errors import Position
 
 

@@ -9,15 +9,15 @@ from typing import cast
 from engine.document.nodes.node_kind import GROUPS, KINDS, MACHINES, NAMED, SLOTS, WRAPPERS
 from engine.document.nodes.node_kinds import NODE_KINDS
 from engine.document.nodes.node_spec import GUARD_TARGETS, TREE_KINDS
-from engine.editing.draft import EditRefused
-from engine.editing.edit import AddNode, CanvasPoint, DuplicateNodes, PasteNodes, SetPositions, TransitionRef
-from engine.editing.edit_session import NAME, EditSession, ReferenceUpdate, insert_key, named_children
-from engine.editing.field_edits import plain_value, set_positions
-from engine.editing.indentation import indent_text
-from engine.editing.outline import NodeRef, Plain, kind_of, own_name, transition_entries, tree_names
-from engine.editing.text_rewriter import TextRewriter, WritePosition
-from engine.editing.transition_edits import connect, unconnected_outcomes, write_initial
-from engine.editing.yaml_style import key_text
+from engine.editing.edits.edit import AddNode, CanvasPoint, DuplicateNodes, PasteNodes, SetPositions, TransitionRef
+from engine.editing.edits.edit_session import NAME, EditSession, ReferenceUpdate, insert_key, named_children
+from engine.editing.edits.field_edits import plain_value, set_positions
+from engine.editing.edits.transition_edits import connect, unconnected_outcomes, write_initial
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.indentation import indent_text
+from engine.editing.text.outline import NodeRef, Plain, kind_of, own_name, transition_entries, tree_names
+from engine.editing.text.text_rewriter import TextRewriter, WritePosition
+from engine.editing.text.yaml_style import key_text
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 

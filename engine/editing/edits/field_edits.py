@@ -13,11 +13,11 @@ from engine.document.nodes.node_kind import GROUPS, NAMED, SLOTS
 from engine.document.nodes.node_kinds import NODE_KINDS
 from engine.document.nodes.node_spec import NodeSpec
 from engine.document.text.decoding import explain_validation_error
-from engine.editing.draft import EditRefused
-from engine.editing.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
-from engine.editing.edit_session import EditSession, assign_child_roles, named_children, remove_entry
-from engine.editing.node_matching import graft
-from engine.editing.outline import NodeRef, Plain
+from engine.editing.edits.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
+from engine.editing.edits.edit_session import EditSession, assign_child_roles, named_children, remove_entry
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.node_matching import graft
+from engine.editing.text.outline import NodeRef, Plain
 from engine.suggestions import did_you_mean
 
 _OF_NODES = frozenset(

@@ -5,11 +5,17 @@ from __future__ import annotations
 from typing import cast
 
 from engine.document.nodes.node_kind import GROUPS, MACHINES, NAMED, SLOTS
-from engine.editing.draft import EditRefused
-from engine.editing.edit import MoveNodes, RemoveNodes, RenameNode
-from engine.editing.edit_session import EditSession, ReferenceUpdate, assign_child_roles, named_children, rename_key
-from engine.editing.node_insertion import insert_nodes
-from engine.editing.outline import NodeRef, Plain, own_name
+from engine.editing.edits.edit import MoveNodes, RemoveNodes, RenameNode
+from engine.editing.edits.edit_session import (
+    EditSession,
+    ReferenceUpdate,
+    assign_child_roles,
+    named_children,
+    rename_key,
+)
+from engine.editing.edits.node_insertion import insert_nodes
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.outline import NodeRef, Plain, own_name
 
 
 def remove_nodes(session: EditSession, edit: RemoveNodes) -> None:

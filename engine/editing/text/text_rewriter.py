@@ -15,10 +15,10 @@ from typing import cast
 
 from engine.document.nodes.node_kind import KINDS
 from engine.document.nodes.node_spec import TREE_KINDS
-from engine.editing.indentation import indent_after, indent_text
-from engine.editing.node_matching import EntryMatch, is_same_value, match_entries
-from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
-from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text
+from engine.editing.text.indentation import indent_after, indent_text
+from engine.editing.text.node_matching import EntryMatch, is_same_value, match_entries
+from engine.editing.text.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
+from engine.editing.text.yaml_style import flow_text, key_text, literal_text, scalar_text
 
 MAX_COLUMNS = 120
 """Maximum line length up to which a new value is written on one line."""

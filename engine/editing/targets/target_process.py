@@ -11,11 +11,11 @@ import msgspec
 
 from engine.check import check_targets
 from engine.document.loader import survey_behavior
-from engine.editing.diagnostics import draw_document, finding_view, sorted_findings
-from engine.editing.draft import Draft
-from engine.editing.outline import Outline
+from engine.editing.analysis.diagnostics import draw_document, finding_view, sorted_findings
 from engine.editing.project_context import ProjectContext
-from engine.editing.target_messages import TargetFindings, TargetRequest
+from engine.editing.targets.target_messages import TargetFindings, TargetRequest
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import Outline
 from engine.errors import DocumentError, FlexcellError
 from engine.host.child_process import set_parent_death_signal
 from engine.registry import load_states

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from benchmarks.edits import edits_of, subjects
 from engine.editing import Draft, analyze_text
+from engine.editing.analysis.graph_difference import GraphDifference, shifted
 from engine.editing.draft_cache import DraftCache
-from engine.editing.graph_difference import GraphDifference, shifted
-from engine.editing.outline import Outline
+from engine.editing.text.outline import Outline
 from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import analysis_of, context, read_edits
 from tests.engine.editing.layouts import Layout, Plain, chances

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import cast
 
 from engine.document.nodes.node_kind import GROUPS, MACHINES, NAMED, SLOTS
-from engine.editing.draft import EditRefused
-from engine.editing.edit import CanvasPoint, SetPositions, UngroupNode
-from engine.editing.edit_session import EditSession, ReferenceUpdate, named_children
-from engine.editing.field_edits import set_positions
-from engine.editing.outline import NodeRef, Plain
+from engine.editing.edits.edit import CanvasPoint, SetPositions, UngroupNode
+from engine.editing.edits.edit_session import EditSession, ReferenceUpdate, named_children
+from engine.editing.edits.field_edits import set_positions
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.outline import NodeRef, Plain
 
 _LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume")
 

@@ -8,7 +8,7 @@ from typing import cast
 
 from engine.document.nodes.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
 from engine.document.nodes.node_spec import TREE_KINDS
-from engine.editing.draft import EditRefused
+from engine.editing.text.draft import EditRefused
 from engine.suggestions import did_you_mean
 
 Plain = dict[str, object]

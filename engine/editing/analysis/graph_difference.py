@@ -9,7 +9,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from engine.editing.document_graph import DrawnNode, Lines
+from engine.editing.analysis.document_graph import DrawnNode, Lines
 from engine.library.behavior_graph import GraphTransition
 
 # The text of a drawn node as it is kept; what it describes is a node of the graph.

@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine.editing import edit, grouping, ungrouping
-from engine.editing import field_edits as fields
-from engine.editing import node_edits as nodes
-from engine.editing import node_insertion as adding
-from engine.editing import transition_edits as wiring
-from engine.editing.draft import Draft, EditRefused
-from engine.editing.edit_session import EditSession
-from engine.editing.outline import Outline
+from engine.editing.edits import edit, grouping, ungrouping
+from engine.editing.edits import field_edits as fields
+from engine.editing.edits import node_edits as nodes
+from engine.editing.edits import node_insertion as adding
+from engine.editing.edits import transition_edits as wiring
+from engine.editing.edits.edit_session import EditSession
 from engine.editing.project_context import ProjectContext
+from engine.editing.text.draft import Draft, EditRefused
+from engine.editing.text.outline import Outline
 from engine.errors import DocumentError
 
 MAX_TEXT = 2_000_000

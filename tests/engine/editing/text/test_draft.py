@@ -14,12 +14,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from engine.document.text.yaml_source import parse_source
-from engine.editing.draft import Draft
+from engine.editing.text.draft import Draft
 from tests.engine.editing.layouts import Layout, Plain, chances, documents, scalars, trees
 from tests.engine.editing.random_changes import at, leaves, mappings, mutate, set_at
 from tests.tiers import examples
 
-BEHAVIORS = Path(__file__).parents[3] / "behaviors"
+BEHAVIORS = Path(__file__).parents[4] / "behaviors"
 FILES = sorted([*BEHAVIORS.rglob("*.yaml"), *BEHAVIORS.rglob("*.json")])
 
 

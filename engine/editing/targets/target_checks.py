@@ -10,11 +10,11 @@ from pathlib import Path
 
 import msgspec
 
-from engine.editing.target_messages import TargetFindings, TargetRequest
+from engine.editing.targets.target_messages import TargetFindings, TargetRequest
 from engine.errors import RobotError
 from engine.host.child_process import start_child
 
-START = "from engine.editing.target_process import main; main()"
+START = "from engine.editing.targets.target_process import main; main()"
 LIMIT_S = 60.0
 """Time limit of a response, including what the first one loads and compiles on a busy computer."""
 _WHAT = "the target check process"

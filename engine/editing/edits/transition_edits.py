@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import cast
 
 from engine.document.nodes.node_kind import MACHINES
-from engine.editing.draft import EditRefused
-from engine.editing.edit import AutoConnect, ClearTransition, SetInitial, SetTransition
-from engine.editing.edit_session import EditSession
-from engine.editing.outline import NodeRef, Plain
+from engine.editing.edits.edit import AutoConnect, ClearTransition, SetInitial, SetTransition
+from engine.editing.edits.edit_session import EditSession
+from engine.editing.text.draft import EditRefused
+from engine.editing.text.outline import NodeRef, Plain
 from engine.suggestions import did_you_mean
 
 

@@ -19,8 +19,8 @@ from engine.document.text.yaml_source import (
     MAX_EXPRESSIONS,
     MAX_NODES,
 )
-from engine.editing.node_matching import is_same_value
-from engine.editing.syntax import (
+from engine.editing.text.node_matching import is_same_value
+from engine.editing.text.syntax import (
     Collection,
     Member,
     Scalar,

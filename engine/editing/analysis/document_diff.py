@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, cast
 
-from engine.editing.draft import Draft
-from engine.editing.outline import NodeRef, Outline, Plain, child_entries
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import NodeRef, Outline, Plain, child_entries
 
 Change = Literal["added", "removed", "changed", "moved"]
 DOCUMENT_PATH = "document"

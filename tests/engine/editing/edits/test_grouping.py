@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import indent
 
 from tests.engine.editing.edit_fixtures import difference, edited, refusal
-from tests.engine.editing.test_node_edits import TEXT, TREE
+from tests.engine.editing.edits.test_node_edits import TEXT, TREE
 
 HEAD = """\
 flexcell: 1
