@@ -128,23 +128,24 @@ class ProjectContext:
 
     def _of_machine(self, outline: Outline, ref: NodeRef, known: dict[str, NodeOutcomes]) -> NodeOutcomes:
         children = {child.name: child for child in outline.children(ref)}
-        targets = [target for child in children.values() for _, _, target in transition_entries(child.data)]
-        reached: dict[str, None] = {}
+        outside = {
+            target: None
+            for child in children.values()
+            for _, _, target in transition_entries(child.data)
+            if target not in children
+        }
+        reached: set[str] = set()
         due: list[object] = [ref.body.get("initial")]
         while due:
             name = due.pop()
             if not isinstance(name, str) or name in reached:
                 continue
-            reached[name] = None
-            if name in children:
-                good = self.ends(outline, children[name], known=known).success
-                wired = children[name].data.get("transitions")
-                due += (
-                    [to for outcome, to in cast("Plain", wired).items() if outcome in good]
-                    if isinstance(wired, dict)
-                    else []
-                )
-        outside = dict.fromkeys(target for target in targets if target not in children)
+            reached.add(name)
+            child = children.get(name)
+            wired = child.data.get("transitions") if child is not None else None
+            if child is not None and isinstance(wired, dict):
+                good = self.ends(outline, child, known=known).success
+                due += [to for outcome, to in cast("Plain", wired).items() if outcome in good]
         return NodeOutcomes(tuple(outside), tuple(name for name in outside if name in reached))
 
 

@@ -133,7 +133,7 @@ def _check_machine(
     by_name = {child.name: child for child in children}
     ranks = {child.name: rank for rank, child in enumerate(children)}
     leads = {child.name: [to for to in instant.instant_targets(child) if to in by_name] for child in children}
-    for loop in _loops(leads):
+    for loop in _loops(leads) if any(leads.values()) else ():
         inside = [by_name[name] for name in loop]
         if _can_change(subject, inside, keys):
             continue

@@ -78,12 +78,13 @@ class DrawnNode(msgspec.Struct, frozen=True, gc=False):
     arrows: tuple[GraphTransition, ...]
 
 
-class _Leaf(msgspec.Struct, frozen=True):
-    """A state as drawn, with what it depends on beside its own text."""
+class _KnownNode(msgspec.Struct, frozen=True):
+    """A node as drawn, with what it depends on beside its own text; `ends` are the outcomes of a container."""
 
     source: Collection
     around: tuple[object, ...]
     drawn: DrawnNode
+    ends: NodeOutcomes | None
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,8 @@ class DrawnGraph:
     """The graph of a document: its nodes by path, containers before their children."""
 
     nodes: dict[str, DrawnNode]
-    leaves: dict[int, _Leaf] = field(repr=False)
-    """States by the id of their text, for the next graph."""
+    known: dict[int, _KnownNode] = field(repr=False)
+    """The nodes without a reference inside, by the id of their text, for the next graph."""
 
     def whole(self) -> DocumentNode | None:
         """Return the root with everything inside it; None if the document has no nodes."""
@@ -148,16 +149,19 @@ def draw_graph(draft: Draft, context: ProjectContext, outline: Outline, before: 
         draft: The document.
         context: The states and behaviors around it.
         outline: Its nodes.
-        before: The graph of the text from which the draft was made: states whose text is the same are not drawn again.
+        before: The graph of the text from which the draft was made: nodes whose text is the same are not drawn
+            again, unless it refers to another document, which may be another one now.
     """
-    drawing = _Drawing(draft, context, outline, before.leaves if before is not None else {})
-    return DrawnGraph({path: drawing.node(ref) for path, ref in outline.refs.items()}, drawing.leaves)
+    drawing = _Drawing(draft, context, outline, before.known if before is not None else {})
+    return DrawnGraph({path: drawing.node(ref) for path, ref in outline.refs.items()}, drawing.known)
 
 
 class _Drawing:
-    def __init__(self, draft: Draft, context: ProjectContext, outline: Outline, known: Mapping[int, _Leaf]) -> None:
-        self.leaves: dict[int, _Leaf] = {}
-        self._known = known
+    def __init__(
+        self, draft: Draft, context: ProjectContext, outline: Outline, before: Mapping[int, _KnownNode]
+    ) -> None:
+        self.known: dict[int, _KnownNode] = {}
+        self._before = before
         self._draft = draft
         self._knowledge = context
         self._outline = outline
@@ -166,35 +170,63 @@ class _Drawing:
         text = draft.origin.text
         self._starts = list(accumulate((len(line) + 1 for line in text.split("\n")), initial=0))[:-1]
         self._ends: dict[str, NodeOutcomes] = {}
+        self._closed: dict[str, bool] = {}
         self._places: dict[int, int] = {}
         self._place(draft.data)
+        for path, ref in outline.refs.items() if before else ():
+            known = self._known_before(ref) if ref.kind != "state" else None
+            if known is not None and known.ends is not None:
+                self._ends[path] = known.ends
 
     def _place(self, *inside: object) -> None:
         """Remember where the keys of all entries of these collections are."""
         for each in inside:
             source = self._draft.source_of(each)
-            for member in source.members if source is not None else ():
-                self._places[id(member.value)] = member.at
+            if source is not None:
+                self._places.update([(id(member.value), member.at) for member in source.members])
 
     def node(self, ref: NodeRef) -> DrawnNode:
         """Draw a node, after its container."""
-        source = self._draft.source_of(ref.data)
+        path, data, parent = ref.path, ref.data, ref.parent
+        source = self._draft.source_of(data)
         lines = self._lines(source)
-        if source is None or not isinstance(ref.data.get("state"), str) or ref.parent is None:
-            self._place(ref.data, ref.data.get(ref.kind), ref.body.get("states"), ref.body.get("children"))
+        is_state = isinstance(data.get("state"), str)
+        if not is_state:
+            self._place(data, data.get(ref.kind), ref.body.get("states"), ref.body.get("children"))
+        if source is None or parent is None or not (is_state or self._is_closed(ref)):
             return self._drawn(ref, lines)
         # What it shows follows from its text and from these.
+        note, place = self._notes.get(path), self._view.get(path)
         around = (
-            ref.path, ref.role, ref.parent.kind in MACHINES, _text(self._notes.get(ref.path)),
-            self._draft.source_of(self._view.get(ref.path)),
+            path, ref.role, parent.kind in MACHINES, _text(note) if note is not None else "",
+            self._draft.source_of(place) if place is not None else None,
         )  # fmt: skip
-        leaf = self._known.get(id(source))
-        if leaf is None or leaf.source is not source or leaf.around != around:
-            leaf = _Leaf(source, around, self._drawn(ref, lines))
-        elif leaf.drawn.lines != lines:
-            leaf = _Leaf(source, around, msgspec.structs.replace(leaf.drawn, lines=lines))
-        self.leaves[id(source)] = leaf
-        return leaf.drawn
+        known = self._before.get(id(source))
+        if known is None or known.source is not source or known.around != around:
+            drawn = self._drawn(ref, lines)
+            known = _KnownNode(source, around, drawn, self._ends[path] if not is_state else None)
+        elif known.drawn.lines != lines:
+            was = known.drawn
+            drawn = DrawnNode(was.node, was.own, lines, was.children, was.arrows)
+            known = _KnownNode(source, around, drawn, known.ends)
+        self.known[id(source)] = known
+        return known.drawn
+
+    def _known_before(self, ref: NodeRef) -> _KnownNode | None:
+        """Return a node as it was drawn before, if its text is the same."""
+        source = self._draft.source_of(ref.data)
+        known = self._before.get(id(source)) if source is not None else None
+        return known if known is not None and known.source is source else None
+
+    def _is_closed(self, ref: NodeRef) -> bool:
+        """Return whether neither a node nor one inside it refers to another document."""
+        found = self._closed.get(ref.path)
+        if found is None:
+            found = self._known_before(ref) is not None or (
+                not isinstance(ref.data.get("behavior"), str) and all(map(self._is_closed, self._outline.children(ref)))
+            )
+            self._closed[ref.path] = found
+        return found
 
     def _drawn(self, ref: NodeRef, lines: Lines) -> DrawnNode:
         node = self._new(ref)
@@ -263,12 +295,11 @@ class _Drawing:
     def _lines(self, source: Collection | None) -> Lines:
         if source is None:
             return 1, 1, 1
+        starts = self._starts
         at = self._places.get(id(source), source.start)
-        line = self._line(at)
-        return line + 1, at - self._starts[line] + 1, self._line(max(at, source.end - 1)) + 1
-
-    def _line(self, offset: int) -> int:
-        return bisect_right(self._starts, offset) - 1
+        # Lines count from 1: that of an offset is the number of lines that begin before it or there.
+        line, last = bisect_right(starts, at), source.end - 1
+        return line, at - starts[line - 1] + 1, bisect_right(starts, last) if last > at else line
 
 
 def _arrows(ref: NodeRef) -> tuple[GraphTransition, ...]:

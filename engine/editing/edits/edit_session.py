@@ -147,17 +147,26 @@ class ReferenceUpdate:
         after = {id(ref.data): ref for ref in self.session.outline.refs.values()}
         before = {ref.path: ref for ref in self._refs}
         inside: dict[str, dict[str, NodeRef]] = {ref.path: {} for ref in self._refs}
+        moved: dict[str, set[str]] = {}
         for ref in self._refs:
             if ref.parent is not None:
                 inside[ref.parent.path][ref.name] = ref
+                now = after.get(id(ref.data))
+                if now is None or now.name != ref.name or not _is_inside(now, ref.parent):
+                    moved.setdefault(ref.parent.path, set()).add(ref.name)
         for ref in self._refs:
             now = after.get(id(ref.data))
             if now is None:
                 continue
-            self._follow_container(now, inside[ref.path], after, instead or {})
-            if ref.parent is not None and ref.parent.kind in NAMED:
-                beside = inside[ref.parent.path]
-                self._follow_leads(now, ref.parent, beside, after, instead or {}, stray)
+            if ref.path in moved:
+                self._follow_container(now, inside[ref.path], after, instead or {})
+            around = ref.parent
+            if around is None or around.kind not in NAMED or around.path not in moved:
+                continue
+            # What stays where it is follows only what moved.
+            gone = moved[around.path]
+            if ref.name in gone or any(target in gone for _, _, target in transition_entries(now.data)):
+                self._follow_leads(now, around, inside[around.path], after, instead or {}, stray)
         for key in ("view", "notes"):
             self._follow_paths(key, before, after)
 
@@ -244,6 +253,10 @@ class ReferenceUpdate:
         known.update(kept)
         if not known:
             del self.session.draft.data[key]
+
+
+def _is_inside(node: NodeRef, container: NodeRef) -> bool:
+    return node.parent is not None and node.parent.data is container.data
 
 
 def _beside(one: NodeRef, two: NodeRef) -> bool:

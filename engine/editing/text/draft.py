@@ -103,7 +103,7 @@ class Draft:
         made = self._written(rewriter)
         for each in self._borrowed:
             self._sources.pop(id(each), None)
-        found = reread(self._tree, made, self.data, file=self.file, sources=self._sources, unchanged=rewriter.whole)
+        found = reread(self._tree, made, self.data, file=self.file, sources=self._sources, changed=rewriter.changed)
         return Draft(self._with_newlines(made), file=self.file, reread=found) if found else self._in_full(made)
 
     def reread(self, text: str) -> Draft:
@@ -114,7 +114,7 @@ class Draft:
         Raises:
             DocumentError: the text cannot be read.
         """
-        found = reread(self._tree, _plain(text), None, file=self.file, sources=self._sources, unchanged=None)
+        found = reread(self._tree, _plain(text), None, file=self.file, sources=self._sources, changed=frozenset())
         return Draft(text, file=self.file, reread=found)
 
     def _rewriter(self) -> TextRewriter:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import cast
 
 from engine.editing.text.syntax import Collection, Member, Scalar
@@ -30,8 +30,42 @@ def is_same_value(a: object, b: object) -> bool:
 
 
 def _entries(source: Collection, value: dict[str, object], sources: Mapping[int, Collection]) -> list[EntryMatch]:
-    members = {str(member.key.value): member for member in source.members if member.key is not None}
-    by_value = {id(member.value): member for member in source.members}
+    entries, members = list(value.items()), source.members
+    # Nearly all entries are where they were: only those between the first and the last one that is not are matched.
+    head = _count_same(zip(members, entries, strict=False), sources)
+    many, more = members[head:], entries[head:]
+    tail = _count_same(zip(reversed(many), reversed(more), strict=False), sources)
+    middle = _matched(many[: len(many) - tail], dict(more[: len(more) - tail]), value, sources)
+    first, last = (
+        zip(members[:head], entries[:head], strict=True),
+        zip(many[::-1][:tail], more[::-1][:tail], strict=True),
+    )
+    return [
+        *((key, each, member) for member, (key, each) in first),
+        *middle,
+        *((key, each, member) for member, (key, each) in reversed(list(last))),
+    ]
+
+
+def _count_same(pairs: Iterable[tuple[Member, tuple[str, object]]], sources: Mapping[int, Collection]) -> int:
+    """Count the first entries that are the same collections under the same keys."""
+    count = 0
+    for member, (key, each) in pairs:
+        own = member.value
+        if _key(member) != key or not isinstance(own, Collection) or own.data is not each:
+            break
+        if sources.get(id(each)) is not own:
+            break
+        count += 1
+    return count
+
+
+def _matched(
+    those: list[Member], value: dict[str, object], whole: dict[str, object], sources: Mapping[int, Collection]
+) -> list[EntryMatch]:
+    """Match some entries of a mapping; `whole` are all of them."""
+    members = {str(member.key.value): member for member in those if member.key is not None}
+    by_value = {id(member.value): member for member in those}
     found: dict[str, Member] = {}
     taken: set[int] = set()
     for key, each in value.items():
@@ -41,7 +75,7 @@ def _entries(source: Collection, value: dict[str, object], sources: Mapping[int,
             taken.add(id(own))
     for key, each in value.items():
         own = by_value.get(id(sources.get(id(each))))
-        if key not in found and own is not None and id(own) not in taken and str(_key(own)) not in value:
+        if key not in found and own is not None and id(own) not in taken and str(_key(own)) not in whole:
             found[key] = own
             taken.add(id(own))
     for key in value:
@@ -49,7 +83,7 @@ def _entries(source: Collection, value: dict[str, object], sources: Mapping[int,
         if key not in found and own is not None and id(own) not in taken:
             found[key] = own
             taken.add(id(own))
-    left = [member for member in source.members if id(member) not in taken and str(_key(member)) not in value]
+    left = [member for member in those if id(member) not in taken and str(_key(member)) not in whole]
     fresh = [key for key in value if key not in found]
     if len(left) == len(fresh):
         # Keys of which only the name has changed.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import cast
+
+import msgspec
 
 from engine.document.nodes.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
 from engine.document.nodes.node_spec import TREE_KINDS
@@ -12,11 +13,11 @@ from engine.editing.text.draft import EditRefused
 from engine.suggestions import did_you_mean
 
 Plain = dict[str, object]
+_PLAIN_KINDS = (*KINDS, *TREE_KINDS)
 Keys = tuple[str | int, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class NodeRef:
+class NodeRef(msgspec.Struct, frozen=True, eq=False, gc=False):
     """A node and its position: `keys` lead to it from the document, `parent` is the surrounding node."""
 
     path: str
@@ -79,23 +80,27 @@ class Outline:
         return next(path for path, ref in self.refs.items() if ref.data is data)
 
     def _walk(self, root: Plain) -> None:
+        refs = self.refs
         due = [NodeRef("root", "root", kind_of(root), root, ("root",), None)]
         while due:
             ref = due.pop()
-            self.refs[ref.path] = ref
-            if isinstance(ref.data.get(ref.kind), str):
+            path, kind = ref.path, ref.kind
+            refs[path] = ref
+            if isinstance(ref.data.get(kind), str):
                 continue
-            in_tree = ref.kind == "tree" or ref.is_part
-            inside = self._inside[ref.path] = tuple(
-                NodeRef(f"{ref.path}/{name}", name, kind_of(child, in_tree=in_tree), child, (*ref.keys, *keys), ref)
-                for name, keys, child in child_entries(ref.data)
+            in_tree, above = kind == "tree" or ref.is_part, ref.keys
+            inside = self._inside[path] = tuple(
+                [
+                    NodeRef(f"{path}/{name}", name, kind_of(child, in_tree=in_tree), child, (*above, *keys), ref)
+                    for name, keys, child in child_entries(ref.data)
+                ]
             )
-            due += reversed(inside)
+            due += inside[::-1]
 
 
 def kind_of(node: Plain, *, in_tree: bool = False) -> str:
     """Return the key that defines the kind of a node; empty if there is none."""
-    for kind in (*KINDS, *TREE_KINDS):
+    for kind in _PLAIN_KINDS:
         if kind in node:
             return kind
     wrapping = [key for key in WRAPPERS if isinstance(node.get(key), dict) and "child" in cast("Plain", node[key])]
@@ -156,6 +161,8 @@ def transition_entries(node: Plain) -> Iterator[tuple[Plain, str, str]]:
         for outcome, target in list(cast("Plain", transitions).items()):
             if isinstance(target, str):
                 yield cast("Plain", transitions), outcome, target
+    if "timeout" not in node and "guard" not in node and "on_error" not in node:
+        return
     for key in ("timeout", "guard"):
         measure = node.get(key)
         if isinstance(measure, dict) and isinstance(cast("Plain", measure).get("to"), str):

@@ -8,7 +8,8 @@ parsed alone. Whatever does not fit this rule is left to a full read.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -59,7 +60,7 @@ def reread(
     *,
     file: str,
     sources: dict[int, Collection],
-    unchanged: Mapping[Collection, bool] | None,
+    changed: frozenset[Collection],
 ) -> RereadTree | None:
     """Return the tree of `text` if it says `data`; it consumes the tree `before`. None asks for a full read.
 
@@ -71,15 +72,15 @@ def reread(
         data: The data of `before` after an edit: unchanged dicts and lists are the same objects. None for any text.
         file: Its name, for positions.
         sources: The collections of `before` by the id of their data; it becomes that of the new tree.
-        unchanged: Collections of `before`: true where the data is known to be what the text says; None if it is
-            everywhere.
+        changed: Collections of `before` whose data, or that of one inside them, is not what the text said.
     """
     root = before.root
     if before.origin.json or not isinstance(root, Collection) or root.flow or len(text) > MAX_BYTES:
         return None
-    reading = _Rereading(before.origin.text, before.origin, file, sources, unchanged)
+    old = before.origin.text
     # The one text of all collections, also of those that are not looked at again.
     before.origin.text = text
+    reading = _Rereading(old, before.origin, file, sources, changed)
     try:
         made = reading.document(root)
         reading.take(made, reading.data_of(made) if data is None else data, 0, 1)
@@ -96,16 +97,29 @@ class _Rereading:
     origin: SourceText
     file: str
     sources: dict[int, Collection]
-    unchanged: Mapping[Collection, bool] | None
+    changed: frozenset[Collection]
     _shifts: dict[int, list[int | None]] = field(default_factory=dict[int, "list[int | None]"])
     """By the id of a new collection around kept members: how far each of them moved; None for a new one."""
     _homes: dict[int, Collection] = field(default_factory=dict[int, Collection])
     """By the id of such a collection: the one that it replaces."""
     _gone: list[Collection] = field(default_factory=list[Collection])
     """Collections of the old tree without a part in the new one."""
+    _same_head: int = 0
+    _same_tail: int = 0
+    """The number of characters at the begin and at the end that are the same in both texts."""
     _nodes: int = 0
     _expressions: int = 0
     _expression_text: int = 0
+
+    def __post_init__(self) -> None:
+        old, new = self.old, self.origin.text
+        most = min(len(old), len(new))
+        self._same_head = head = _largest(most, lambda low, high: old[low:high] == new[low:high])
+        # Without what is in the first part already.
+        self._same_tail = _largest(
+            most - head,
+            lambda low, high: old[len(old) - high : len(old) - low] == new[len(new) - high : len(new) - low],
+        )
 
     def document(self, root: Collection) -> Collection:
         """Return the new root, whose kept members have their old positions until `take`."""
@@ -129,13 +143,16 @@ class _Rereading:
         return made
 
     def _entries(self, home: Collection, old_end: int, start: int, end: int) -> tuple[list[Member], list[int | None]]:
-        olds, text = home.members, self.origin.text
-        begins = [*map(self._line, olds), old_end]
-        tail = self._equal_tail(begins, start, end)
-        stop, last = end - (old_end - begins[tail]), tail
-        made: list[Member] = []
-        shifts: list[int | None] = []
-        at, number = start, 0
+        text = self.origin.text
+        head, rest = self._equal_ends(home.members, old_end, start, end)
+        olds = home.members[head:rest]
+        begins = [*map(self._line, home.members[head : rest + 1]), *([old_end] if rest == len(home.members) else [])]
+        to_end = end - (old_end - begins[-1])
+        tail = self._equal_tail(begins, start, to_end)
+        stop, last = to_end - (begins[-1] - begins[tail]), tail
+        made = home.members[:head]
+        shifts: list[int | None] = [0] * head
+        at, number = begins[0] if head else start, 0
         while number < last:
             size = begins[number + 1] - begins[number]
             if self._is_equal(begins[number], begins[number + 1], at, stop):
@@ -163,12 +180,23 @@ class _Rereading:
             self._require_entries(fresh, home, at, stop)
             made += fresh
             shifts += [None] * len(fresh)
-        for number in range(tail, len(olds)):
-            made.append(olds[number])
-            shifts.append(end - old_end)
+        made += [*olds[tail:], *home.members[rest:]]
+        shifts += [end - old_end] * (len(made) - len(shifts))
         if text[end - 1 : end] not in ("\n", "") and end < len(text):
             raise _Unlike
         return made, shifts
+
+    def _equal_ends(self, olds: list[Member], old_end: int, start: int, end: int) -> tuple[int, int]:
+        """Return the number of the first members, and of the first of the last, that lie where both texts are equal."""
+        head, rest = 0, len(olds)
+        if self._line(olds[0]) == start:
+            # Each of them is followed by the line of another one.
+            head = max(0, bisect_left(olds, self._same_head, key=lambda member: member.at) - 2)
+        if end - old_end == len(self.origin.text) - len(self.old):
+            # The line before begins after the difference too.
+            equal = len(self.old) - self._same_tail
+            rest = min(len(olds), bisect_left(olds, equal, lo=head, key=lambda member: member.at) + 2)
+        return head, max(rest, head)
 
     def _equal_tail(self, begins: list[int], start: int, end: int) -> int:
         """Return the number of the first of the last members whose lines are the same in both texts."""
@@ -278,9 +306,7 @@ class _Rereading:
                 self._value(member.value, inner, depth)
 
     def _is_unchanged(self, found: Collection) -> bool:
-        if self.unchanged is None:
-            return self.sources.get(id(found.data)) is found
-        return self.unchanged.get(found, False)
+        return found not in self.changed and self.sources.get(id(found.data)) is found
 
     def data_of(self, found: Collection) -> Plain | list[object]:
         """Return the data of a collection; that of kept and new parts is the one that was read."""
@@ -291,14 +317,32 @@ class _Rereading:
 
     def _take_entries(self, found: Collection, data: Plain, shifts: list[int | None], depth: int) -> None:
         previous = found.start
+        # Nearly all entries are kept: those are looked at here, without calls of functions.
+        changed, sources = self.changed, self.sources
+        nodes = expressions = expression_text = 0
         for number, (member, shift, key) in enumerate(zip(found.members, shifts, list(data), strict=True)):
             own = cast("Scalar", member.key)
             if own.value != key:
                 raise _Unlike
             self._nodes += 1
             if shift is not None:
-                member.move(shift)
-                self._value(member.value, data[key], depth, by=shift)
+                if shift:
+                    member.move(shift)
+                value, inner = member.value, data[key]
+                if (
+                    isinstance(value, Collection)
+                    and value.data is inner
+                    and value not in changed
+                    and sources.get(id(inner)) is value
+                ):
+                    if shift:
+                        value.move(shift)
+                    content = value.read or value.content
+                    nodes += content.nodes
+                    expressions += content.expressions
+                    expression_text += content.expression_text
+                else:
+                    self._value(value, inner, depth, by=shift)
             elif isinstance(member.value, Collection):
                 if id(member.value) not in self._shifts:
                     self._adopt(member.value, data, key)
@@ -311,6 +355,9 @@ class _Rereading:
                 member.stop = last_line(self.origin.text, end, found.column)
             previous = member.stop
         found.end = previous
+        self._nodes += nodes
+        self._expressions += expressions
+        self._expression_text += expression_text
 
     def _adopt(self, fresh: Collection, data: Plain, key: str) -> None:
         """Put the data that was read in the place of equal data of an edit, which others may hold."""
@@ -356,6 +403,15 @@ class _Rereading:
             or self._expression_text > MAX_EXPRESSION_TEXT
         ):
             raise _Unlike
+
+
+def _largest(most: int, same: Callable[[int, int], bool]) -> int:
+    """Return how long two texts are the same, at most `most`; `same` compares what is between two distances."""
+    low, high = 0, most
+    while low < high:
+        middle = (low + high + 1) // 2
+        low, high = (middle, high) if same(low, middle) else (low, middle - 1)
+    return low
 
 
 def is_equal_data(a: object, b: object) -> bool:

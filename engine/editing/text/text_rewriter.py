@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from operator import is_
 from typing import cast
 
@@ -62,8 +63,21 @@ class TextRewriter:
     json: bool
     _homes: dict[int, tuple[Collection, Member]] = field(default_factory=dict[int, tuple[Collection, Member]])
     _blocks: dict[int, bool] = field(default_factory=dict[int, bool])
-    whole: dict[Collection, bool] = field(default_factory=dict[Collection, bool])
-    """Whether the data of a collection is what its text says, of those that were looked at."""
+
+    @cached_property
+    def changed(self) -> frozenset[Collection]:
+        """The collections whose data, or that of one inside them, is not what their text says."""
+        sources = self.sources.values()
+        found = {source for source in sources if not says_as_before(source)}
+        if found:
+            around = {inner: source for source in sources for inner in source.content.inside}
+            due = list(found)
+            while due:
+                outer = around.get(due.pop())
+                if outer is not None and outer not in found:
+                    found.add(outer)
+                    due.append(outer)
+        return frozenset(found)
 
     def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
         """Return the text of a tree with `data` instead of its own data."""
@@ -98,24 +112,7 @@ class TextRewriter:
 
     def _is_whole(self, source: Collection, value: Plain) -> bool:
         """Return whether a value and everything inside it is unchanged, so that its text can be reused."""
-        if source.data is not value:
-            return False
-        known = self.whole.get(source)
-        if known is None:
-            known = self.whole[source] = source.origin.json == self.json and self._says_as_before(source)
-        return known
-
-    def _says_as_before(self, source: Collection) -> bool:
-        data, content = source.data, source.content
-        if isinstance(data, dict) and tuple(data) != content.keys:
-            return False
-        values = tuple(data.values() if isinstance(data, dict) else data)
-        if len(values) != len(content.values):
-            return False
-        # Nearly all values are the same objects, which needs no call of a function for each.
-        if not all(map(is_, content.values, values)) and not all(map(_is_unchanged, content.values, values)):
-            return False
-        return all(self._is_whole(inner, inner.data) for inner in content.inside)
+        return source.data is value and source not in self.changed and source.origin.json == self.json
 
     def _stays_flow(self, source: Collection, value: Plain, place: WritePosition) -> bool:
         """Return whether a value stays in flow style: unless a block value is inserted into it."""
@@ -200,10 +197,24 @@ class TextRewriter:
 
     def _block(self, source: Collection, entries: list[EntryMatch]) -> str:
         place = WritePosition(source.column, source.column, flow=False, beside=_beside(source))
-        segments = [
-            self._segment(place, key, value, None if member is None else (source, member))
-            for key, value, member in entries
-        ]
+        segments: list[str] = []
+        first = source.members[0]
+        begin, stop = 0, -1
+        # Entries that stay and follow one another in the text are one slice of it.
+        for key, value, member in entries:
+            stays = member is not None and member is not first and self._stays(source, key, value, member)
+            if stays and member is not None and member.start == stop + 1:
+                stop = member.stop
+                continue
+            if stop >= 0:
+                segments.append(source.origin.text[begin:stop])
+                stop = -1
+            if stays and member is not None:
+                begin, stop = member.start, member.stop
+            else:
+                segments.append(self._segment(place, key, value, None if member is None else (source, member)))
+        if stop >= 0:
+            segments.append(source.origin.text[begin:stop])
         return "\n".join([segments[0].lstrip(" \n"), *segments[1:]])
 
     def _segment(
@@ -393,6 +404,21 @@ def _is_kind(key: str, value: object) -> bool:
 
 def _inside(value: Plain) -> Iterable[object]:
     return value.values() if isinstance(value, dict) else value
+
+
+def says_as_before(source: Collection) -> bool:
+    """Return whether the data of a collection, without those inside it, is what its text says."""
+    data, content = source.data, source.content
+    if isinstance(data, dict):
+        if tuple(data) != content.keys:
+            return False
+        values = data.values()
+    elif len(data) != len(content.values):
+        return False
+    else:
+        values = data
+    # Nearly all values are the same objects, which needs no call of a function for each.
+    return all(map(is_, content.values, values)) or all(map(_is_unchanged, content.values, values))
 
 
 def _is_unchanged(was: object, value: object) -> bool:
