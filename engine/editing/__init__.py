@@ -10,12 +10,13 @@ from engine.editing.analysis.document_graph import DocumentInfo, DocumentNode
 from engine.editing.analysis.graph_difference import GraphDifference
 from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView, container_views, state_views
 from engine.editing.cell_references import cell_reference
-from engine.editing.document_repository import DocumentConflict, DocumentRepository, NoSuchDocument, StoredDocument
+from engine.editing.document_repository import DocumentRepository
 from engine.editing.draft_cache import EditAnswer
 from engine.editing.edits.apply import EditRefusal, EditResult, apply_edits, copy_nodes
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext
 from engine.editing.references import ReferringBehavior, move_with_references, referrers
+from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
 from engine.editing.targets.target_checks import TargetChecks
 from engine.editing.targets.target_messages import TargetFindings
 from engine.editing.text.draft import Draft, EditRefused

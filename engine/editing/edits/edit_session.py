@@ -11,7 +11,7 @@ from engine.document.nodes.concurrency_condition import AT_LEAST, PREEMPT, WHEN
 from engine.document.nodes.node_kind import MACHINES, NAMED, SLOTS
 from engine.editing.project_context import NodeOutcomes, ProjectContext
 from engine.editing.text.draft import Draft
-from engine.editing.text.outline import NodeRef, Outline, Plain, transition_entries
+from engine.editing.text.outline import NodeRef, Outline, Plain, targets_of, transition_entries
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
 DanglingTarget = Callable[[Plain, str], "str | None"]
@@ -69,7 +69,9 @@ class EditSession:
 
     def outcomes_inside(self, container: NodeRef) -> tuple[str, ...]:
         """Return the transition targets of children of a machine other than its children."""
-        return tuple(dict.fromkeys((*self.ends(container).outcomes, *self._meant_outcomes(container))))
+        is_machine = container.kind in MACHINES and not isinstance(container.data.get("behavior"), str)
+        led_to = self.context.outside_machine(self.outline, container) if is_machine else self.ends(container).outcomes
+        return tuple(dict.fromkeys((*led_to, *self._meant_outcomes(container))))
 
     def _meant_outcomes(self, container: NodeRef) -> tuple[str, ...]:
         """Return the declared outcomes, whether or not anything inside leads to them yet."""
@@ -165,7 +167,7 @@ class ReferenceUpdate:
                 continue
             # What stays where it is follows only what moved.
             gone = moved[around.path]
-            if ref.name in gone or any(target in gone for _, _, target in transition_entries(now.data)):
+            if ref.name in gone or not gone.isdisjoint(targets_of(now.data)):
                 self._follow_leads(now, around, inside[around.path], after, instead or {}, stray)
         for key in ("view", "notes"):
             self._follow_paths(key, before, after)

@@ -6,7 +6,8 @@ import copy
 from collections.abc import Iterator, Mapping
 from typing import cast
 
-from engine.editing.text.reread import RereadTree, is_equal_data, reread
+from engine.editing.text.node_matching import is_equal_data
+from engine.editing.text.reread import RereadTree, reread
 from engine.editing.text.syntax import Collection, SourceText, SyntaxTree, read_syntax
 from engine.editing.text.text_rewriter import TextRewriter
 from engine.errors import DocumentError, FlexcellError

@@ -29,6 +29,17 @@ def is_same_value(a: object, b: object) -> bool:
     return type(a) is type(b) and a == b
 
 
+def is_equal_data(a: object, b: object) -> bool:
+    """Return whether two values are equal in type and order."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        one, two = cast("dict[str, object]", a), cast("dict[str, object]", b)
+        return list(one) == list(two) and all(is_equal_data(each, two[key]) for key, each in one.items())
+    if isinstance(a, list) and isinstance(b, list):
+        many, more = cast("list[object]", a), cast("list[object]", b)
+        return len(many) == len(more) and all(is_equal_data(one, other) for one, other in zip(many, more, strict=True))
+    return is_same_value(cast("object", a), b)
+
+
 def _entries(source: Collection, value: dict[str, object], sources: Mapping[int, Collection]) -> list[EntryMatch]:
     entries, members = list(value.items()), source.members
     # Nearly all entries are where they were: only those between the first and the last one that is not are matched.

@@ -169,3 +169,12 @@ def transition_entries(node: Plain) -> Iterator[tuple[Plain, str, str]]:
             yield cast("Plain", measure), "to", str(cast("Plain", measure)["to"])
     if isinstance(node.get("on_error"), str):
         yield node, "on_error", str(node["on_error"])
+
+
+def targets_of(node: Plain) -> list[str]:
+    """Return the targets of a node, as `transition_entries` has them."""
+    if "timeout" in node or "guard" in node or "on_error" in node:
+        return [target for _, _, target in transition_entries(node)]
+    transitions = node.get("transitions")
+    values = cast("Plain", transitions).values() if isinstance(transitions, dict) else ()
+    return [target for target in values if isinstance(target, str)]

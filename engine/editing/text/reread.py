@@ -8,8 +8,7 @@ parsed alone. Whatever does not fit this rule is left to a full read.
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
@@ -20,7 +19,8 @@ from engine.document.text.yaml_source import (
     MAX_EXPRESSIONS,
     MAX_NODES,
 )
-from engine.editing.text.node_matching import is_same_value
+from engine.editing.text.node_matching import is_equal_data, is_same_value
+from engine.editing.text.same_ends import same_ends
 from engine.editing.text.syntax import (
     Collection,
     Member,
@@ -104,22 +104,12 @@ class _Rereading:
     """By the id of such a collection: the one that it replaces."""
     _gone: list[Collection] = field(default_factory=list[Collection])
     """Collections of the old tree without a part in the new one."""
-    _same_head: int = 0
-    _same_tail: int = 0
-    """The number of characters at the begin and at the end that are the same in both texts."""
     _nodes: int = 0
     _expressions: int = 0
     _expression_text: int = 0
 
     def __post_init__(self) -> None:
-        old, new = self.old, self.origin.text
-        most = min(len(old), len(new))
-        self._same_head = head = _largest(most, lambda low, high: old[low:high] == new[low:high])
-        # Without what is in the first part already.
-        self._same_tail = _largest(
-            most - head,
-            lambda low, high: old[len(old) - high : len(old) - low] == new[len(new) - high : len(new) - low],
-        )
+        self._ends = same_ends(self.old, self.origin.text)
 
     def document(self, root: Collection) -> Collection:
         """Return the new root, whose kept members have their old positions until `take`."""
@@ -144,7 +134,7 @@ class _Rereading:
 
     def _entries(self, home: Collection, old_end: int, start: int, end: int) -> tuple[list[Member], list[int | None]]:
         text = self.origin.text
-        head, rest = self._equal_ends(home.members, old_end, start, end)
+        head, rest = self._ends.members(home.members, at_head=self._line(home.members[0]) == start, moved=end - old_end)
         olds = home.members[head:rest]
         begins = [*map(self._line, home.members[head : rest + 1]), *([old_end] if rest == len(home.members) else [])]
         to_end = end - (old_end - begins[-1])
@@ -185,18 +175,6 @@ class _Rereading:
         if text[end - 1 : end] not in ("\n", "") and end < len(text):
             raise _Unlike
         return made, shifts
-
-    def _equal_ends(self, olds: list[Member], old_end: int, start: int, end: int) -> tuple[int, int]:
-        """Return the number of the first members, and of the first of the last, that lie where both texts are equal."""
-        head, rest = 0, len(olds)
-        if self._line(olds[0]) == start:
-            # Each of them is followed by the line of another one.
-            head = max(0, bisect_left(olds, self._same_head, key=lambda member: member.at) - 2)
-        if end - old_end == len(self.origin.text) - len(self.old):
-            # The line before begins after the difference too.
-            equal = len(self.old) - self._same_tail
-            rest = min(len(olds), bisect_left(olds, equal, lo=head, key=lambda member: member.at) + 2)
-        return head, max(rest, head)
 
     def _equal_tail(self, begins: list[int], start: int, end: int) -> int:
         """Return the number of the first of the last members whose lines are the same in both texts."""
@@ -403,23 +381,3 @@ class _Rereading:
             or self._expression_text > MAX_EXPRESSION_TEXT
         ):
             raise _Unlike
-
-
-def _largest(most: int, same: Callable[[int, int], bool]) -> int:
-    """Return how long two texts are the same, at most `most`; `same` compares what is between two distances."""
-    low, high = 0, most
-    while low < high:
-        middle = (low + high + 1) // 2
-        low, high = (middle, high) if same(low, middle) else (low, middle - 1)
-    return low
-
-
-def is_equal_data(a: object, b: object) -> bool:
-    """Return whether two values are equal in type and order."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        one, two = cast("Plain", a), cast("Plain", b)
-        return list(one) == list(two) and all(is_equal_data(each, two[key]) for key, each in one.items())
-    if isinstance(a, list) and isinstance(b, list):
-        many, more = cast("list[object]", a), cast("list[object]", b)
-        return len(many) == len(more) and all(is_equal_data(one, other) for one, other in zip(many, more, strict=True))
-    return is_same_value(cast("object", a), b)

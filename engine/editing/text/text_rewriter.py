@@ -11,11 +11,10 @@ import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from operator import is_
 from typing import cast
 
-from engine.document.nodes.node_kind import KINDS
-from engine.document.nodes.node_spec import TREE_KINDS
+from engine.editing.text.block_style import collections_in_flow, had_node, has_node, lists_mappings
+from engine.editing.text.changed_data import changed_collections, is_unchanged
 from engine.editing.text.indentation import indent_after, indent_text
 from engine.editing.text.node_matching import EntryMatch, is_same_value, match_entries
 from engine.editing.text.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
@@ -24,7 +23,6 @@ from engine.editing.text.yaml_style import flow_text, key_text, literal_text, sc
 MAX_COLUMNS = 120
 """Maximum line length up to which a new value is written on one line."""
 _STEP = 2
-_NODES = frozenset((*KINDS, *TREE_KINDS))
 Plain = dict[str, object] | list[object]
 
 
@@ -67,17 +65,7 @@ class TextRewriter:
     @cached_property
     def changed(self) -> frozenset[Collection]:
         """The collections whose data, or that of one inside them, is not what their text says."""
-        sources = self.sources.values()
-        found = {source for source in sources if not says_as_before(source)}
-        if found:
-            around = {inner: source for source in sources for inner in source.content.inside}
-            due = list(found)
-            while due:
-                outer = around.get(due.pop())
-                if outer is not None and outer not in found:
-                    found.add(outer)
-                    due.append(outer)
-        return frozenset(found)
+        return changed_collections(self.sources.values())
 
     def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
         """Return the text of a tree with `data` instead of its own data."""
@@ -118,7 +106,7 @@ class TextRewriter:
         """Return whether a value stays in flow style: unless a block value is inserted into it."""
         if not source.flow or not source.entries or source.bare or self._has_block(value):
             return False
-        return place.flow or not has_node(value) or _had_node(source)
+        return place.flow or not has_node(value) or had_node(source)
 
     def _source(self, value: Plain) -> Collection | None:
         source = self.sources.get(id(value))
@@ -196,7 +184,7 @@ class TextRewriter:
     # Block style
 
     def _block(self, source: Collection, entries: list[EntryMatch]) -> str:
-        place = WritePosition(source.column, source.column, flow=False, beside=_beside(source))
+        place = WritePosition(source.column, source.column, flow=False, beside=collections_in_flow(source))
         segments: list[str] = []
         first = source.members[0]
         begin, stop = 0, -1
@@ -244,7 +232,7 @@ class TextRewriter:
             return False
         if isinstance(was, Collection):
             return was.data is value and bool(value) and self._is_whole(was, was.data)
-        return _is_unchanged(was.value, value)
+        return is_unchanged(was.value, value)
 
     def _moved(self, value: object, *, mapping: bool) -> tuple[Collection, Member] | None:
         """Return the original entry of a moved value, whose comments move with it."""
@@ -283,7 +271,7 @@ class TextRewriter:
         was_block = isinstance(old, Collection) and not old.flow
         stays = isinstance(old, Collection) and was_block and isinstance(value, type(old.data))
         column = old.column if isinstance(old, Collection) and stays else home.column + _STEP
-        beside = old.flow if isinstance(old, Collection) and _had_node(old) else None
+        beside = old.flow if isinstance(old, Collection) and had_node(old) else None
         place = WritePosition(column, indent_after(gap, home.column), flow=False, beside=beside)
         written = self.value(cast("object", value), place, PreviousValue(home.origin, old))
         mark = "" if key is None else ":"
@@ -342,11 +330,11 @@ class TextRewriter:
         if place.flow or not blocks:
             text = self._fresh_flow(value, place)
             fits = place.column + len(text) <= MAX_COLUMNS and "\n" not in text
-            lines = has_node(value) or _lists_mappings(value)
+            lines = has_node(value) or lists_mappings(value)
             if place.flow or (fits and (place.beside is True or not lines) and not self._brings_comments(value)):
                 return RenderedText(text)
         source = self.sources.get(id(value))
-        beside = _beside(source) if source is not None and _had_node(source) else None
+        beside = collections_in_flow(source) if source is not None and had_node(source) else None
         here = WritePosition(place.column, place.column, flow=False, beside=beside)
         entries = value.items() if isinstance(value, dict) else ((None, each) for each in value)
         segments = [self._segment(here, key, each, None) for key, each in entries]
@@ -374,62 +362,9 @@ class TextRewriter:
         return f"{around[0]}\n{' ' * indent}{between.join(shown)}\n{' ' * place.indent}{around[1]}"
 
 
-def has_node(value: object) -> bool:
-    """Return whether a value is, or contains, a node of a behavior: nodes are written in block style."""
-    if isinstance(value, list):
-        return any(has_node(each) for each in cast("list[object]", value))
-    if not isinstance(value, dict):
-        return False
-    found = cast("dict[str, object]", value)
-    return any((key in _NODES and _is_kind(key, each)) or has_node(each) for key, each in found.items())
-
-
-def _lists_mappings(value: Plain) -> bool:
-    """Return whether a value is a list of mappings, such as conditions, which is easier to read line by line."""
-    return isinstance(value, list) and any(isinstance(each, dict) and each != {} for each in value)
-
-
-def _had_node(source: Collection) -> bool:
-    """Return whether a collection contained a node before."""
-    return any(
-        (member.key is not None and member.key.value in _NODES)
-        or (isinstance(member.value, Collection) and _had_node(member.value))
-        for member in source.entries
-    )
-
-
-def _is_kind(key: str, value: object) -> bool:
-    return isinstance(value, str) if key in ("state", "behavior", "behaviour") else isinstance(value, dict | list)
-
-
 def _inside(value: Plain) -> Iterable[object]:
     return value.values() if isinstance(value, dict) else value
 
 
-def says_as_before(source: Collection) -> bool:
-    """Return whether the data of a collection, without those inside it, is what its text says."""
-    data, content = source.data, source.content
-    if isinstance(data, dict):
-        if tuple(data) != content.keys:
-            return False
-        values = data.values()
-    elif len(data) != len(content.values):
-        return False
-    else:
-        values = data
-    # Nearly all values are the same objects, which needs no call of a function for each.
-    return all(map(is_, content.values, values)) or all(map(_is_unchanged, content.values, values))
-
-
-def _is_unchanged(was: object, value: object) -> bool:
-    return was is value or (not isinstance(was, dict | list) and is_same_value(was, value))
-
-
 def _slice(source: Collection) -> str:
     return source.origin.text[source.start : source.end]
-
-
-def _beside(source: Collection) -> bool | None:
-    """Return whether the collections in a collection are in flow style; None if there are none."""
-    found = [member.value for member in source.entries if isinstance(member.value, Collection) and member.value.entries]
-    return all(each.flow for each in found) if found else None
