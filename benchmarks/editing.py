@@ -17,8 +17,8 @@ import msgspec
 
 from engine.document.loader import parse_behavior
 from engine.editing import AnyEdit, Draft, ProjectContext, analyze_text, apply_edits
-from engine.editing.document_graph import draw_graph
-from engine.editing.outline import Outline
+from engine.editing.analysis.document_graph import draw_graph
+from engine.editing.text.outline import Outline
 from engine.registry import load_states
 
 ROOT = Path(__file__).parents[1]

@@ -31,7 +31,7 @@ from engine.check import check_behavior
 from engine.clock import new_clock, run_virtual
 from engine.document import Behavior, parse_behavior
 from engine.editing.draft_cache import DraftCache
-from engine.editing.edit import SetParameter
+from engine.editing.edits.edit import SetParameter
 from engine.editing.project_context import ProjectContext
 from engine.errors import FlexcellError
 from engine.host.thread_switch_interval import short_switch_interval

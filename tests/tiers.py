@@ -15,7 +15,7 @@ KINDS = {
     "playwright": "browser",
     "subprocess": "process",
     "multiprocessing": "process",
-    "engine.editing.target_checks": "process",
+    "engine.editing.targets.target_checks": "process",
     "robots.planning.worker.planning_worker": "process",
     "benchmarks": "process",
     "mujoco": "physics",

@@ -143,6 +143,18 @@ def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[Analyze
     return tuple(_make(current, catalogue, bases, made) for current in order)
 
 
+class _OwnFacts(msgspec.Struct, frozen=True, gc=False):
+    """What the checks need to know of a node and follows from it alone."""
+
+    targets: dict[tuple[str, ...], str]
+    given: GivenValues
+
+
+def _own_facts(node: NodeSpec) -> _OwnFacts:
+    given = {name: template(value) for name, value in node.parameters.items()}
+    return _OwnFacts(_targets(node), given or _NOTHING_GIVEN)
+
+
 def _targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
     if node.guard is not None or node.timeout is not None or node.on_error is not None:
@@ -189,6 +201,7 @@ def _make(
         return known
     references = {name: _make(other, catalogue, bases, made) for name, other in behavior.references.items()}
     nodes, inside = _placed(behavior)
+    facts = {path: placed.node.derived(_own_facts) for path, placed in nodes.items()}
     signatures, unknown = _signatures(behavior, nodes, catalogue)
     outcomes: dict[str, tuple[str, ...]] = {}
     nominal: dict[str, frozenset[str]] = {}
@@ -203,19 +216,23 @@ def _make(
         catalogue=catalogue,
         references=references,
         gaps=DocumentGaps(behavior),
-        given={
-            path: {name: template(value) for name, value in placed.node.parameters.items()}
-            for path, placed in nodes.items()
-            if placed.node.parameters
-        },
-        targets={path: _targets(placed.node) for path, placed in nodes.items()},
+        given={path: own.given for path, own in facts.items() if own.given},
+        targets={path: own.targets for path, own in facts.items()},
         outcomes=outcomes,
         nominal=nominal,
         statuses=statuses,
     )
+    # Nothing hides the outcomes of a state in a document without gaps.
+    ends = {name: _ends_of(each) for name, each in signatures.items()} if not behavior.gaps else {}
     # Children before containers: the outcomes of a container follow from its children.
     for placed in subject.postorder:
         path = placed.path
+        known_ends = ends.get(placed.node.state) if placed.node.state is not None else None
+        if known_ends is not None:
+            outcomes[path], nominal[path] = _seen_outside(placed, known_ends[0]), known_ends[1]
+            if placed.in_tree:
+                statuses[path] = _statuses(placed, subject)
+            continue
         own = _own_outcomes(placed, subject)
         if own is not None and not (subject.gaps.hides_course(path) and _sees_diversions(placed.container)):
             outcomes[path] = _seen_outside(placed, own)
@@ -264,6 +281,11 @@ def _signatures(
     return signatures, unknown
 
 
+def _ends_of(signature: StateSignature) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Return the outcomes of a state, and the nominal ones."""
+    return signature.outcomes, frozenset(signature.success or signature.outcomes)
+
+
 def _seen_outside(placed: NodeAt, own: tuple[str, ...]) -> tuple[str, ...]:
     if not _sees_diversions(placed.container):
         return own
@@ -302,7 +324,7 @@ def _nominal(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
     node = placed.node
     if node.state is not None:
         signature = subject.signatures.get(node.state)
-        return frozenset(signature.success or signature.outcomes) if signature is not None else frozenset()
+        return _ends_of(signature)[1] if signature is not None else frozenset()
     if node.behavior is not None:
         referred = subject.behavior.references.get(node.behavior)
         return frozenset(referred.success or referred.outcomes) if referred is not None else frozenset()

@@ -76,16 +76,16 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         if parent not in in_tree:
             continue
         rules = _RULES_OF_TREES if in_tree[parent] else _RULES_OUTSIDE
-        found: list[RuleViolation] = []
         if rules not in node.clear_of:
             kinds = _one_kind(behavior, path, node)
             found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
-        if not found:
-            node.clear_of.add(rules)
-        yield from found
-        if all(violation.excess is not None for violation in found):
-            # Inside a machine that is a leaf of a tree, machine rules apply again.
-            in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in _PARTS)
+            yield from found
+            if not found:
+                node.clear_of.add(rules)
+            if any(violation.excess is None for violation in found):
+                continue
+        # Inside a machine that is a leaf of a tree, machine rules apply again.
+        in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in _PARTS)
 
 
 def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:

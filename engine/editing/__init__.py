@@ -3,23 +3,24 @@
 `apply_edits` is a function of text and edits; `DocumentRepository` opens, saves, merges and keeps versions.
 """
 
-from engine.editing.apply import EditRefusal, EditResult, apply_edits, copy_nodes
+from engine.editing.analysis.data_flow import KeyFlow
+from engine.editing.analysis.diagnostics import DocumentAnalysis, analyze_text, text_hash
+from engine.editing.analysis.document_diff import DocumentDiff, compare_texts
+from engine.editing.analysis.document_graph import DocumentInfo, DocumentNode
+from engine.editing.analysis.graph_difference import GraphDifference
 from engine.editing.catalogue import BehaviorReferenceView, ContainerView, StateView, container_views, state_views
 from engine.editing.cell_references import cell_reference
-from engine.editing.data_flow import KeyFlow
-from engine.editing.diagnostics import DocumentAnalysis, analyze_text, text_hash
-from engine.editing.document_diff import DocumentDiff, compare_texts
-from engine.editing.document_graph import DocumentInfo, DocumentNode
-from engine.editing.document_repository import DocumentConflict, DocumentRepository, NoSuchDocument, StoredDocument
-from engine.editing.draft import Draft, EditRefused
+from engine.editing.document_repository import DocumentRepository
 from engine.editing.draft_cache import EditAnswer
-from engine.editing.edit import AnyEdit
-from engine.editing.graph_difference import GraphDifference
+from engine.editing.edits.apply import EditRefusal, EditResult, apply_edits, copy_nodes
+from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext
 from engine.editing.references import ReferringBehavior, move_with_references, referrers
-from engine.editing.target_checks import TargetChecks
-from engine.editing.target_messages import TargetFindings
-from engine.editing.three_way_merge import MergeConflict, MergeResult, merge_texts
+from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
+from engine.editing.targets.target_checks import TargetChecks
+from engine.editing.targets.target_messages import TargetFindings
+from engine.editing.text.draft import Draft, EditRefused
+from engine.editing.text.three_way_merge import MergeConflict, MergeResult, merge_texts
 from engine.editing.versions import DocumentVersion
 
 __all__ = [

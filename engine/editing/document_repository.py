@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
@@ -18,15 +17,16 @@ from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.text.yaml_source import MAX_BYTES, parse_source
+from engine.editing.analysis.data_flow import KeyFlow, data_flow
+from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
-from engine.editing.data_flow import KeyFlow, data_flow
-from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash
-from engine.editing.draft import Draft
 from engine.editing.draft_cache import DraftCache, EditAnswer
-from engine.editing.edit import AnyEdit
+from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
+from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
 from engine.editing.templates import new_text
-from engine.editing.three_way_merge import MergeConflict, merge_texts
+from engine.editing.text.draft import Draft
+from engine.editing.text.three_way_merge import MergeConflict, merge_texts
 from engine.editing.versions import DocumentVersion, VersionHistory, write_atomically
 from engine.errors import DocumentError, Position
 from engine.host.state_folder_names import STATE_FOLDER
@@ -35,35 +35,6 @@ from engine.library.behavior_library import FindingView, Library
 _ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
 _LATER = re.compile(r"\.breakpoints\.ya?ml$")
 _log = logging.getLogger("flexcell.documents")
-
-
-@dataclass(frozen=True, kw_only=True)
-class StoredDocument:
-    """A document as it is on disk."""
-
-    id: str
-    text: str
-    hash: str
-    saved_at_s: float
-
-
-class NoSuchDocument(DocumentError):
-    """No document of the project has this id, or no version has this hash."""
-
-
-class DocumentConflict(DocumentError):
-    """A document changed after the writer read it; `merged` has both changes if they do not conflict."""
-
-    def __init__(self, theirs: StoredDocument, merged: str | None, conflicts: tuple[MergeConflict, ...]) -> None:
-        hint = (
-            "compare both versions and save again"
-            if merged is None
-            else "save the merged text, or choose one of the two"
-        )
-        super().__init__("the document has changed on disk", where=theirs.id, hint=hint)
-        self.theirs = theirs
-        self.merged = merged
-        self.conflicts = conflicts
 
 
 class DocumentRepository:

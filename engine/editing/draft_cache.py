@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from engine.editing.apply import EditedText, apply_edits, apply_edits_to_draft
-from engine.editing.diagnostics import (
+from engine.editing.analysis.diagnostics import (
     DocumentAnalysis,
     analyze_unreadable_text,
     draw_document,
     text_hash,
     with_findings,
 )
-from engine.editing.document_graph import DrawnGraph
-from engine.editing.draft import Draft
-from engine.editing.edit import AnyEdit
-from engine.editing.graph_difference import GraphDifference, graph_difference
-from engine.editing.outline import Outline
+from engine.editing.analysis.document_graph import DrawnGraph
+from engine.editing.analysis.graph_difference import GraphDifference, graph_difference
+from engine.editing.edits.apply import EditedText, apply_edits, apply_edits_to_draft
+from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import Outline
 from engine.errors import DocumentError
 
 MAX_TEXTS = 6

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
@@ -14,7 +14,7 @@ from engine.document.nodes.node_kind import MACHINES
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
 from engine.document.text.yaml_source import load_source
-from engine.editing.outline import NodeRef, Outline, Plain, transition_entries
+from engine.editing.text.outline import NodeRef, Outline, Plain, targets_of
 from engine.errors import DocumentError, StateError
 
 
@@ -79,6 +79,10 @@ class ProjectContext:
             found = known[ref.path] = self._found(outline, ref, known)
         return found
 
+    def outside_machine(self, outline: Outline, ref: NodeRef) -> tuple[str, ...]:
+        """Return the outcomes of a machine to which its children lead."""
+        return _outside({child.name: child for child in outline.children(ref)})
+
     def _found(self, outline: Outline, ref: NodeRef, known: dict[str, NodeOutcomes]) -> NodeOutcomes:
         data = ref.data
         if isinstance(data.get("state"), str):
@@ -128,24 +132,20 @@ class ProjectContext:
 
     def _of_machine(self, outline: Outline, ref: NodeRef, known: dict[str, NodeOutcomes]) -> NodeOutcomes:
         children = {child.name: child for child in outline.children(ref)}
-        targets = [target for child in children.values() for _, _, target in transition_entries(child.data)]
-        reached: dict[str, None] = {}
+        outside = _outside(children)
+        reached: set[str] = set()
         due: list[object] = [ref.body.get("initial")]
         while due:
             name = due.pop()
             if not isinstance(name, str) or name in reached:
                 continue
-            reached[name] = None
-            if name in children:
-                good = self.ends(outline, children[name], known=known).success
-                wired = children[name].data.get("transitions")
-                due += (
-                    [to for outcome, to in cast("Plain", wired).items() if outcome in good]
-                    if isinstance(wired, dict)
-                    else []
-                )
-        outside = dict.fromkeys(target for target in targets if target not in children)
-        return NodeOutcomes(tuple(outside), tuple(name for name in outside if name in reached))
+            reached.add(name)
+            child = children.get(name)
+            wired = child.data.get("transitions") if child is not None else None
+            if child is not None and isinstance(wired, dict):
+                good = self.ends(outline, child, known=known).success
+                due += [to for outcome, to in cast("Plain", wired).items() if outcome in good]
+        return NodeOutcomes(outside, tuple(name for name in outside if name in reached))
 
 
 def rules(ref: NodeRef) -> list[ConcurrencyCondition]:
@@ -166,6 +166,14 @@ def texts(value: object) -> tuple[str, ...]:
     """Return the text items of a list; empty for another value."""
     items: Iterable[object] = cast("list[object]", value) if isinstance(value, list) else ()
     return tuple(item for item in items if isinstance(item, str))
+
+
+def _outside(children: Mapping[str, NodeRef]) -> tuple[str, ...]:
+    """Return the targets of children of a machine other than its children."""
+    found: dict[str, None] = {}
+    for child in children.values():
+        found.update(dict.fromkeys([target for target in targets_of(child.data) if target not in children]))
+    return tuple(found)
 
 
 def _used(data: Plain) -> NodeOutcomes:

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from engine.editing.apply import apply_edits
-from engine.editing.document_repository import DocumentRepository, StoredDocument
-from engine.editing.draft import Draft
-from engine.editing.edit import AnyEdit, SetDocument, SetField
-from engine.editing.outline import Outline
+from engine.editing.document_repository import DocumentRepository
+from engine.editing.edits.apply import apply_edits
+from engine.editing.edits.edit import AnyEdit, SetDocument, SetField
+from engine.editing.stored_document import StoredDocument
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import Outline
 from engine.errors import DocumentError
 
 

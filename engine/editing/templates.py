@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.editing.yaml_style import scalar_text
+from engine.editing.text.yaml_style import scalar_text
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
 

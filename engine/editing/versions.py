@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from engine.editing.diagnostics import text_hash
+from engine.editing.analysis.diagnostics import text_hash
 from engine.errors import DocumentError
 
 MAX_VERSIONS = 200

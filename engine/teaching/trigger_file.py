@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from engine.document.text.yaml_source import parse_source
-from engine.editing.yaml_style import scalar_text
+from engine.editing.text.yaml_style import scalar_text
 from engine.errors import DocumentError, StoreError
 from engine.host.private_files import make_private_folder, open_private
 from engine.skills.teaching import Trigger

@@ -17,6 +17,7 @@ from engine.document.nodes.concurrency_condition import deciding
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES, ConcurrencySpec, NodeSpec
 
 _SHOWN = 6
+_NEVER: frozenset[str] = frozenset()
 
 
 def check_loops(subject: AnalyzedBehavior, read: Iterable[KeyRead]) -> Iterator[Finding]:
@@ -46,18 +47,20 @@ class InstantOutcomes:
 
     def instant_targets(self, placed: NodeAt) -> tuple[str, ...]:
         """Return the targets that a child of a machine can reach in the same instant."""
-        node = placed.node
-        found = [to for outcome, to in node.transitions.items() if outcome in self.ends[placed.path]]
+        node, ends = placed.node, self.ends[placed.path]
+        if not ends and node.guard is None:
+            return ()
+        found = [to for outcome, to in node.transitions.items() if outcome in ends]
         if node.guard is not None and node.guard.to is not None:
             found.append(node.guard.to)
         return tuple(found)
 
     def _own(self, placed: NodeAt) -> frozenset[str]:
         node = placed.node
-        children = self._subject.children(placed)
         signature = self._subject.signature(node)
         if signature is not None:
-            return frozenset(signature.outcomes) if signature.instant and not _waits(node) else frozenset()
+            return frozenset(signature.outcomes) if signature.instant and not _waits(node) else _NEVER
+        children = self._subject.children(placed)
         referred = self._subject.referred(node)
         if referred is not None:
             return self._referred(referred)
@@ -133,7 +136,7 @@ def _check_machine(
     by_name = {child.name: child for child in children}
     ranks = {child.name: rank for rank, child in enumerate(children)}
     leads = {child.name: [to for to in instant.instant_targets(child) if to in by_name] for child in children}
-    for loop in _loops(leads):
+    for loop in _loops(leads) if any(leads.values()) else ():
         inside = [by_name[name] for name in loop]
         if _can_change(subject, inside, keys):
             continue

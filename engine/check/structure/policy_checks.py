@@ -29,16 +29,16 @@ def check_policies(subject: AnalyzedBehavior) -> Iterator[Finding]:
                 yield subject.finding(
                     "autonomy-never-passes", message, placed.path, "autonomy", outcome, hint=hint, at_key=True
                 )
-        yield from _check_resume(subject, placed)
+        if node.resume is not None:
+            yield from _check_resume(subject, placed, node.resume)
         for keys, found in conditions(placed).items():
             if isinstance(found, Template) and not found.names:
                 yield from _check_constant(subject, placed, keys, found)
 
 
-def _check_resume(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    resume = placed.node.resume
+def _check_resume(subject: AnalyzedBehavior, placed: NodeAt, resume: str) -> Iterator[Finding]:
     outcomes = subject.outcomes.get(placed.path)
-    if resume is None or outcomes is None or resume in (*_RESUME, *outcomes):
+    if outcomes is None or resume in (*_RESUME, *outcomes):
         return
     message = f"`{resume}` is not a valid `resume` value of `{placed.name}`"
     hint = did_you_mean(resume, (*_RESUME, *outcomes))

@@ -51,8 +51,8 @@ class _Resources:
         """
         used: dict[str, frozenset[str]] = {}
         for placed in subject.postorder:
-            inside = (used[child.path] for child in subject.children(placed))
-            used[placed.path] = self._own(subject, placed, known).union(*inside)
+            own, children = self._own(subject, placed, known), subject.children(placed)
+            used[placed.path] = own.union(*[used[child.path] for child in children]) if children else own
         return used
 
     def _own(self, subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, object]) -> frozenset[str]:
@@ -60,7 +60,7 @@ class _Resources:
         if signature is not None:
             # Most states command no device: only classes that declare resources are instantiated.
             if not signature.commands_hardware:
-                return frozenset()
+                return _NONE
             return _resources_of(signature, given_values(subject, placed, known))
         referred = subject.referred(placed.node)
         if referred is None or self._uses > _MOST_USES:

@@ -17,7 +17,8 @@ def check_transitions(subject: AnalyzedBehavior) -> Iterator[Finding]:
         node = placed.node
         if node.state is not None and node.state in subject.unknown:
             yield _unknown(subject, placed, node.state, subject.unknown[node.state])
-        yield from _check_named_outcomes(subject, placed)
+        if node.retry is not None or node.autonomy or node.success or node.foreach is not None:
+            yield from _check_named_outcomes(subject, placed)
         if node.machine is not None or node.priority is not None:
             yield from _check_machine(subject, placed)
     yield from _check_root(subject)
@@ -72,7 +73,10 @@ def _check_machine(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findin
             yield subject.finding("ambiguous-target", message, child.path, hint="rename the state")
     for child in subject.children(placed):
         yield from _check_targets(subject, child, siblings, outcomes)
-        yield from _check_outcomes(subject, child)
+        # Nearly all children lead each of their outcomes somewhere, and no other.
+        own, connected = subject.outcomes.get(child.path), child.node.transitions
+        if own is not None and (len(own) != len(connected) or not all(map(connected.__contains__, own))):
+            yield from _check_outcomes(subject, child, own)
 
 
 def _machine_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[str] | None:
@@ -93,10 +97,7 @@ def _check_targets(
         yield subject.finding("unknown-target", message, child.path, *keys, hint=hint)
 
 
-def _check_outcomes(subject: AnalyzedBehavior, child: NodeAt) -> Iterator[Finding]:
-    outcomes = subject.outcomes.get(child.path)
-    if outcomes is None:
-        return
+def _check_outcomes(subject: AnalyzedBehavior, child: NodeAt, outcomes: Sequence[str]) -> Iterator[Finding]:
     connected = child.node.transitions
     for outcome in subject.possible(child) or ():
         if outcome not in connected and not _reported_inside(child.node):

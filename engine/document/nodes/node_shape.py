@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
-from typing import Self, cast
+from typing import Self, TypeVar, cast
 
 from msgspec import Struct
 
@@ -12,6 +12,7 @@ from engine.document.nodes.decorator_spec import DecoratorSpec
 from engine.document.nodes.node_kind import COMMON_KEYS, NAMED, WRAPPERS, numbered
 from engine.document.text.decoding import StrictModel
 
+T = TypeVar("T")
 Keys = tuple[str | int, ...]
 _STATE = "state"
 """The kind of most nodes, which is found without a look at the others."""
@@ -55,6 +56,16 @@ class NodeShape(StrictModel, frozen=True, kw_only=True, dict=True):
     def clear_of(self) -> set[object]:
         """The checks that found nothing in this node and depend on nothing around it; they note it here."""
         return set()
+
+    def derived(self, derive: Callable[[Self], T]) -> T:
+        """Return what a function derives from this node alone; it is called once, whoever asks."""
+        if derive not in self._derived:
+            self._derived[derive] = derive(self)
+        return cast("T", self._derived[derive])
+
+    @cached_property
+    def _derived(self) -> dict[object, object]:
+        return {}
 
     @cached_property
     def nodes_as_root(self) -> tuple[tuple[str, Self], ...]:

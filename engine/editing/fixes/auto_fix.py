@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from engine.editing.apply import apply_edits
-from engine.editing.diagnostics import findings_of
-from engine.editing.edit import RemoveNodes
+from engine.editing.analysis.diagnostics import findings_of
+from engine.editing.edits.apply import apply_edits
+from engine.editing.edits.edit import RemoveNodes
 from engine.editing.fixes.fix import Fix
 from engine.editing.fixes.fix_registry import fixes_of
 from engine.editing.project_context import ProjectContext

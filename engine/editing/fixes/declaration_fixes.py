@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine.editing.edit import SetDocument
+from engine.editing.edits.edit import SetDocument
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_names, strings, without_key
 
 

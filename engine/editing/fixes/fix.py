@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import cast
 
 from engine.document.nodes.node_kind import MACHINES
-from engine.editing.edit import AnyEdit
-from engine.editing.edit_session import EditSession
-from engine.editing.outline import NodeRef, Plain
+from engine.editing.edits.edit import AnyEdit
+from engine.editing.edits.edit_session import EditSession
+from engine.editing.text.outline import NodeRef, Plain
 from engine.library.behavior_library import FindingView
 
 _NAMES = re.compile(r"`([^`]*)`")

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from engine.editing.draft import Draft
-from engine.editing.edit_session import EditSession
+from engine.editing.edits.edit_session import EditSession
 from engine.editing.fixes import declaration_fixes as declarations
 from engine.editing.fixes import parameter_fixes as parameters
 from engine.editing.fixes import policy_fixes as conduct
@@ -14,6 +13,7 @@ from engine.editing.fixes import transition_fixes as wiring
 from engine.editing.fixes import userdata_fixes as keys
 from engine.editing.fixes.fix import MAX_FIXES, Fix, FixContext, quoted_names
 from engine.editing.project_context import ProjectContext
+from engine.editing.text.draft import Draft
 from engine.errors import DocumentError
 from engine.library.behavior_library import FindingView
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import cast
 
 from engine.document.text.yaml_source import load_source
-from engine.editing.edit import AnyEdit, ClearParameter, SetDocument, SetField, SetParameter
+from engine.editing.edits.edit import AnyEdit, ClearParameter, SetDocument, SetField, SetParameter
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_names
-from engine.editing.outline import Plain
+from engine.editing.text.outline import Plain
 from engine.errors import DocumentError
 
 _PLAIN = ("number", "integer", "string", "boolean")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine.editing.edit import SetField
+from engine.editing.edits.edit import SetField
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, similar_names
 
 

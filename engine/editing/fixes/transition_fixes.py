@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import cast
 
 from engine.document.nodes.concurrency_condition import PREEMPT, deciding, read_entry
-from engine.editing.edit import (
+from engine.editing.edits.edit import (
     AnyEdit,
     ClearTransition,
     RemoveNodes,
@@ -17,8 +17,8 @@ from engine.editing.edit import (
     SetTransition,
 )
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_names, strings, with_renamed_key
-from engine.editing.outline import Plain
 from engine.editing.project_context import rules
+from engine.editing.text.outline import Plain
 
 
 def unconnected(place: FixContext) -> Iterator[Fix]:

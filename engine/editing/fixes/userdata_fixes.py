@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from engine.document.signature import KeySignature
-from engine.editing.edit import SetDocument, SetField
+from engine.editing.edits.edit import SetDocument, SetField
 from engine.editing.fixes.fix import Fix, FixContext, is_typo, mapping, similar_names, with_renamed_key, without_key
 
 _BEGINNINGS: Mapping[str, object] = {"number": 0, "integer": 0, "string": "", "boolean": False, "array": []}

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from engine.document.nodes import node_spec
 from engine.document.nodes.node_kind import KINDS, WRAPPERS
 from engine.document.nodes.node_spec import TREE_KINDS
-from engine.editing.edit import AnyEdit, GroupNodes
-from engine.editing.outline import NodeRef, Outline
+from engine.editing.edits.edit import AnyEdit, GroupNodes
+from engine.editing.text.outline import NodeRef, Outline
 from tests.engine.editing.layouts import Plain
 
 MACHINES = ("machine", "priority")

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from engine.editing import DocumentConflict, DocumentRepository, NoSuchDocument, text_hash
-from engine.editing.document_diff import compare_texts
+from engine.editing.analysis.document_diff import compare_texts
 from engine.editing.versions import MAX_VERSIONS
 from engine.errors import DocumentError
 from tests.engine.editing.edit_fixtures import STATES, edited
-from tests.engine.editing.test_node_edits import TEXT
+from tests.engine.editing.edits.test_node_edits import TEXT
 
 ID = "behaviors/a/x.yaml"
 

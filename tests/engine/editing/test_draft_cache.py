@@ -13,11 +13,11 @@ from engine.document import parse_behavior
 from engine.document.loader import survey_behavior
 from engine.document.nodes.node_spec import NodeSpec
 from engine.editing import DocumentAnalysis, Draft, ProjectContext, analyze_text, apply_edits
-from engine.editing.apply import apply_edits_to_draft
-from engine.editing.diagnostics import text_hash
+from engine.editing.analysis.diagnostics import text_hash
 from engine.editing.draft_cache import DraftCache
-from engine.editing.draft_source import keep_nodes, syntax_source
-from engine.editing.outline import Outline
+from engine.editing.edits.apply import apply_edits_to_draft
+from engine.editing.text.draft_source import keep_nodes, syntax_source
+from engine.editing.text.outline import Outline
 from engine.registry import load_states
 from engine.state import Context, Outcome, State
 from tests.engine.editing.edit_fixtures import analysis_of, read_edits

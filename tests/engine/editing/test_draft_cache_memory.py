@@ -6,9 +6,9 @@ import gc
 import weakref
 from pathlib import Path
 
-from engine.editing.draft import Draft
 from engine.editing.draft_cache import MAX_ENTRIES, DraftCache
 from engine.editing.project_context import ProjectContext
+from engine.editing.text.draft import Draft
 
 TEXT = "flexcell: 1\nname: x\noutcomes: [a]\nroot: {state: flow.Wait, with: {duration_s: 1}, description: "
 

@@ -8,7 +8,7 @@ from typing import cast
 import pytest
 
 from engine.editing import Draft
-from engine.editing.outline import NodeRef, Outline
+from engine.editing.text.outline import NodeRef, Outline
 from tests.engine.editing.edit_fixtures import edited
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"

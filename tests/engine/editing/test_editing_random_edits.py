@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from engine.document import parse_behavior
 from engine.document.text.yaml_source import parse_source
 from engine.editing import Draft, apply_edits, copy_nodes
-from engine.editing.outline import Outline
+from engine.editing.text.outline import Outline
 from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import context, edited, read_edits
 from tests.engine.editing.layouts import Layout, Plain, chances

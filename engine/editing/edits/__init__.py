@@ -1,0 +1,1 @@
+"""Edits as messages, and what each of them does to a draft."""

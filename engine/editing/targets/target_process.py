@@ -1,0 +1,65 @@
+"""The target check process: computes arm postures at the targets of texts, separate from the server."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from pathlib import Path
+
+import msgspec
+
+from engine.check import check_targets
+from engine.document.loader import survey_behavior
+from engine.editing.analysis.diagnostics import draw_document, finding_view, sorted_findings
+from engine.editing.project_context import ProjectContext
+from engine.editing.targets.target_messages import TargetFindings, TargetRequest
+from engine.editing.text.draft import Draft
+from engine.editing.text.outline import Outline
+from engine.errors import DocumentError, FlexcellError
+from engine.host.child_process import set_parent_death_signal
+from engine.registry import load_states
+from engine.runtime.plan import Catalogue
+
+_NICER_BY = 10
+
+
+def main() -> None:
+    """Serve the socket whose descriptor is the first argument until the other end closes it."""
+    connection = socket.socket(fileno=int(sys.argv[1]))
+    set_parent_death_signal(connection)
+    # Moving arms, and the response to the next edit, have priority.
+    os.nice(_NICER_BY)
+    catalogues: dict[str, Catalogue] = {}
+    with connection.makefile("rb") as requests:
+        for line in requests:
+            request = msgspec.json.decode(line, type=TargetRequest)
+            connection.sendall(msgspec.json.encode(_answered(request, catalogues)) + b"\n")
+
+
+def _answered(request: TargetRequest, catalogues: dict[str, Catalogue]) -> TargetFindings:
+    project = Path(request.project)
+    try:
+        if request.project not in catalogues:
+            catalogues[request.project] = load_states(project)
+        return target_findings(request.text, Path(request.file), project, catalogues[request.project])
+    except FlexcellError as error:
+        return TargetFindings(problem=str(error))
+
+
+def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) -> TargetFindings:
+    """Return the targets in a text, as the content of `file`, that an arm of its own cell cannot take.
+
+    For a text that cannot be read, or leads out of the project, the result is empty: the check reports that.
+    """
+    context = ProjectContext(catalogue, file.parent, project)
+    try:
+        draft = Draft(text, file=str(file))
+    except DocumentError:
+        return TargetFindings()
+    drawn, graph = draw_document(draft, Outline(draft.data), file=file, context=context)
+    behavior = survey_behavior(file, text, within=project).behavior if not drawn.findings else None
+    if behavior is None:
+        return TargetFindings()
+    found = [finding_view(each, file) for each in check_targets(behavior, catalogue) if each.severity == "warning"]
+    return TargetFindings(findings=sorted_findings(found, graph))
