@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
+
+from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("engine", "states", "robots", "editor_web")
@@ -24,24 +23,9 @@ TERMS = {"three_way_merge"}
 """Terms of the field that the glossary has, with a word that is retired by itself."""
 
 
-class Names(NamedTuple):
-    """The names of a file's public classes, and of all its functions and methods, also of those inside others."""
-
-    classes: tuple[str, ...]
-    functions: tuple[str, ...]
-
-
-@cache
-def _names(path: Path) -> Names:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    classes = (node.name for node in tree.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_"))
-    functions = (node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
-    return Names(classes=tuple(classes), functions=tuple(functions))
-
-
 def _public_classes() -> Iterator[tuple[str, Path]]:
     for path in SOURCES:
-        for name in _names(path).classes:
+        for name in source_file(path).classes:
             yield name, path
 
 
@@ -105,7 +89,8 @@ def test_retired_words_are_in_no_name_of_a_file_class_or_function(package: str) 
     retired, plain = _retired()
     files = [path for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts]
     assert files
-    used = [(name, path) for path in files for name in (path.stem, *_names(path).classes, *_names(path).functions)]
+    sources = [(source_file(path), path) for path in files]
+    used = [(name, path) for source, path in sources for name in (path.stem, *source.classes, *source.functions)]
     assert [
         f"{path.relative_to(ROOT)}: {name}"
         for name, path in used
