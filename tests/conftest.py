@@ -15,12 +15,7 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
-from tests.tiers import SECOND_TRY, ThisRun, kinds_of
-
-# How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
-settings.register_profile("flexcell", deadline=None)
-settings.load_profile("flexcell")
-
+from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
 
 # Events of the interpreter when a process is started.
 PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
@@ -46,6 +41,9 @@ def pytest_configure(config: pytest.Config) -> None:
     ):
         config.addinivalue_line("markers", line)
     ThisRun.nightly = bool(config.getoption("--nightly"))
+    # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
+    settings.register_profile("flexcell", deadline=None, max_examples=examples(50, nightly=300))
+    settings.load_profile("flexcell")
     if _is_fast(config):
         sys.addaudithook(_refuse_process)
 
