@@ -26,6 +26,8 @@ from engine.registry import load_states
 
 # A server is a program of its own, and brings the web with it.
 _NOT_HERE = ("engine.cli.commands.serve", "engine.cli.entry")
+# What sweeps load with their first use: scipy takes a second.
+_LATER = ("engine.sweep.design", "engine.sweep.summary", "engine.sweep.sweep_execution")
 
 
 def serve() -> None:
@@ -33,6 +35,8 @@ def serve() -> None:
     for module in pkgutil.walk_packages(engine.cli.__path__, "engine.cli."):
         if module.name not in _NOT_HERE:
             importlib.import_module(module.name)
+    for name in _LATER:
+        importlib.import_module(name)
     load_states()
     # Typer loads half of itself with the first command, and what prints help with the first help.
     CliRunner().invoke(app, ["runs", "--help"])
