@@ -7,6 +7,7 @@ import gc
 import inspect
 import os
 import sys
+from collections.abc import Generator
 from pathlib import Path
 from types import FunctionType
 from typing import Any, cast
@@ -15,12 +16,7 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
-from tests.tiers import SECOND_TRY, ThisRun, kinds_of
-
-# How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
-settings.register_profile("flexcell", deadline=None)
-settings.load_profile("flexcell")
-
+from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
 
 # Events of the interpreter when a process is started.
 PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
@@ -46,6 +42,9 @@ def pytest_configure(config: pytest.Config) -> None:
     ):
         config.addinivalue_line("markers", line)
     ThisRun.nightly = bool(config.getoption("--nightly"))
+    # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
+    settings.register_profile("flexcell", deadline=None, max_examples=examples(50, nightly=300))
+    settings.load_profile("flexcell")
     if _is_fast(config):
         sys.addaudithook(_refuse_process)
 
@@ -67,6 +66,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     left_out = [item for item in items if _is_left_out(item, config)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Have no garbage collected while tests are read: nearly all that is made stays."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
 
 
 def pytest_collection_finish() -> None:

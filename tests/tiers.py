@@ -78,21 +78,28 @@ def _kinds_of(file: Path, seen: set[Path]) -> frozenset[str]:
     found = {kind for folder, kind in FOLDERS.items() if relative.startswith(f"{folder}/")}
     found |= {FILES[relative]} if relative in FILES else set()
     for name in _imported(file):
-        found |= {kind for start, kind in KINDS.items() if f"{name}.".startswith(f"{start}.")}
+        found |= _kinds_of_module(name)
         helper = _helper(name)
         if helper is not None and helper not in seen:
             found |= _kinds_of(helper, seen)
     return frozenset(found)
 
 
-def _imported(file: Path) -> set[str]:
+@cache
+def _kinds_of_module(module: str) -> frozenset[str]:
+    return frozenset(kind for start, kind in KINDS.items() if f"{module}.".startswith(f"{start}."))
+
+
+@cache
+def _imported(file: Path) -> frozenset[str]:
     """Every module that a file names, and every name that it takes from one, which may be a module too."""
     found: set[str] = set()
     for module, names in IMPORT.findall(file.read_text(encoding="utf-8")):
         found |= {module, *(f"{module}.{name.strip()}" for name in names.split(",") if name.strip("( "))}
-    return found
+    return frozenset(found)
 
 
+@cache
 def _helper(module: str) -> Path | None:
     """The file of a module of the tests."""
     if not module.startswith("tests."):

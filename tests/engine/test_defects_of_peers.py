@@ -6,7 +6,6 @@ python-statemachine and RAFCON.
 
 from __future__ import annotations
 
-import ast
 import asyncio
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from engine.errors import DocumentError
 from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE
 from tests.engine.run_document import HEAD, plan_of, run_document
+from tests.house.source_file import source_file
 
 ROOT = Path(engine.__file__).parent
 
@@ -142,16 +142,9 @@ def test_nothing_is_unpickled_or_evaluated(package: str) -> None:
     """RAFCON and SMACH unpickle what comes from files and topics."""
     forbidden = {"pickle", "marshal", "shelve", "dill", "cloudpickle"}
     for file in (ROOT.parent / package).rglob("*.py"):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            match node:
-                case ast.Import(names=names):
-                    assert forbidden.isdisjoint(name.name.partition(".")[0] for name in names), file
-                case ast.ImportFrom(module=str(module)):
-                    assert module.partition(".")[0] not in forbidden, file
-                case ast.Call(func=ast.Name(id="eval" | "exec")):
-                    pytest.fail(f"{file}:{node.lineno} evaluates text")
-                case _:
-                    pass
+        source = source_file(file)
+        assert forbidden.isdisjoint(each.module.partition(".")[0] for each in source.imports), file
+        assert source.called.isdisjoint({"eval", "exec"}), f"{file} evaluates text"
 
 
 def _dedent(text: str) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
 WINGS = ("states", "robots", "editor_web")
@@ -23,12 +24,14 @@ def _names_of(face: str) -> list[str]:
 
 def _from_inside(path: Path) -> Iterator[str]:
     """Yield what a file imports from a room of the engine and its face, or the face of a room in it, does not offer."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name.count(".") > 1 and _is_room(alias.name))
-        elif isinstance(node, ast.ImportFrom) and node.module is not None and node.level == 0 and _is_room(node.module):
-            offered = _names_of(node.module)
-            yield from (f"{node.module}.{alias.name}" for alias in node.names if alias.name not in offered)
+    for module, names, level in source_file(path).imports:
+        if level or not _is_room(module):
+            continue
+        if names is None:
+            yield from [module] if module.count(".") > 1 else []
+        else:
+            offered = _names_of(module)
+            yield from (f"{module}.{name}" for name in names if name not in offered)
 
 
 def _is_room(module: str) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import ast
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("engine", "states", "robots", "editor_web")
@@ -30,11 +31,8 @@ def _name(path: Path) -> str:
 
 def _imports(path: Path, known: set[str]) -> set[str]:
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+    for module, names, _ in source_file(path).imports:
+        found |= {module, *(f"{module}.{name}" for name in names or ())}
     return {name for name in found if name in known} - {_name(path)}
 
 
@@ -61,7 +59,6 @@ def test_no_modules_import_one_another_in_a_circle() -> None:
 @pytest.mark.parametrize("path", SOURCES, ids=_name)
 def test_a_file_says_what_it_is_for_and_keeps_to_one_subject(path: Path) -> None:
     """A docstring in the first line, at most 420 lines, and no grab-bag names."""
-    text = path.read_text(encoding="utf-8")
-    assert ast.get_docstring(ast.parse(text)), "no docstring"
-    assert text.count("\n") <= 420
+    assert source_file(path).docstring, "no docstring"
+    assert path.read_text(encoding="utf-8").count("\n") <= 420
     assert path.stem not in ("utils", "util", "helpers", "common", "manager", "misc")

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 import io
 import re
 import tokenize
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
+
+from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("engine", "states", "robots", "editor_web")
@@ -31,41 +30,9 @@ PROSE = {"bench", "looking", "nearby", "newest", "tell", "told", "trouble"}
 DOCS = [path for path in sorted((ROOT / "docs").rglob("*.md")) if path != GLOSSARY]
 
 
-class Names(NamedTuple):
-    """The names of a file's public classes, of all its functions and methods, also of those inside others, and others.
-
-    `others` are attributes, parameters, keyword arguments and locals, where the file assigns or passes them.
-    """
-
-    classes: tuple[str, ...]
-    functions: tuple[str, ...]
-    others: frozenset[str]
-
-
-@cache
-def _names(path: Path) -> Names:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    classes = (node.name for node in tree.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_"))
-    functions = (node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
-    others = frozenset(filter(None, map(_assigned, ast.walk(tree))))
-    return Names(classes=tuple(classes), functions=tuple(functions), others=others)
-
-
-def _assigned(node: ast.AST) -> str | None:
-    match node:
-        case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()):
-            return name
-        case ast.arg(arg=name) | ast.keyword(arg=name) | ast.alias(asname=name):
-            return name
-        case ast.ExceptHandler(name=name) | ast.MatchAs(name=name) | ast.MatchStar(name=name):
-            return name
-        case _:
-            return None
-
-
 def _public_classes() -> Iterator[tuple[str, Path]]:
     for path in SOURCES:
-        for name in _names(path).classes:
+        for name in source_file(path).classes:
             yield name, path
 
 
@@ -129,7 +96,8 @@ def test_retired_words_are_in_no_name_of_a_file_class_or_function(package: str) 
     retired, plain = _retired()
     files = [path for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts]
     assert files
-    used = [(name, path) for path in files for name in (path.stem, *_names(path).classes, *_names(path).functions)]
+    sources = [(source_file(path), path) for path in files]
+    used = [(name, path) for source, path in sources for name in (path.stem, *source.classes, *source.functions)]
     assert [
         f"{path.relative_to(ROOT)}: {name}"
         for name, path in used
@@ -149,7 +117,7 @@ def test_retired_words_are_in_no_attribute_parameter_or_local(package: str) -> N
         f"{place}: {name}"
         for place, path in places
         if not place.startswith(NOT_YET)
-        for name in sorted(_names(path).others - TERMS)
+        for name in sorted(source_file(path).assigned - TERMS)
         if _words(name) & retired
     ] == []
 

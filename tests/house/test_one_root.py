@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 
 import pytest
+
+from tests.house.source_file import source_file, source_text
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("engine", "states", "robots", "editor_web")
@@ -29,31 +28,12 @@ OTHERS = {
 """What is made elsewhere, with the reason."""
 
 
-def _made(text: str) -> set[str]:
-    """Return what a source calls by its name, or by a name and one attribute: `Run`, `Journal.open`."""
-    found: set[str] = set()
-    for node in ast.walk(ast.parse(text)):
-        match node:
-            case ast.Call(func=ast.Name(id=name)):
-                found.add(name)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=owner), attr=name)):
-                found.add(f"{owner}.{name}")
-            case _:
-                continue
-    return found
-
-
-@cache
-def _calls() -> Mapping[Path, set[str]]:
+def _places(part: str) -> set[Path]:
+    """Return the files that make a part of a run, other than the file that defines it."""
     files = (
         path for package in PACKAGES for path in (ROOT / package).rglob("*.py") if "node_modules" not in path.parts
     )
-    return {path.relative_to(ROOT): _made(path.read_text(encoding="utf-8")) for path in files}
-
-
-def _places(part: str) -> set[Path]:
-    """Return the files that make a part of a run, other than the file that defines it."""
-    return {path for path, calls in _calls().items() if part in calls} - {Path(PARTS[part])}
+    return {path.relative_to(ROOT) for path in files if part in source_file(path).called} - {Path(PARTS[part])}
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -73,4 +53,5 @@ def test_one_file_makes_runs_with_a_cell() -> None:
 
 def test_a_call_is_found_however_it_is_nested() -> None:
     """So that a second composition is seen in an argument or a decorator as well."""
-    assert _made("with a(Run(plan)) as b:\n    x = [Journal.open(p) for p in q]\n") == {"a", "Run", "Journal.open"}
+    text = "with a(Run(plan)) as b:\n    x = [Journal.open(p) for p in q]\n"
+    assert source_text(text).called == {"a", "Run", "Journal.open"}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import ast
 from collections import defaultdict
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
 import pytest
+
+from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("engine", "states", "robots", "editor_web")
@@ -28,12 +29,9 @@ def modules(package: str) -> Mapping[str, Path]:
 def imports(path: Path, known: Mapping[str, Path]) -> set[str]:
     """Return the modules of the same package that a file imports."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = {f"{node.module}.{alias.name}" for alias in node.names}
-            found |= (names & known.keys()) or {node.module}
+    for module, names, level in source_file(path).imports:
+        if not level:
+            found |= ({f"{module}.{name}" for name in names or ()} & known.keys()) or {module}
     return {name for name in found if name in known}
 
 
@@ -95,6 +93,6 @@ def test_rooms_hold_at_most_twenty_files(folder: str) -> None:
 def test_each_room_says_what_it_is_for(package: str) -> None:
     """In the docstring of its `__init__`."""
     faces = [path for path in modules(package).values() if path.name == "__init__.py"]
-    assert [str(p) for p in faces if not ast.get_docstring(ast.parse(p.read_text(encoding="utf-8")))] == []
+    assert [str(p) for p in faces if not source_file(p).docstring] == []
     folders = {path.parent for path in modules(package).values()}
     assert {folder for folder in folders if not (folder / "__init__.py").is_file()} == set()

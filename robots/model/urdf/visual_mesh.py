@@ -26,6 +26,7 @@ _KEEP = 0.1
 _LEAST_FACES = 150
 _RECIPE = f"visual mesh 1, keep {_KEEP}, least {_LEAST_FACES}"
 _ROUND = 32
+_PRIMITIVE_RECIPE = f"primitive 1, round {_ROUND}"
 _PLAIN: Rgba = (0.7, 0.7, 0.7, 1.0)
 
 
@@ -68,7 +69,7 @@ def _described(
 ) -> tuple[VisualMesh, ...]:
     colour, mesh = _described_colour(visual), visual.find("geometry/mesh")
     if mesh is None:
-        return _primitive(visual, colour or _PLAIN)
+        return _primitive(visual, colour or _PLAIN, folder)
     path = resolve_uri(mesh.attrib["filename"], package_dirs=model.package_dirs, relative_to=Path())
     if path not in known:
         known[path] = _meshes(path, folder)
@@ -85,22 +86,31 @@ def _adjusted(mesh: VisualMesh, scale: tuple[float, ...], colour: Rgba | None) -
     return VisualMesh(vertices=vertices.tobytes(), faces=mesh.faces, rgba=colour or mesh.rgba)
 
 
-def _primitive(visual: ET.Element, colour: Rgba) -> tuple[VisualMesh, ...]:
-    trimesh: Any = import_module("trimesh")
+def _primitive(visual: ET.Element, colour: Rgba, folder: Path) -> tuple[VisualMesh, ...]:
     for shape in visual.findall("geometry/*"):
-        numbers = {key: [float(v) for v in text.split()] for key, text in shape.attrib.items()}
-        match shape.tag:
-            case "box":
-                made = trimesh.creation.box(extents=numbers["size"])
-            case "cylinder":
-                made = trimesh.creation.cylinder(numbers["radius"][0], numbers["length"][0], sections=_ROUND)
-            case "sphere":
-                made = trimesh.creation.icosphere(subdivisions=2, radius=numbers["radius"][0])
-            case _:
-                continue
-        vertices, faces = np.asarray(made.vertices, np.float32), np.asarray(made.faces, np.uint32)
-        return (VisualMesh(vertices=vertices.tobytes(), faces=faces.tobytes(), rgba=colour),)
+        if shape.tag in ("box", "cylinder", "sphere"):
+            key = content_key(ET.tostring(shape), recipe=_PRIMITIVE_RECIPE)
+            kept = read_cached(folder, key)
+            if kept is not None:
+                return (msgspec.structs.replace(msgspec.msgpack.decode(kept, type=VisualMesh), rgba=colour),)
+            made = _made_of(shape, colour)
+            write_cached(folder, key, msgspec.msgpack.encode(made))
+            return (made,)
     return ()
+
+
+def _made_of(shape: ET.Element, colour: Rgba) -> VisualMesh:
+    # As in _converted.
+    trimesh: Any = import_module("trimesh")
+    numbers = {key: [float(v) for v in text.split()] for key, text in shape.attrib.items()}
+    if shape.tag == "box":
+        made = trimesh.creation.box(extents=numbers["size"])
+    elif shape.tag == "cylinder":
+        made = trimesh.creation.cylinder(numbers["radius"][0], numbers["length"][0], sections=_ROUND)
+    else:
+        made = trimesh.creation.icosphere(subdivisions=2, radius=numbers["radius"][0])
+    vertices, faces = np.asarray(made.vertices, np.float32), np.asarray(made.faces, np.uint32)
+    return VisualMesh(vertices=vertices.tobytes(), faces=faces.tobytes(), rgba=colour)
 
 
 def _described_colour(visual: ET.Element) -> Rgba | None:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from tests.editor_web.editing_client import SHIFT, SHIFT_ID, EditingClient
 from tests.engine.editing.layouts import Plain
 from tests.engine.editing.random_edits import any_edits
+from tests.tiers import examples
 
 AT = f"/documents/{SHIFT_ID}"
 PATHS = ["root", "root/first", "root/second"]
@@ -73,7 +74,9 @@ def sent(client: EditingClient, method: str, path: str, body: object) -> tuple[i
     return status, json.loads(answer) if answer else None
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(50, nightly=500), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(route=st.sampled_from(ROUTES), body=plain | st.binary(max_size=40))
 def test_bodies_of_any_kind_are_refused_in_words(client: EditingClient, route: tuple[str, str], body: object) -> None:
     before = sorted(client.project.glob("behaviors/**/*"))
@@ -83,7 +86,9 @@ def test_bodies_of_any_kind_are_refused_in_words(client: EditingClient, route: t
     assert sorted(client.project.glob("behaviors/**/*")) == before
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(60, nightly=500), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(text=texts, edits=st.lists(any_edits(PATHS) | plain, max_size=3), path=st.sampled_from([*PATHS, "x", ""]))
 def test_texts_and_edits_of_any_kind_are_answered(
     client: EditingClient, text: str, edits: list[Plain], path: str

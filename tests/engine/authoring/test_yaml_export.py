@@ -19,13 +19,14 @@ from tests.engine.authoring.random_steps import BEHAVIORS
 from tests.engine.document.example_documents import BEHAVIORS as DOCUMENTS
 from tests.engine.document.example_documents import Plain
 from tests.engine.fake_states import Give
+from tests.tiers import examples
 
 SHIPPED = sorted((Path(__file__).parents[3] / "behaviors").rglob("*.yaml"))
 SCHEMA: Any = Draft202012Validator(json.loads((SCHEMA_FOLDER / "behavior.schema.json").read_text(encoding="utf-8")))
 
 
 @given(BEHAVIORS)
-@settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@settings(max_examples=examples(40, nightly=300), suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_a_behavior_made_in_python_written_and_read_is_the_same(made: Behavior) -> None:
     """The models, the meaning, and the bytes of a second writing."""
     text = to_yaml(made)
@@ -36,7 +37,7 @@ def test_a_behavior_made_in_python_written_and_read_is_the_same(made: Behavior) 
 
 
 @given(BEHAVIORS)
-@settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@settings(max_examples=examples(40, nightly=300), suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_what_is_written_fits_the_committed_schema(made: Behavior) -> None:
     """So an editor with the schema marks nothing in it."""
     data = parse_source(to_yaml(made), file="x.yaml").data
@@ -44,7 +45,7 @@ def test_what_is_written_fits_the_committed_schema(made: Behavior) -> None:
 
 
 @given(DOCUMENTS)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(40, nightly=300), deadline=None)
 def test_any_document_written_and_read_is_the_same(document: Plain) -> None:
     """Also one that was never made in Python, and whose defaults were written out."""
     read = parse_behavior(write_yaml(document), file="x.yaml")

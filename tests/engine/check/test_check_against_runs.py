@@ -18,12 +18,13 @@ from engine.runtime.plan import new_plan
 from engine.runtime.run import Run
 from tests.engine.check.data_states import CATALOGUE
 from tests.engine.check.random_behaviors import Plain, behaviors
+from tests.tiers import examples
 
 UNDEFINED = {"undefined-key", "undeclared-name"}
 MAYBE = {"maybe-undefined-key"}
 SEEDS = range(3)
 SETTINGS = settings(
-    max_examples=60,
+    max_examples=examples(30, nightly=240),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )

@@ -91,7 +91,7 @@ def changed(document: Any, path: tuple[str | int, ...], how: str, value: object)
 
 
 @settings(
-    max_examples=examples(60, nightly=200),
+    max_examples=examples(30, nightly=200),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
@@ -130,7 +130,7 @@ ODD: st.SearchStrategy[Any] = VALUES | st.sampled_from(["panda", "./x", "../x/y"
 
 
 @settings(
-    max_examples=examples(60, nightly=300),
+    max_examples=examples(30, nightly=300),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

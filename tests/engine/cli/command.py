@@ -26,11 +26,11 @@ class CommandOutput:
     err: str
 
 
-def flexcell(*arguments: str | Path, cwd: Path) -> CommandOutput:
-    """Run the command to its end."""
+def flexcell(*arguments: str | Path, cwd: Path, stdin: str | None = None) -> CommandOutput:
+    """Run the command to its end; what it is given on standard input ends after this text."""
     # Of those that wait, or a new one: tests may run two commands at a time, in threads.
     preloaded = _IDLE.pop() if _IDLE else _Preloaded()
-    said = preloaded.run([str(each) for each in arguments], cwd)
+    said = preloaded.run([str(each) for each in arguments], cwd, stdin)
     _IDLE.append(preloaded)
     return said
 
@@ -47,10 +47,17 @@ class _Preloaded:
         atexit.register(self._process.kill)
         assert self._line() == "ready"
 
-    def run(self, arguments: list[str], cwd: Path) -> CommandOutput:
+    def run(self, arguments: list[str], cwd: Path, stdin: str | None) -> CommandOutput:
         """Run one command; raises TimeoutExpired."""
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
-            asked = {"args": arguments, "cwd": str(cwd), "env": dict(os.environ), "out": out.name, "err": err.name}
+            asked = {
+                "args": arguments,
+                "cwd": str(cwd),
+                "env": dict(os.environ),
+                "in": stdin,
+                "out": out.name,
+                "err": err.name,
+            }
             assert self._process.stdin is not None
             self._process.stdin.write(f"{json.dumps(asked)}\n")
             self._process.stdin.flush()

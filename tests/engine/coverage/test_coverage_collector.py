@@ -19,6 +19,7 @@ from tests.engine.fake_states import CATALOGUE
 from tests.engine.reference.act import CATALOGUE as ACTS
 from tests.engine.reference.interpreter import Interpreter, TooLong
 from tests.engine.reference.random_behaviors import STOPS, Case, cases, preempting_cases
+from tests.tiers import examples
 
 MACHINE = """
 userdata: {outcome: a}
@@ -262,7 +263,11 @@ def test_the_log_of_another_version_is_refused() -> None:
         covered(behavior_of(MACHINE)).add(events_of(other))
 
 
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(
+    deadline=None,
+    max_examples=examples(20, nightly=160),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
 @given(cases() | preempting_cases(), STOPS)
 def test_nothing_that_happens_is_missed(case: Case, stop_at_s: float) -> None:
     """In any behavior: every entry, transition and diversion counts once, and every decision has its condition.

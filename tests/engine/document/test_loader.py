@@ -187,7 +187,7 @@ def test_durations_are_seconds() -> None:
 
 
 @given(BEHAVIORS)
-@settings(max_examples=examples(60, nightly=300))
+@settings(max_examples=examples(30, nightly=300))
 def test_a_document_written_and_read_again_means_the_same(document: Plain) -> None:
     """As YAML, as JSON and from the models themselves."""
     behavior = parse_behavior(json.dumps(document), file="x.json")

@@ -9,6 +9,7 @@ from engine.document.faults import FAULT_KINDS
 from engine.event import FaultInjected, GoalFinished, GoalSent, RunEnded
 from engine.journal import encode_event_log
 from tests.engine.faults.device import run_with_faults
+from tests.tiers import examples
 
 BEHAVIOR = """
 root:
@@ -60,7 +61,7 @@ def test_every_kind_of_fault_is_among_the_random_ones() -> None:
     assert {kind.partition(":")[0] for kind in KINDS} == set(FAULT_KINDS)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(60, nightly=400))
 @given(FAULTS, st.integers(0, 3), st.none() | st.sampled_from([0.0, 0.5, 2.0, 5.0]))
 def test_any_faults_end_in_a_reported_end(faults: str, seed: int, stop_at_s: float | None) -> None:
     """Numbered without gaps, one end for each goal whose state was not abandoned, and byte for byte the same."""

@@ -20,21 +20,21 @@ from tests.tiers import examples
 ORDERS = 12
 """Orders of the branches of an instant that are tried to see whether they matter."""
 COMPARING = settings(
-    max_examples=80,
+    max_examples=examples(40, nightly=300),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
 )
 
 
 @given(cases(), STOPS)
-@settings(COMPARING, max_examples=examples(120, nightly=1000))
+@settings(COMPARING, max_examples=examples(60, nightly=1000))
 def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -> None:
     """Status, outcome, userdata, and every activation with its times."""
     compare(case, stop_at_s)
 
 
 @given(preempting_cases(), STOPS)
-@settings(COMPARING, max_examples=examples(100, nightly=1000))
+@settings(COMPARING, max_examples=examples(50, nightly=1000))
 def test_conditions_preempt_the_branches_that_the_reference_preempts(case: Case, stop_at_s: float) -> None:
     """While the others go on."""
     compare(case, stop_at_s)
@@ -96,7 +96,7 @@ def test_a_run_ends_and_leaves_nothing_behind(case: Case, stop_at_s: float) -> N
 
 
 @given(cases(), STOPS | st.sampled_from([0.0, 1.0, 2.0]), st.integers(0, 3))
-@settings(COMPARING, max_examples=60)
+@settings(COMPARING, max_examples=examples(30, nightly=300))
 def test_the_same_seed_gives_the_same_bytes(case: Case, stop_at_s: float, seed: int) -> None:
     """Twice the same run, whatever happens at one instant."""
     try:

@@ -28,6 +28,7 @@ from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from tests.engine.at_once import at_once
 from tests.engine.replay.rig import CATALOGUE, Act, recorded
+from tests.tiers import examples
 
 GRID = st.integers(0, 12).map(lambda n: n / 8)
 OFF_GRID = st.integers(0, 2047).map(lambda n: (2 * n + 1) / 4096)
@@ -183,13 +184,13 @@ def _comparable(event: Event) -> tuple[int, float, dict[str, object]]:
     return event.seq, event.time_s, plain_event(event)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=240), deadline=None)
 @given(tree=UNDISTURBED, seed=st.integers(0, 9))
 def test_a_run_in_which_much_comes_at_once_replays_the_same(tree: Node, seed: int) -> None:
     _same(_document(tree), seed=seed)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=240), deadline=None)
 @given(tree=DISTURBED, acts=PLANS, seed=st.integers(0, 9))
 def test_a_run_that_was_stopped_paused_and_stepped_replays_the_same(
     tree: Node, acts: dict[float, Act], seed: int
@@ -197,13 +198,13 @@ def test_a_run_that_was_stopped_paused_and_stepped_replays_the_same(
     _same(_document(tree), acts={**acts, **OVER}, seed=seed)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(20, nightly=160), deadline=None)
 @given(tree=DISTURBED, acts=PLANS, supervision=SUPERVISIONS)
 def test_a_run_under_supervision_replays_the_same(tree: Node, acts: dict[float, Act], supervision: RunOptions) -> None:
     _same(_document(tree), acts={**acts, **OVER}, supervision=supervision)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=240), deadline=None)
 @given(tree=PARTLY_PREEMPTED, acts=PLANS, seed=st.integers(0, 9))
 def test_a_run_in_which_conditions_preempt_some_branches_replays_the_same(
     tree: Node, acts: dict[float, Act], seed: int

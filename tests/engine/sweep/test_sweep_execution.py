@@ -79,11 +79,11 @@ def test_a_run_ends_alike_in_a_worker_and_in_this_process(project: LuckProject, 
 
 def test_saved_results_are_not_executed_again(project: LuckProject, tmp_path: Path) -> None:
     short, long = project.sweep(runs=4), project.sweep(runs=6)
-    first = _execute(short, tmp_path / "r.db")
-    second = _execute(long, tmp_path / "r.db")
+    first = _execute(short, tmp_path / "r.db", options=ONE)
+    second = _execute(long, tmp_path / "r.db", options=ONE)
     assert (first.executed, second.executed) == (4, 2)
     assert _table(second.results[:4]) == _table(first.results)
-    assert _execute(long, tmp_path / "r.db").executed == 0
+    assert _execute(long, tmp_path / "r.db", options=ONE).executed == 0
 
 
 def test_an_interrupted_sweep_keeps_what_has_ended_and_goes_on(project: LuckProject, tmp_path: Path) -> None:
@@ -165,15 +165,15 @@ class TestFailingRuns:
 
     def test_a_value_that_is_refused_is_a_result_too(self, project: LuckProject, tmp_path: Path) -> None:
         sweep = project.sweep(factors={"parameters.luck": {"values": [0.1, 7.0]}}, design="grid", runs=2)
-        end = _execute(sweep, tmp_path / "r.db")
+        end = _execute(sweep, tmp_path / "r.db", options=ONE)
         assert [each.status for each in end.results] == ["finished", "refused"]
         assert "luck" in end.results[1].reason
 
     def test_crashed_runs_are_executed_again_on_request_only(self, project: LuckProject, tmp_path: Path) -> None:
         sweep = project.sweep(runs=3, parameters={"rate": 0.0, "otherwise": "exit"})
-        assert _execute(sweep, tmp_path / "r.db").executed == 3
-        assert _execute(sweep, tmp_path / "r.db").executed == 0
-        assert _execute(sweep, tmp_path / "r.db", again=True).executed == 3
+        assert _execute(sweep, tmp_path / "r.db", options=ONE).executed == 3
+        assert _execute(sweep, tmp_path / "r.db", options=ONE).executed == 0
+        assert _execute(sweep, tmp_path / "r.db", options=ONE, again=True).executed == 3
 
 
 def test_a_process_is_replaced_after_its_runs(project: LuckProject, tmp_path: Path) -> None:
@@ -190,17 +190,17 @@ def test_documents_that_change_during_a_sweep_end_it(tmp_path: Path) -> None:
     project.behavior.write_text(text.replace("default: 0.5", "default: 0.6"), encoding="utf-8")
     with SweepResults.open(tmp_path / "r.db") as saved:
         with pytest.raises(FlexcellError, match="has changed while the sweep is running"):
-            execute_sweep(subject, configurations(sweep), saved, OPTIONS)
+            execute_sweep(subject, configurations(sweep), saved, ONE)
         assert saved.all_of(subject.hash) == []
 
 
 def test_results_of_another_version_are_not_taken(tmp_path: Path) -> None:
     project = LuckProject(tmp_path)
     sweep = project.sweep(runs=3)
-    assert _execute(sweep, tmp_path / "r.db").executed == 3
+    assert _execute(sweep, tmp_path / "r.db", options=ONE).executed == 3
     module = tmp_path / f"{project.module}.py"
     module.write_text(f"{module.read_text(encoding='utf-8')}\n# Another version.\n", encoding="utf-8")
-    assert _execute(sweep, tmp_path / "r.db").executed == 3
+    assert _execute(sweep, tmp_path / "r.db", options=ONE).executed == 3
 
 
 DRIVER = """

@@ -18,6 +18,7 @@ from engine.registry import load_states
 from engine.skills.proposing import Proposal, ProposalOptions, Role, StepKind, TaughtStep, ToolName
 from engine.teaching.behavior_proposal import build_proposal
 from engine.teaching.step_roles import ObservedStep, assign_step_roles, guess_part
+from tests.tiers import examples
 
 CATALOGUE = load_states()
 PLAIN = ProposalOptions()
@@ -174,7 +175,7 @@ def some_step(draw: st.DrawFn) -> ObservedStep:
     return draw(st.sampled_from([CLOSE, OPEN, HELD]))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=240), deadline=None)
 @given(
     st.lists(some_step(), min_size=1, max_size=9),
     st.sampled_from(sorted(tool_kinds())),

@@ -17,6 +17,10 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> LuckProject:
     return LuckProject(tmp_path_factory.mktemp("sweeps"))
 
 
+ONE = ("--workers", "1")
+"""A process more costs a second; what several do at a time is tested in `tests/engine/sweep`."""
+
+
 def _sweep(project: LuckProject, *arguments: str | Path) -> CommandOutput:
     return flexcell("sweep", *arguments, cwd=project.path)
 
@@ -34,7 +38,7 @@ def test_a_document_with_options_is_swept_in_parts_and_reported(project: LuckPro
     file = project.write(runs=6, seed=5)
     parts = ["p1.db", "p2.db"]
     for number, part in enumerate(parts, start=1):
-        ended = _sweep(project, file, "--shard", f"{number}/2", "--results", part, "--quiet")
+        ended = _sweep(project, file, "--shard", f"{number}/2", "--results", part, "--quiet", *ONE)
         assert (ended.code, ended.err) == (0, "")
     assert "6 results added to all.db" in _sweep(project, "merge", *parts, "--to", "all.db").err
     told = _sweep(
@@ -55,7 +59,7 @@ def test_what_is_required_decides_the_exit_code(project: LuckProject) -> None:
     def code(rate: str, required: str, runs: str) -> int:
         return _sweep(
             project, "luck.yaml", "--vary", "luck=0.0..1.0", "-p", f"rate={rate}", "--require", required,
-            "--runs", runs, "--results", "codes.db", "--quiet",
+            "--runs", runs, "--results", "codes.db", "--quiet", *ONE,
         ).code  # fmt: skip
 
     assert code("1.0", "success >= 0.5", "40") == 0
@@ -65,7 +69,7 @@ def test_what_is_required_decides_the_exit_code(project: LuckProject) -> None:
 
 def test_a_failure_is_repeated_shrunk_and_kept_as_a_case(project: LuckProject) -> None:
     options = ("--vary", "luck=0.0..1.0", "--vary", "rate=0.3..0.6", "--runs", "8", "--results", "f.db")
-    rows = json.loads(_sweep(project, "luck.yaml", *options, "--json").out)["results"]
+    rows = json.loads(_sweep(project, "luck.yaml", *options, *ONE, "--json").out)["results"]
     failing = next(str(row["number"]) for row in rows if not row["success"])
     again = _sweep(project, "rerun", "luck.yaml", failing, *options, "--record", "again.mcap")
     assert again.code == 0, again.out
@@ -74,15 +78,15 @@ def test_a_failure_is_repeated_shrunk_and_kept_as_a_case(project: LuckProject) -
     small = _sweep(project, "shrink", "luck.yaml", failing, *options, "--case", "cases/unlucky.yaml")
     assert small.code == 0, small.err
     assert "parameters.luck" in small.out
-    assert _sweep(project, "cases/unlucky.yaml", "--results", "c.db").code == 1
+    assert _sweep(project, "cases/unlucky.yaml", "--results", "c.db", *ONE).code == 1
     # The behavior is mended: the case passes.
-    mended = _sweep(project, "cases/unlucky.yaml", "--vary", "rate=1.0,1.0", "--results", "c.db", "--json")
+    mended = _sweep(project, "cases/unlucky.yaml", "--vary", "rate=1.0,1.0", "--results", "c.db", "--json", *ONE)
     assert mended.code == 0, mended.out
 
 
 def test_a_changed_behavior_is_compared_with_its_baseline(tmp_path: Path) -> None:
     project = LuckProject(tmp_path)
-    options = ("--vary", "luck=0.0..1.0", "--runs", "40", "--quiet")
+    options = ("--vary", "luck=0.0..1.0", "--runs", "40", "--quiet", *ONE)
     assert _sweep(project, "luck.yaml", *options, "--results", "old.db").code == 0
     text = project.behavior.read_text(encoding="utf-8")
     project.behavior.write_text(text.replace("default: 0.5", "default: 0.05"), encoding="utf-8")
@@ -124,6 +128,7 @@ def test_a_github_job_gets_a_summary_and_an_annotation(
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
     ended = _sweep(
         project, "luck.yaml", "-p", "rate=0.0", "-p", "luck=0.5", "--require", "success >= 0.9", "--results", "g.db",
+        *ONE,
     )  # fmt: skip
     assert ended.code == 1
     assert "::error title=success >= 0.9: failed::" in ended.err

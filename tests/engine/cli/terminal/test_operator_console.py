@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import IO
@@ -12,7 +11,7 @@ from typing import IO
 import pytest
 
 from engine.event import AnyEvent, GateReached, OperatorChanged, OperatorCommanded, RunEnded, StopRequested
-from tests.engine.cli.command import FLEXCELL, CommandOutput, flexcell
+from tests.engine.cli.command import CommandOutput, flexcell
 from tests.engine.cli.process import entered, events_in, started, until
 
 NESTED = """
@@ -74,11 +73,7 @@ def nested(tmp_path: Path) -> Path:
 
 def operated(file: Path, script: str, *options: str) -> CommandOutput:
     """Run it in virtual time with these lines on standard input."""
-    command = [FLEXCELL, "run", file, "--clock", "virtual", "--operator", *options]
-    done = subprocess.run(
-        command, cwd=file.parent, input=script, capture_output=True, text=True, timeout=100, check=False
-    )
-    return CommandOutput(done.returncode, done.stdout, done.stderr)
+    return flexcell("run", file, "--clock", "virtual", "--operator", *options, cwd=file.parent, stdin=script)
 
 
 def commanded(folder: Path) -> list[str]:

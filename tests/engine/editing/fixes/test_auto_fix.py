@@ -11,6 +11,7 @@ from engine.editing.fixes.fix import is_typo
 from engine.library.behavior_library import FindingView
 from tests.engine.editing.edit_fixtures import context
 from tests.engine.editing.test_fixes import FILE, LOOSE, SLIPS, findings_of, states
+from tests.tiers import examples
 
 
 def repaired(text: str, *, likely: bool = False) -> FixResult:
@@ -87,7 +88,7 @@ def test_a_fix_that_brings_more_errors_to_light_than_it_mends_is_not_kept() -> N
 
 
 @pytest.mark.parametrize("likely", [False, True])
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(30, nightly=240))
 @given(data=st.data())
 def test_a_second_time_nothing_changes_and_there_are_never_more_errors(likely: bool, data: st.DataObject) -> None:
     _, text, _ = data.draw(st.sampled_from(SLIPS))

@@ -263,7 +263,7 @@ def _let_go(run: Run) -> None:
     run.control.resume()
 
 
-@settings(max_examples=examples(70, nightly=300), deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(40, nightly=300), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     root=TREES,
     orders=st.lists(st.tuples(MOMENTS, st.sampled_from(range(len(ORDERS)))), max_size=8, unique_by=lambda o: o[0]),

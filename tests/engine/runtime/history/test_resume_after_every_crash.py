@@ -35,7 +35,7 @@ def trials(folder: Path, subject: str, *options: str) -> list[Trial]:
     return msgspec.json.decode(file.read_bytes(), type=dict[str, list[Trial]])[subject]
 
 
-@pytest.mark.parametrize("every_th", [8, nightly(1)])
+@pytest.mark.parametrize("every_th", [16, nightly(1)])
 def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path, every_th: int) -> None:
     """Nothing is left out; what was in mid-work, in two branches at most, may have happened twice."""
     made = trials(tmp_path, "press", "--every", str(every_th))
@@ -45,7 +45,7 @@ def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path, every_th: int
     assert max(len(trial.effects) for trial in made) <= len(every) + 2
 
 
-@pytest.mark.parametrize("every_th", [5, nightly(1)])
+@pytest.mark.parametrize("every_th", [10, nightly(1)])
 def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(tmp_path: Path, every_th: int) -> None:
     """States that ask have their effect exactly once; those that take an outcome at most once."""
     made = trials(tmp_path, "glue", "--every", str(every_th))
@@ -55,7 +55,7 @@ def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(
         assert {"left bead", "right bead", "seal"} <= set(trial.effects)
 
 
-@pytest.mark.parametrize("every_th", [9, nightly(1)])
+@pytest.mark.parametrize("every_th", [18, nightly(1)])
 def test_a_run_that_is_stepped_back_ends_the_same_wherever_its_engine_dies(tmp_path: Path, every_th: int) -> None:
     """The last state, in mid-work, and the two in a container before it are taken back, in whichever engine."""
     made = trials(tmp_path, "revised", "--every", str(every_th))

@@ -176,7 +176,7 @@ class BackAgain:
         return operate(text, acts, prepare=self.connect, states={**WITH_FLOW, "test.Put": Put})
 
 
-@settings(max_examples=examples(60, nightly=240), deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(30, nightly=240), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @example(children=[BESIDE_A_PRIORITY], paused_s=0.125).via("what is undone is not held by the priority beside it")
 @given(children=st.lists(TREES, min_size=1, max_size=2), paused_s=st.integers(0, 16).map(lambda n: n / 8))
 def test_going_back_to_the_beginning_leaves_nothing_and_going_on_does_the_same(

@@ -23,7 +23,7 @@ def _act(name: str, *script: tuple[float, bool], more: str = "") -> str:
 
 
 @given(specimen=guarded_trees)
-@settings(max_examples=examples(60, nightly=300), deadline=None)
+@settings(max_examples=examples(30, nightly=300), deadline=None)
 def test_a_random_tree_with_guards_goes_the_way_of_the_reference(specimen: Guarded) -> None:
     """Through every composite, as BehaviorTree.CPP has SKIPPED."""
     expected = run_guarded(specimen, until_s=UNTIL_S, instant_limit=LIMIT)

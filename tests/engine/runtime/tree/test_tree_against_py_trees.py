@@ -14,7 +14,7 @@ LIMIT = 120
 
 
 @given(specimen=specimens)
-@settings(max_examples=examples(50, nightly=200), deadline=None)
+@settings(max_examples=examples(30, nightly=200), deadline=None)
 def test_a_random_tree_goes_the_way_plain_py_trees_goes(specimen: Specimen) -> None:
     """With and without memory, through every composite and decorator that both have."""
     expected = run_lockstep(specimen, until_s=UNTIL_S, instant_limit=LIMIT)

@@ -101,7 +101,7 @@ _DURATIONS = [0.5, 1.0, 2.0, 0.0]
     specimen=trees(durations=_DURATIONS, polling=False) | conditional_trees(durations=_DURATIONS),
     data=st.data(),
 )
-@settings(max_examples=examples(50, nightly=300), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=examples(25, nightly=300), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 def test_a_tree_goes_on_as_if_it_had_not_been_cut(specimen: Specimen, data: st.DataObject) -> None:
     """At any moment between two instants: the same leaves at the same times, the same statuses, the same end."""
     plan = tree_plan(json.dumps(specimen.document()))
@@ -188,7 +188,7 @@ def test_an_end_that_no_tick_had_read_is_read_first() -> None:
 
 
 @given(specimen=guarded_trees, data=st.data())
-@settings(max_examples=examples(30, nightly=200), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=examples(15, nightly=200), deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 def test_a_tree_with_guards_goes_on_as_if_it_had_not_been_cut(specimen: Guarded, data: st.DataObject) -> None:
     """What was skipped stays so."""
     plan = tree_plan(json.dumps(specimen.document()))

@@ -54,7 +54,7 @@ def _only_checks(specimen: Specimen) -> Specimen:
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25, 0.5, 3.0]))
-@settings(max_examples=examples(50, nightly=300), deadline=None)
+@settings(max_examples=examples(25, nightly=300), deadline=None)
 def test_every_leaf_that_was_entered_is_left_once(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:
@@ -71,7 +71,7 @@ def test_every_leaf_that_was_entered_is_left_once(
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25, 3.0]))
-@settings(max_examples=examples(50, nightly=300), deadline=None)
+@settings(max_examples=examples(25, nightly=300), deadline=None)
 def test_without_a_parallel_one_device_is_never_commanded_twice(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:
@@ -81,7 +81,7 @@ def test_without_a_parallel_one_device_is_never_commanded_twice(
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25]))
-@settings(max_examples=examples(25, nightly=100), deadline=None)
+@settings(max_examples=examples(15, nightly=100), deadline=None)
 def test_twice_the_same_tree_gives_the_same_bytes(
     specimen: Specimen, stop_at_s: float | None, cleanup_s: float
 ) -> None:

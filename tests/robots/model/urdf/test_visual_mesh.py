@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -71,17 +72,33 @@ def test_a_mesh_that_cannot_be_read_is_named(hand_only: RobotModel, tmp_path: Pa
         link_visuals(bad, cache=tmp_path / "cache")
 
 
-def test_primitives_become_meshes_in_the_colour_of_their_material(hand_only: RobotModel) -> None:
+def _primitives(model: RobotModel, *, rgba: str) -> RobotModel:
+    """Return a robot that is one link with a box, a cylinder and a sphere."""
     shapes = ('<box size="0.1 0.2 0.3"/>', '<cylinder radius="0.05" length="0.4"/>', '<sphere radius="0.07"/>')
     visuals = "".join(
-        f'<visual><geometry>{shape}</geometry><material name="m"><color rgba="0.1 0.2 0.3 1"/></material></visual>'
+        f'<visual><geometry>{shape}</geometry><material name="m"><color rgba="{rgba}"/></material></visual>'
         for shape in shapes
     )
-    urdf = f'<robot name="p"><link name="a">{visuals}</link></robot>'
-    drawn = link_visuals(replace(hand_only, urdf_text=urdf))
+    return replace(model, urdf_text=f'<robot name="p"><link name="a">{visuals}</link></robot>')
+
+
+def test_primitives_become_meshes_in_the_colour_of_their_material(hand_only: RobotModel, tmp_path: Path) -> None:
+    drawn = link_visuals(_primitives(hand_only, rgba="0.1 0.2 0.3 1"), cache=tmp_path / "cache")
     sizes = [np.ptp(np.frombuffer(v.mesh.vertices, np.float32).reshape(-1, 3), axis=0) for v in drawn]
     assert np.allclose(sizes, [(0.1, 0.2, 0.3), (0.1, 0.1, 0.4), (0.14, 0.14, 0.14)], atol=0.003)
     assert {visual.mesh.rgba for visual in drawn} == {(0.1, 0.2, 0.3, 1.0)}
+
+
+def test_primitives_come_from_the_cache_without_what_makes_them(
+    hand_only: RobotModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its import takes more than a second; the colour is that of the material now."""
+    fresh = link_visuals(_primitives(hand_only, rgba="0.1 0.2 0.3 1"), cache=tmp_path / "cache")
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    again = link_visuals(_primitives(hand_only, rgba="1 1 1 1"), cache=tmp_path / "cache")
+    assert [each.mesh.vertices for each in again] == [each.mesh.vertices for each in fresh]
+    assert [each.mesh.faces for each in again] == [each.mesh.faces for each in fresh]
+    assert {each.mesh.rgba for each in again} == {(1.0, 1.0, 1.0, 1.0)}
 
 
 def test_what_is_drawn_of_an_arm_and_its_tool_lies_where_it_collides() -> None:

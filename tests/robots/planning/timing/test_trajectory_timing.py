@@ -21,6 +21,7 @@ from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.timing.trajectory_timing import time_path
 from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array, JointTrajectory
+from tests.tiers import examples
 
 PANDA = robot_model("panda")
 LIMITS = PANDA.limits
@@ -61,7 +62,7 @@ def changes(trajectory: JointTrajectory) -> tuple[Array, Array]:
     return push, np.diff(np.vstack((none, push, none)), axis=0) / dt
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(30, nightly=240))
 @given(seed=st.integers(0, 2**32 - 1), speed=st.sampled_from([1.0, 0.3]), soft=st.sampled_from([1.0, 0.1, 0.02]))
 def test_a_trajectory_keeps_to_the_limits_and_to_the_way(seed: int, speed: float, soft: float) -> None:
     way, limits = random_path(seed), softer(soft)
