@@ -37,7 +37,7 @@ from engine.sweep.report import markdown, report
 from engine.sweep.shrinking import same_cause, same_outcome
 from engine.sweep.shrinking import shrink as shrink_failure
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
-from engine.sweep.worker_pool import DEFAULT_MEMORY_BYTES
+from engine.sweep.trial_execution import DEFAULT_MEMORY_BYTES
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"
