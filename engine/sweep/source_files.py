@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-
 _OWN = frozenset({"engine", "states", "robots", "editor_web"})
 """The packages of this distribution, which has a version."""
 
@@ -41,8 +40,8 @@ class SourceFile:
 def with_imports(start: Iterable[SourceFile], projects: Iterable[Path]) -> set[Path]:
     """Return files with all that they import, directly or not.
 
-    A file in one of the folders `projects` may import all that is found by its name from there. Of another file, which is
-    in an installed package, only the modules of the same package are followed.
+    A file in one of the folders `projects` may import all that is found by its name from there. Of another file, which
+    is in an installed package, only the modules of the same package are followed.
 
     Args:
         start: The first files.

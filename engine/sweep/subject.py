@@ -31,6 +31,7 @@ from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan, new_plan
 from engine.suggestions import did_you_mean
+from engine.sweep.cell_files import model_files
 from engine.sweep.cell_variation import varied_cell, written_value
 from engine.sweep.distributions import nominal
 from engine.sweep.source_files import SourceFile, with_imports
@@ -127,21 +128,26 @@ class SweepSubject:
                 "entries": _file_hash(cell.seed_file) if cell is not None else "",
                 "store": _file_hash(store_file),
                 "parameters": _hash_of({**document.parameters, "inputs": document.inputs}),
-                "states": _files_hash(state_sources(plans.values(), _importable(project, behavior))),
+                "states": _files_hash(state_sources(plans.values(), importable_folders(project, behavior))),
                 "placement_noise": str(document.placement_noise),
                 "limit": str(document.limit),
                 **{f"faults {key}": _hash_of(each.document) for key, each in faults.items()},
                 **{f"substitutes {key}": _hash_of(each.document) for key, each in substitutes.items()},
-                "python": ".".join(map(str, sys.version_info[:3])),
-                **package_versions(),
+                **(_models(cell) if cell is not None else {}),
+                **environment_versions(),
             },
         )
 
 
-def _importable(project: ProjectFile | None, behavior: Behavior) -> Sequence[Path]:
+def importable_folders(project: ProjectFile | None, behavior: Behavior) -> Sequence[Path]:
     """Return the folders whose modules the states of a behavior can import."""
     python = [behavior.file.resolve().parent] if behavior.file.suffix == ".py" else []
     return python if project is None else [*python, project.folder]
+
+
+def environment_versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that a run may use, by name."""
+    return {"python": ".".join(map(str, sys.version_info[:3])), **package_versions()}
 
 
 def package_versions() -> dict[str, str]:
@@ -169,6 +175,12 @@ def _version_text(found: str | None, due: str | None) -> str:
     """Return both versions; nothing for hashes, which tell a reader nothing."""
     known = [each for each in (found, due) if each]
     return "" if any(len(each) == _HASH for each in known) else f" {found or 'missing'} instead of {due or 'none'}"
+
+
+def _models(cell: Cell) -> dict[str, str]:
+    """Return the hash of the model folders and calibrations of a cell; nothing if all its models are built in."""
+    files = list(model_files(cell))
+    return {"models": _files_hash(files)} if files else {}
 
 
 def _files(sweep: Sweep, kind: str) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """One process that executes configurations of a sweep, one after the other, as its parent sees it.
 
-Its socket belongs to it alone, so that its end, whatever the cause, concerns the configuration that it has, and no other.
+Its socket belongs to it alone, so that its end, whatever the cause, concerns the configuration that it has and no
+other.
 """
 
 from __future__ import annotations
