@@ -43,10 +43,10 @@ class SweepTable:
         return len(self.summary.results)
 
     def save(self, file: Path | str, comparison: Comparison | None = None) -> None:
-        """Write a report: `.md`, `.html`, `.json` or `.csv`.
+        """Write a report: `.md`, `.html`, `.json`, `.csv` or `.parquet`.
 
         Raises:
-            FlexcellError: there is no report of this suffix.
+            FlexcellError: there is no report of this suffix, or what it needs is not installed.
             OSError: the file cannot be written.
         """
         Path(file).write_bytes(report(self.summary, comparison, Path(file)))

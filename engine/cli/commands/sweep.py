@@ -133,7 +133,7 @@ def run(
     margin: Margin = None,
     report_: Annotated[
         list[Path] | None,
-        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json, .csv or .parquet; may be repeated."),
     ] = None,
     junit: Junit = None,
     json: Json = False,
@@ -187,7 +187,7 @@ def report_saved(
     margin: Margin = None,
     output: Annotated[
         list[Path] | None,
-        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json, .csv or .parquet; may be repeated."),
     ] = None,
     junit: Junit = None,
     json: Json = False,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -25,7 +26,7 @@ robots:
   left: {model: ../arms/mine}
 """
 FAULTS = "flexcell: 1\nfaults: [{at: root/only, error: broken}]\n"
-ENTRIES = "flexcell: 1\nentries: {home: {kind: joints, values_rad: [0.0]}}\n"
+ENTRIES = "flexcell: 1\n"
 
 
 @pytest.fixture
@@ -51,6 +52,15 @@ def _document(**keys: object) -> str:
     return msgspec.json.encode({"flexcell": 1, "behavior": "luck.yaml", **keys}).decode()
 
 
+def _unpacked(project: LuckProject, shipment: Shipment, there: Path) -> SweepSubject:
+    """Load a shipment in another folder, when there is nothing left of the first one, as in another process."""
+    shipment.unpack(there)
+    shutil.rmtree(project.path)
+    for name in (project.module, "luck_tools"):
+        sys.modules.pop(name, None)
+    return SweepSubject.load(parse_sweep(shipment.document, file=there / shipment.file))
+
+
 def test_a_sweep_is_the_same_where_it_is_unpacked(project: LuckProject, tmp_path: Path) -> None:
     helper = project.path / "luck_tools.py"
     helper.write_text("LIMIT = 3\n", encoding="utf-8")
@@ -62,11 +72,8 @@ def test_a_sweep_is_the_same_where_it_is_unpacked(project: LuckProject, tmp_path
     )
     shipment = msgspec.msgpack.decode(msgspec.msgpack.encode(pack(subject)), type=Shipment)
     there = tmp_path / "there"
-    there.mkdir()
-    shipment.unpack(there)
-    shutil.rmtree(project.path)
     (tmp_path / "elsewhere.db").unlink()
-    unpacked = SweepSubject.load(parse_sweep(shipment.document, file=there / shipment.file))
+    unpacked = _unpacked(project, shipment, there)
     assert unpacked.versions == subject.versions
     assert unpacked.store_file is not None
     assert unpacked.store_file.is_relative_to(there)
@@ -79,10 +86,7 @@ def test_what_a_sweep_names_absolutely_is_sent_under_a_relative_path(project: Lu
     subject = _subject(tmp_path, text)
     shipment = pack(subject)
     assert str(tmp_path) not in shipment.document
-    shipment.unpack(tmp_path / "there")
-    assert (
-        SweepSubject.load(parse_sweep(shipment.document, file=tmp_path / "there" / shipment.file)).hash == subject.hash
-    )
+    assert _unpacked(project, shipment, tmp_path / "there").hash == subject.hash
 
 
 def test_an_absolute_path_that_a_run_follows_is_refused(project: LuckProject) -> None:
