@@ -15,9 +15,9 @@ from engine.errors import FlexcellError
 from engine.sweep.configuration import Configuration
 from engine.sweep.subject import SweepSubject
 from engine.sweep.trial_execution import ProcessLimits, TrialExecutor
+from engine.sweep.trial_process import TrialProcess
 from engine.sweep.trial_result import TrialResult
 from engine.sweep.worker import WorkerAnswer, WorkerTask
-from engine.sweep.worker_process import WorkerProcess
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class WorkerPool:
     def __init__(self, subject: SweepSubject, options: WorkerOptions) -> None:
         self._subject = subject
         self._options = options
-        self._workers: list[WorkerProcess] = []
+        self._workers: list[TrialProcess] = []
 
     def __enter__(self) -> Self:
         return self
@@ -79,7 +79,7 @@ class WorkerPool:
             if not worker.is_busy and (configuration := next(due, None)) is not None:
                 worker.give(configuration)
         while len(self._workers) < self._options.workers and (configuration := next(due, None)) is not None:
-            worker = WorkerProcess(self._task(), self._options)
+            worker = TrialProcess(self._task(), self._options)
             self._workers.append(worker)
             worker.give(configuration)
 
@@ -92,7 +92,7 @@ class WorkerPool:
             memory_bytes=self._options.memory_bytes,
         )
 
-    def _result(self, worker: WorkerProcess, answer: WorkerAnswer) -> TrialResult:
+    def _result(self, worker: TrialProcess, answer: WorkerAnswer) -> TrialResult:
         if worker.is_spent:
             self._workers.remove(worker)
             worker.end()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 import uuid
 from collections.abc import Iterator, Mapping
@@ -36,6 +37,8 @@ _LOOK_S = 5.0
 _SAVED = "what had ended is saved: the same command goes on with what is left, on this cluster, another one or none"
 _SAME = "install the same packages on this machine, the scheduler and all workers: one image or one lock file"
 
+_log = logging.getLogger("distributed.client")
+
 
 class ClusterExecutor:
     """A `TrialExecutor` of a cluster; belongs to one thread.
@@ -60,6 +63,7 @@ class ClusterExecutor:
         self._ended: SimpleQueue[Any] = SimpleQueue()
         self._looked_s = self._without_s = 0.0
         self._room = 0
+        self._log_level = _log.level
 
     def __enter__(self) -> Self:
         """Connect, compare versions, and send the files of the sweep.
@@ -68,12 +72,14 @@ class ClusterExecutor:
             FlexcellError: the scheduler does not answer, or a machine has other packages.
         """
         files = msgspec.msgpack.encode(pack(self._subject))
-        self._client = _connected(self._options)
+        # What its client logs are tracebacks of what this class tells.
+        _log.setLevel(logging.CRITICAL)
         try:
+            self._client = _connected(self._options)
             self._require_versions()
             self._send(files)
         except BaseException:
-            self._client.close()
+            self._close()
             raise
         return self
 
@@ -90,8 +96,7 @@ class ClusterExecutor:
                 self._client.run(release, self._token, on_error="ignore")
                 for _, configuration, _ in left:
                     self._forget(configuration)
-        with suppress(OSError, RuntimeError, TimeoutError):
-            self._client.close()
+        self._close()
 
     def results(self, due: Iterator[Configuration]) -> Iterator[TrialResult]:
         """Yield the result of each configuration as it ends; see `TrialExecutor`.
@@ -112,6 +117,12 @@ class ClusterExecutor:
                 del self._begun[future.key]
                 self._forget(configuration)
                 yield result
+
+    def _close(self) -> None:
+        with suppress(OSError, RuntimeError, TimeoutError):
+            if self._client is not None:
+                self._client.close()
+        _log.setLevel(self._log_level)
 
     def _begin(self, configuration: Configuration) -> None:
         future = self._client.submit(
@@ -150,7 +161,10 @@ class ClusterExecutor:
             return FlexcellError("the scheduler of the cluster is gone", where=self._options.scheduler, hint=_SAVED)
         if isinstance(error, ImportError):
             return FlexcellError(f"a worker cannot load flexcell: {error}", where=self._options.scheduler, hint=_SAME)
-        return FlexcellError(f"the cluster cannot execute a run: {error}", where=self._options.scheduler, hint=_SAVED)
+        # The scheduler unpacks tasks, and tells with several lines that it cannot.
+        told = " ".join(str(error).split())
+        hint = _SAME if "deserialization" in told else _SAVED
+        return FlexcellError(f"the cluster cannot execute a run: {told}", where=self._options.scheduler, hint=hint)
 
     def _look(self) -> None:
         """Count the workers from time to time: as many runs are on the way as they have threads, and one more each."""

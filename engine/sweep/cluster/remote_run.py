@@ -19,8 +19,8 @@ from engine.sweep.cluster.shipment import Shipment
 from engine.sweep.configuration import Configuration
 from engine.sweep.subject import environment_versions
 from engine.sweep.trial_execution import ProcessLimits
+from engine.sweep.trial_process import TrialProcess
 from engine.sweep.worker import WorkerAnswer, WorkerTask
-from engine.sweep.worker_process import WorkerProcess
 
 _IDLE_S = 60.0
 
@@ -110,7 +110,7 @@ class _Site:
             memory_bytes=task.memory_bytes,
             folder=str(folder),
         )
-        self._processes: dict[int, WorkerProcess] = {}
+        self._processes: dict[int, TrialProcess] = {}
         self._users = 0
         self._idle: threading.Timer | None = None
         self._ended = False
@@ -136,7 +136,7 @@ class _Site:
         thread = threading.get_ident()
         process = self._processes.get(thread)
         if process is None:
-            process = WorkerProcess(self._task, self._limits)
+            process = TrialProcess(self._task, self._limits)
             with _lock:
                 self._processes[thread] = process
         answer = process.execute(configuration)

@@ -139,6 +139,6 @@ def test_without_its_scheduler_a_sweep_keeps_what_has_ended(project: LuckProject
     assert _table(here) == [without_costs(trials.run(each)) for each in here.configurations]
 
 
-def test_an_address_without_a_scheduler_is_told(project: LuckProject, tmp_path: Path) -> None:
+def test_an_address_without_a_scheduler_is_refused(project: LuckProject, tmp_path: Path) -> None:
     with pytest.raises(FlexcellError, match="no scheduler answers there"):
         _execute(project.sweep(runs=1), tmp_path / "r.db", ClusterOptions(scheduler="tcp://127.0.0.1:1", connect_s=0.5))

@@ -25,7 +25,7 @@ _MUCH = 0.5
 """A process that has needed this share of its memory is replaced: what it keeps may grow."""
 
 
-class WorkerProcess:
+class TrialProcess:
     """A started process; belongs to one thread, and ends at the latest with that thread.
 
     Args:
