@@ -1,6 +1,6 @@
 # The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
-from engine.sweep.cluster.cluster_options import ClusterOptions
+from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.comparison import Comparison, compare_with_baseline
 from engine.sweep.configuration import Configuration
 from engine.sweep.design import configurations

@@ -10,7 +10,7 @@ from pathlib import Path
 from engine.document.duration import seconds
 from engine.document.sweep import Sweep, load_sweep
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.sweep.cluster.cluster_options import ClusterOptions
+from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.comparison import Comparison
 from engine.sweep.design import configurations
 from engine.sweep.report import report

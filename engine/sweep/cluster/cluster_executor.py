@@ -1,4 +1,4 @@
-"""Executes the configurations of a sweep on the workers of a Dask cluster."""
+"""Executes the configurations of a sweep on the workers of a Dask cluster; loads Dask when it connects."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import time
 import uuid
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Any, Self
 
 import msgspec
-from distributed import Client, Event, Security
-from distributed.scheduler import KilledWorker
 
 from engine.errors import FlexcellError
-from engine.sweep.cluster.cluster_options import ClusterOptions
 from engine.sweep.cluster.remote_run import (
     RemoteAnswer,
     RemoteTask,
@@ -30,12 +30,44 @@ from engine.sweep.cluster.shipment import pack
 from engine.sweep.configuration import Configuration
 from engine.sweep.subject import SweepSubject, environment_versions, other_versions
 from engine.sweep.trial import ended_process
+from engine.sweep.trial_execution import ProcessLimits, TrialExecutor
 from engine.sweep.trial_result import TrialResult
 
 _LOOK_S = 5.0
 """Interval at which workers are counted, and the longest time until Ctrl-C is noticed."""
 _SAVED = "what had ended is saved: the same command goes on with what is left, on this cluster, another one or none"
 _SAME = "install the same packages on this machine, the scheduler and all workers: one image or one lock file"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClusterOptions(ProcessLimits):
+    """The scheduler of a Dask cluster that exists. What is not given here is that of Dask's own configuration."""
+
+    scheduler: str
+    """Its address, `tls://HOST:8786` or `tcp://HOST:8786`."""
+    tls_ca_file: Path | None = None
+    """Certificate of the authority that has signed those of the cluster, PEM."""
+    tls_cert: Path | None = None
+    """Certificate of this client, PEM."""
+    tls_key: Path | None = None
+    """Its private key, PEM; by default it is in the file of the certificate."""
+    connect_s: float = 20.0
+    """Time until the scheduler must have answered."""
+    workers_s: float = 120.0
+    """Time that the cluster may be without any worker before the sweep ends."""
+
+    def new_executor(self, subject: SweepSubject) -> TrialExecutor:
+        """Return what executes runs on the workers of the cluster.
+
+        Raises:
+            FlexcellError: Dask is not installed here.
+        """
+        if find_spec("distributed") is None:
+            raise FlexcellError(
+                "Dask is not installed", where=self.scheduler, hint="pip install 'flexcell[dask]', there too"
+            )
+        return ClusterExecutor(subject, self)
+
 
 _log = logging.getLogger("distributed.client")
 
@@ -139,6 +171,8 @@ class ClusterExecutor:
 
     def _result(self, future: Any, configuration: Configuration, began_s: float) -> TrialResult:
         """Return how a configuration ended, from its task."""
+        from distributed.scheduler import KilledWorker
+
         try:
             answered = msgspec.json.decode(future.result(), type=RemoteAnswer)
         except KilledWorker as error:
@@ -217,11 +251,15 @@ class ClusterExecutor:
 
     def _forget(self, configuration: Configuration) -> None:
         """Remove the flag of a configuration from the scheduler."""
+        from distributed import Event
+
         with suppress(OSError, RuntimeError, TimeoutError):
             Event(claim_name(self._token, configuration.number), client=self._client).clear()
 
 
 def _connected(options: ClusterOptions) -> Any:
+    from distributed import Client, Security
+
     given = {
         "tls_ca_file": options.tls_ca_file,
         "tls_client_cert": options.tls_cert,

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
-from distributed import Event, get_worker
 
 from engine.sweep.cluster.shipment import Shipment
 from engine.sweep.configuration import Configuration
@@ -59,6 +58,8 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
 
     Arguments and result are JSON or MessagePack: the scheduler handles them without knowing our types.
     """
+    from distributed import Event, get_worker
+
     asked = msgspec.json.decode(task, type=RemoteTask)
     wanted = msgspec.json.decode(configuration, type=Configuration)
     begun = Event(claim_name(asked.token, wanted.number))

@@ -14,7 +14,7 @@ from typing import Any, Self
 import trustme
 from distributed import Client, Security
 
-from engine.sweep.cluster.cluster_options import ClusterOptions
+from engine.sweep.cluster.cluster_executor import ClusterOptions
 
 _START_S = 120.0
 
