@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
@@ -94,9 +93,8 @@ class DaskProcesses:
     def _start(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
         tls = ["--tls-ca-file", str(self.folder / "ca.pem"), "--tls-cert", str(self.folder / "cluster.pem")]
         command = [sys.executable, "-m", f"distributed.cli.dask_{program}", *arguments, "--host", "127.0.0.1", *tls]
-        settings = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
         with (self.folder / f"{program}.log").open("ab") as log:
-            return subprocess.Popen(command, stdout=log, stderr=log, env=settings, cwd=self.folder)
+            return subprocess.Popen(command, stdout=log, stderr=log, cwd=self.folder)
 
 
 def _children(pid: int) -> list[int]:
