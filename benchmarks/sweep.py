@@ -79,7 +79,7 @@ def cluster(workers: int) -> Generator[tuple[ClusterOptions, Callable[[], int]]]
     """Start a Dask cluster of processes; yields how it is reached, and how much memory its largest worker has."""
     # Dask has no types.
     start: Any = LocalCluster
-    started: Any = start(n_workers=workers, threads_per_worker=1, dashboard_address=None, memory_limit=0)
+    started: Any = start(n_workers=workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0)
     with started:
         yield ClusterOptions(scheduler=str(started.scheduler_address)), lambda: max(_resident_bytes(started))
 
