@@ -1,29 +1,39 @@
 """What sweeps cost, and whether their intervals hold.
 
     python -m benchmarks.sweep [--runs 20] [--behavior FILE] [--truth 500]
+    python -m benchmarks.sweep --soak [--runs 1000]
 
-The first table has runs per CPU-hour of a behavior in warm worker processes and in cold ones (a process a run), the
-overhead of a run that does nothing, and the memory of a worker over its runs; event hashes of both must be equal. The
-second table executes sweeps of planted success rates, looks at the interval after every run, and counts the sweeps
-that miss the rate at any time, beside the exact interval of Clopper and Pearson looked at in the same way; and the
-runs that a gate needs.
+The first table has runs per CPU-hour of a behavior in warm worker processes, in cold ones (a process a run), and on a
+Dask cluster of this machine with two workers; event hashes of all must be equal. The second one has the time of a run
+that does nothing, and the memory of its process and of Dask's own over 1,000 of them. The third one executes sweeps of
+planted success rates, looks at the interval after every run, and counts the sweeps that miss the rate at any time,
+beside the exact interval of Clopper and Pearson looked at in the same way; and the runs that a gate needs.
+
+`--soak` kills and stops processes of a sweep and fills its disk; see `benchmarks.sweep_soak`.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import random
 import resource
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
+from distributed import LocalCluster
 
+from benchmarks.sweep_soak import soak
 from engine.document.sweep import parse_sweep
 from engine.sweep import (
+    ClusterOptions,
     SweepEnd,
     SweepProgress,
     SweepResults,
@@ -33,12 +43,14 @@ from engine.sweep import (
     execute_sweep,
 )
 from engine.sweep.statistics import Interval, exact_interval, rate_interval
+from engine.sweep.trial_execution import ExecutionOptions
 
 BEHAVIOR = Path(__file__).resolve().parents[1] / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 RATES = (0.5, 0.9, 0.97, 0.99)
 LOOKS = 300
 REQUIRED = 0.98
 MOST = 2000
+PAGE = os.sysconf("SC_PAGESIZE")
 TRIVIAL = """\
 flexcell: 1
 name: trivial
@@ -48,14 +60,13 @@ root: {machine: {initial: only, states: {only: {state: flow.Wait, with: {duratio
 """
 
 
-def swept(behavior: Path, runs: int, options: WorkerOptions, folder: Path) -> tuple[SweepEnd, list[int]]:
-    """Execute a sweep over seeds alone; returns its end and the memory of workers after each run, in bytes."""
+def swept(behavior: Path, runs: int, options: ExecutionOptions, folder: Path) -> SweepEnd:
+    """Execute a sweep over seeds alone, without results of before."""
     text = msgspec.json.encode({"flexcell": 1, "behavior": str(behavior), "runs": runs})
     subject = SweepSubject.load(parse_sweep(text, file=folder / "sweep.yaml"))
     planned = configurations(subject.sweep)
     with tempfile.TemporaryDirectory(dir=folder) as name, SweepResults.open(Path(name) / "r.db") as saved:
-        end = execute_sweep(subject, planned, saved, options, show=_progress)
-    return end, [result.memory_bytes for result in end.results]
+        return execute_sweep(subject, planned, saved, options, show=_progress)
 
 
 def _progress(progress: SweepProgress) -> None:
@@ -63,27 +74,66 @@ def _progress(progress: SweepProgress) -> None:
     sys.stderr.flush()
 
 
+@contextmanager
+def cluster(workers: int) -> Generator[tuple[ClusterOptions, Callable[[], int]]]:
+    """Start a Dask cluster of processes; yields how it is reached, and how much memory its largest worker has."""
+    # Dask has no types.
+    start: Any = LocalCluster
+    started: Any = start(n_workers=workers, threads_per_worker=1, dashboard_address=":0", memory_limit=0)
+    with started:
+        yield ClusterOptions(scheduler=str(started.scheduler_address)), lambda: max(_resident_bytes(started))
+
+
+def _resident_bytes(started: Any) -> list[int]:
+    return [
+        int(Path(f"/proc/{worker.pid}/statm").read_text("ascii").split()[1]) * PAGE
+        for worker in started.workers.values()
+    ]
+
+
 def costs(behavior: Path, runs: int, folder: Path) -> None:
     """Print the first table."""
-    cpu_started_s = _cpu_of_children_s()
-    warm, memory = swept(behavior, runs, WorkerOptions(workers=2), folder)
-    warm_s = _cpu_of_children_s() - cpu_started_s
     cold_runs = max(runs // 5, 2)
-    cpu_started_s = _cpu_of_children_s()
-    cold, _ = swept(behavior, cold_runs, WorkerOptions(workers=2, runs_of_process=1), folder)
-    cold_s = _cpu_of_children_s() - cpu_started_s
+    ends: dict[str, tuple[SweepEnd, float]] = {}
+    for name, count, options in (
+        ("warm", runs, WorkerOptions(workers=2)),
+        ("cold", cold_runs, WorkerOptions(workers=2, runs_of_process=1)),
+    ):
+        began_s = _cpu_s()
+        ends[name] = swept(behavior, count, options, folder), _cpu_s() - began_s
+    began_s = _cpu_s()
+    with cluster(2) as (options, _):
+        end = swept(behavior, runs, options, folder)
+    ends["Dask"] = end, _cpu_s() - began_s
+    hashes = {tuple(each.events_sha256 for each in end.results[:cold_runs]) for end, _ in ends.values()}
+    print(f"\n{behavior.name}, {runs} runs, {cold_runs} cold; events {'equal' if len(hashes) == 1 else 'DIFFERENT'}\n")
+    print("| | CPU-s a run | runs per CPU-hour |\n|---|--:|--:|")
+    for name, (end, cpu_s) in ends.items():
+        print(f"| {name} | {cpu_s / end.executed:.2f} | {3600 * end.executed / cpu_s:.0f} |")
+
+
+def overhead(folder: Path) -> None:
+    """Print the second table."""
     trivial = folder / "trivial.yaml"
     trivial.write_text(TRIVIAL, encoding="utf-8")
-    started_s = time.perf_counter()
-    many, _ = swept(trivial, 1000, WorkerOptions(workers=1, runs_of_process=2000), folder)
-    trivial_s = time.perf_counter() - started_s
-    equal = [one.events_sha256 for one in warm.results[:cold_runs]] == [one.events_sha256 for one in cold.results]
-    print(f"\n{behavior.name}, {runs} runs warm, {cold_runs} cold; events {'equal' if equal else 'DIFFERENT'}\n")
-    print("| | CPU-s a run | runs per CPU-hour |\n|---|--:|--:|")
-    for name, cpu_s, count in (("warm", warm_s, runs), ("cold", cold_s, cold_runs)):
-        print(f"| {name} | {cpu_s / count:.2f} | {3600 * count / cpu_s:.0f} |")
-    print(f"\nmemory of a worker: {memory[0] / 1e6:.0f} MB after its first run, {max(memory) / 1e6:.0f} MB at most")
-    print(f"a run that does nothing: {1e3 * trivial_s / len(many.results):.1f} ms, of 1,000 in one worker\n")
+    print("\n| 1,000 runs that do nothing | ms a run | MB of its process, first and most | MB of Dask's worker |")
+    print("|---|--:|--:|--:|")
+    began_s = time.perf_counter()
+    end = swept(trivial, 1000, WorkerOptions(workers=1, runs_of_process=2000), folder)
+    print(_overhead_row("warm, one process", end, time.perf_counter() - began_s, ""))
+    with cluster(1) as (options, memory_bytes):
+        swept(trivial, 1, options, folder)
+        first_bytes = memory_bytes()
+        began_s = time.perf_counter()
+        end = swept(trivial, 1000, replace(options, runs_of_process=2000), folder)
+        took_s = time.perf_counter() - began_s
+        most = f"{first_bytes / 1e6:.0f}, {memory_bytes() / 1e6:.0f}"
+    print(_overhead_row("Dask, one worker", end, took_s, most), end="\n\n")
+
+
+def _overhead_row(name: str, end: SweepEnd, took_s: float, dask: str) -> str:
+    memory = [result.memory_bytes / 1e6 for result in end.results]
+    return f"| {name} | {1e3 * took_s / end.executed:.1f} | {memory[0]:.0f}, {max(memory):.0f} | {dask} |"
 
 
 def truth(sweeps: int) -> None:
@@ -119,21 +169,25 @@ def _gate(rate: float, seed: str) -> int:
     return MOST
 
 
-def _cpu_of_children_s() -> float:
-
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+def _cpu_s() -> float:
+    """Of this process, where Dask's scheduler is, and of those that have ended."""
+    used = [resource.getrusage(of) for of in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
 
 
 def main() -> None:
-    """Print both tables."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=20)
+    parser.add_argument("--runs", type=int)
     parser.add_argument("--behavior", type=Path, default=BEHAVIOR)
     parser.add_argument("--truth", type=int, default=500)
+    parser.add_argument("--soak", action="store_true")
     options = parser.parse_args()
+    if options.soak:
+        sys.exit(not soak(options.runs or 1000, seed=1))
     with tempfile.TemporaryDirectory() as folder:
-        costs(options.behavior.resolve(), options.runs, Path(folder))
+        costs(options.behavior.resolve(), options.runs or 20, Path(folder))
+        overhead(Path(folder))
     truth(options.truth)
 
 

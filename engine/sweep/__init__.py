@@ -9,6 +9,7 @@ loads no statistics, so each name is imported with its first use.
 from engine.lazy_face import lazy_face
 
 _HOMES = {
+    "ClusterOptions": "engine.sweep.cluster.cluster_executor",
     "Comparison": "engine.sweep.comparison",
     "Configuration": "engine.sweep.configuration",
     "Shard": "engine.sweep.sweep_execution",

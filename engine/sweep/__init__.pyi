@@ -1,5 +1,6 @@
 # The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
+from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.comparison import Comparison, compare_with_baseline
 from engine.sweep.configuration import Configuration
 from engine.sweep.design import configurations
@@ -13,6 +14,7 @@ from engine.sweep.trial_result import TrialResult
 from engine.sweep.worker_pool import WorkerOptions
 
 __all__ = [
+    "ClusterOptions",
     "Comparison",
     "Configuration",
     "Shard",

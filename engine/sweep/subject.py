@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -20,6 +20,7 @@ from engine.check import check_behavior, require_no_errors
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, SqliteStoreSpec, load_cell
 from engine.document.faults import Faults, load_faults
+from engine.document.project_file import ProjectFile, find_project
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue
 from engine.document.substitutes import Substitutes, load_substitutes
@@ -30,10 +31,14 @@ from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan, new_plan
 from engine.suggestions import did_you_mean
+from engine.sweep.cell_files import model_files
 from engine.sweep.cell_variation import varied_cell, written_value
 from engine.sweep.distributions import nominal
+from engine.sweep.source_files import SourceFile, with_imports
 
 _PACKAGE = "flexcell"
+_HASH = 64
+"""The length of a hash."""
 _EXTRA = re.compile(r"extra *== *['\"](\w+)['\"]")
 
 
@@ -52,6 +57,8 @@ class SweepSubject:
     substitutes: Mapping[str, Substitutes]
     plans: Mapping[str, Plan]
     """By the value of the factor `substitutes`; `""` without the factor."""
+    project: ProjectFile | None
+    """The project of the behavior."""
     versions: Mapping[str, str]
     """The hashes and versions of all that decides a run beside its configuration, by what they are of."""
 
@@ -90,6 +97,7 @@ class SweepSubject:
         """
         document = sweep.document
         name = sweep.resolve(document.behavior)
+        project = find_project(Path(name))
         catalogue = load_states(Path(name))
         behavior = load_python_behavior(name) if is_python_name(name) else load_behavior(Path(name))
         cell_file = Path(sweep.resolve(document.cell)) if document.cell is not None else behavior.cell_file
@@ -113,21 +121,33 @@ class SweepSubject:
             faults=faults,
             substitutes=substitutes,
             plans=plans,
+            project=project,
             versions={
                 "behavior": behavior.meaning,
                 "cell": _hash_of(cell.document) if cell is not None else "",
                 "entries": _file_hash(cell.seed_file) if cell is not None else "",
                 "store": _file_hash(store_file),
                 "parameters": _hash_of({**document.parameters, "inputs": document.inputs}),
-                "states": _states_hash(plans.values()),
+                "states": _files_hash(state_sources(plans.values(), importable_folders(project, behavior))),
                 "placement_noise": str(document.placement_noise),
                 "limit": str(document.limit),
                 **{f"faults {key}": _hash_of(each.document) for key, each in faults.items()},
                 **{f"substitutes {key}": _hash_of(each.document) for key, each in substitutes.items()},
-                "python": ".".join(map(str, sys.version_info[:3])),
-                **package_versions(),
+                **(_models(cell) if cell is not None else {}),
+                **environment_versions(),
             },
         )
+
+
+def importable_folders(project: ProjectFile | None, behavior: Behavior) -> Sequence[Path]:
+    """Return the folders whose modules the states of a behavior can import."""
+    python = [behavior.file.resolve().parent] if behavior.file.suffix == ".py" else []
+    return python if project is None else [*python, project.folder]
+
+
+def environment_versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that a run may use, by name."""
+    return {"python": ".".join(map(str, sys.version_info[:3])), **package_versions()}
 
 
 def package_versions() -> dict[str, str]:
@@ -143,6 +163,24 @@ def package_versions() -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return dict(sorted(found.items()))
+
+
+def other_versions(found: Mapping[str, str], due: Mapping[str, str]) -> str:
+    """Return what differs between two `versions` of a subject, on one line; empty if nothing does."""
+    names = sorted(name for name in {*found, *due} if found.get(name) != due.get(name))
+    return ", ".join(f"{name}{_version_text(found.get(name), due.get(name))}" for name in names)
+
+
+def _version_text(found: str | None, due: str | None) -> str:
+    """Return both versions; nothing for hashes, which tell a reader nothing."""
+    known = [each for each in (found, due) if each]
+    return "" if any(len(each) == _HASH for each in known) else f" {found or 'missing'} instead of {due or 'none'}"
+
+
+def _models(cell: Cell) -> dict[str, str]:
+    """Return the hash of the model folders and calibrations of a cell; nothing if all its models are built in."""
+    files = list(model_files(cell))
+    return {"models": _files_hash(files)} if files else {}
 
 
 def _files(sweep: Sweep, kind: str) -> dict[str, str]:
@@ -196,16 +234,17 @@ def _require_targets(sweep: Sweep, behavior: Behavior, cell: Cell | None) -> Non
                 raise DocumentError(error.message, where=sweep.position(address), hint=error.hint) from error
 
 
-def _states_hash(plans: Iterable[Plan]) -> str:
-    """Return the hash of the files in which the states of some plans are defined."""
-    files = {
-        file
-        for plan in plans
-        for node in plan.nodes.values()
-        if isinstance(node.work, Leaf) and (file := inspect.getsourcefile(node.work.state)) is not None
-    }
+def state_sources(plans: Iterable[Plan], projects: Iterable[Path]) -> set[Path]:
+    """Return the files in which the states of some plans are defined, with what they import of their projects."""
+    states = {node.work.state for plan in plans for node in plan.nodes.values() if isinstance(node.work, Leaf)}
+    files = ((state.__module__, inspect.getsourcefile(state)) for state in states)
+    start = [SourceFile(module, Path(file).resolve()) for module, file in files if file is not None]
+    return with_imports(start, projects)
+
+
+def _files_hash(files: Iterable[Path]) -> str:
     # Their folders differ between machines, their order must not.
-    return _hash_of(sorted(_file_hash(Path(file)) for file in files))
+    return _hash_of(sorted(_file_hash(file) for file in files))
 
 
 def _hash_of(content: object) -> str:

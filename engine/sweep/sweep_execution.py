@@ -14,8 +14,8 @@ from engine.sweep.configuration import Configuration
 from engine.sweep.results import SweepResults
 from engine.sweep.subject import SweepSubject
 from engine.sweep.success_count import SuccessCount
+from engine.sweep.trial_execution import ExecutionOptions
 from engine.sweep.trial_result import TrialResult
-from engine.sweep.worker_pool import WorkerOptions, WorkerPool
 
 EndedBy = Literal["runs", "decided", "time", "interrupted"]
 
@@ -87,7 +87,7 @@ def execute_sweep(
     subject: SweepSubject,
     configurations: Sequence[Configuration],
     results: SweepResults,
-    options: WorkerOptions,
+    options: ExecutionOptions,
     *,
     shard: Shard | None = None,
     again: bool = False,
@@ -99,7 +99,7 @@ def execute_sweep(
         subject: What all have in common.
         configurations: The design.
         results: Where results are saved and found.
-        options: How they are executed.
+        options: Where and how they are executed.
         shard: The part that is executed here; by default all. A part does not end early: the others may decide else.
         again: Whether configurations whose process crashed or hung are executed again.
         show: Called after each result.
@@ -136,9 +136,9 @@ def execute_sweep(
                 return
             yield configuration
 
-    with WorkerPool(subject, options) as pool:
+    with options.new_executor(subject) as executor:
         try:
-            for result in pool.results(remaining()):
+            for result in executor.results(remaining()):
                 results.save(result.configuration.key(subject.hash), subject.hash, result, replace=again)
                 found[result.configuration.number] = result
                 count.add(result)

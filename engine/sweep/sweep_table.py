@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.document.duration import seconds
 from engine.document.sweep import Sweep, load_sweep
 from engine.host.state_folder_names import STATE_FOLDER
+from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.comparison import Comparison
 from engine.sweep.design import configurations
 from engine.sweep.report import report
@@ -42,10 +43,10 @@ class SweepTable:
         return len(self.summary.results)
 
     def save(self, file: Path | str, comparison: Comparison | None = None) -> None:
-        """Write a report: `.md`, `.html`, `.json` or `.csv`.
+        """Write a report: `.md`, `.html`, `.json`, `.csv` or `.parquet`.
 
         Raises:
-            FlexcellError: there is no report of this suffix.
+            FlexcellError: there is no report of this suffix, or what it needs is not installed.
             OSError: the file cannot be written.
         """
         Path(file).write_bytes(report(self.summary, comparison, Path(file)))
@@ -56,6 +57,7 @@ def run_sweep(
     *,
     results: Path | str = DEFAULT_RESULTS,
     workers: int | None = None,
+    cluster: ClusterOptions | None = None,
     show: Callable[[SweepProgress], None] = lambda _progress: None,
 ) -> SweepTable:
     """Execute what is left of a sweep in worker processes and return all its results.
@@ -64,6 +66,7 @@ def run_sweep(
         sweep: The sweep or its file.
         results: File in which results are found and saved.
         workers: Number of processes; by default that of the processors.
+        cluster: A Dask cluster that executes the runs; by default processes of this machine do.
         show: Called after each run.
 
     Raises:
@@ -71,7 +74,12 @@ def run_sweep(
     """
     loaded = sweep if isinstance(sweep, Sweep) else load_sweep(sweep)
     subject = SweepSubject.load(loaded)
-    options = WorkerOptions(workers=workers or available_processors(), timeout_s=seconds(loaded.document.timeout))
+    timeout_s = seconds(loaded.document.timeout)
+    options = (
+        replace(cluster, timeout_s=timeout_s)
+        if cluster is not None
+        else WorkerOptions(workers=workers or available_processors(), timeout_s=timeout_s)
+    )
     with SweepResults.open(Path(results)) as saved:
         return SweepTable(summarize(execute_sweep(subject, configurations(loaded), saved, options, show=show)))
 

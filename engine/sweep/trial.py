@@ -28,6 +28,7 @@ from engine.runtime.history.run_reducer import RunReducer
 from engine.sweep.cell_variation import varied_cell
 from engine.sweep.configuration import Configuration
 from engine.sweep.subject import SweepSubject
+from engine.sweep.subject_files import PortableText, subject_root
 from engine.sweep.trial_result import NodeTime, TrialResult, TrialStatus
 
 _KIBIBYTE = 1024
@@ -43,6 +44,7 @@ class Trials:
     def __init__(self, subject: SweepSubject) -> None:
         self.subject = subject
         self._coverage = CoverageRuns(subject.behavior, subject.catalogue)
+        self._texts = PortableText(subject_root(subject))
 
     def run(self, configuration: Configuration, *, record: Path | None = None) -> TrialResult:
         """Execute one configuration in virtual time.
@@ -61,6 +63,9 @@ class Trials:
                 ended = self._executed(configuration, setup, request)
         return msgspec.structs.replace(
             ended,
+            cause=self._texts.of(ended.cause),
+            reason=self._texts.of(ended.reason),
+            reason_at=self._texts.of(ended.reason_at),
             wall_s=time.perf_counter() - began_s,
             cpu_s=_cpu_s() - cpu_began_s,
             memory_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KIBIBYTE,
@@ -74,7 +79,7 @@ class Trials:
         except (FlexcellError, MemoryError) as error:
             # A world that cannot be opened with these values, or a run in which everything waits.
             return _failed(configuration, "errored", cause_of(error))
-        return _completed(configuration, run, covered=covered.bits)
+        return _completed(configuration, run, covered=covered.bits, texts=self._texts)
 
     def _request(self, configuration: Configuration, folder: Path, record: Path | None) -> tuple[CellSetup, RunRequest]:
         subject, document, values = self.subject, self.subject.sweep.document, configuration.values
@@ -110,7 +115,7 @@ def ended_process(configuration: Configuration, status: TrialStatus, message: st
     return msgspec.structs.replace(_failed(configuration, status, Cause(message=message)), wall_s=wall_s)
 
 
-def _completed(configuration: Configuration, run: CompletedRun, *, covered: str) -> TrialResult:
+def _completed(configuration: Configuration, run: CompletedRun, *, covered: str, texts: PortableText) -> TrialResult:
     result = run.result
     cause = result.cause if not result.success else None
     return TrialResult(
@@ -123,7 +128,7 @@ def _completed(configuration: Configuration, run: CompletedRun, *, covered: str)
         reason_at=links_from_root(cause)[0].where if cause is not None else "",
         duration_s=result.duration_s,
         events=len(run.events),
-        events_sha256=sha256(encode_event_log(list(run.events))).hexdigest(),
+        events_sha256=sha256(texts.of_json(encode_event_log(list(run.events)))).hexdigest(),
         nodes=_node_times(run.events),
         outputs=_numbers(result.userdata),
         covered=covered,

@@ -39,7 +39,7 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
     """On the clock of the run."""
     events: int = 0
     events_sha256: str = ""
-    """The hash of the event log, as `flexcell run --json` prints it."""
+    """The hash of the event log, as `flexcell run --json` prints it, with paths of files relative to the sweep."""
     nodes: Mapping[str, NodeTime] = {}
     """By path."""
     outputs: Mapping[str, float] = {}

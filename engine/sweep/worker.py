@@ -6,6 +6,7 @@ import os
 import resource
 import signal
 import socket
+from collections.abc import Mapping
 from multiprocessing.connection import Connection
 
 import msgspec
@@ -14,7 +15,7 @@ from engine.document.sweep import parse_sweep
 from engine.errors import DocumentError, FlexcellError
 from engine.host.child_process import set_parent_death_signal
 from engine.sweep.configuration import Configuration
-from engine.sweep.subject import SweepSubject
+from engine.sweep.subject import SweepSubject, other_versions
 from engine.sweep.trial import Trials
 from engine.sweep.trial_result import TrialResult
 
@@ -28,9 +29,11 @@ class WorkerTask(msgspec.Struct, frozen=True, kw_only=True):
     document: str
     """The sweep, as JSON."""
     file: str
-    subject: str
-    """The hash that its subject must have: a document may have changed since the sweep began."""
+    versions: Mapping[str, str]
+    """Those that its subject must have: a document may have changed since the sweep began."""
     memory_bytes: int
+    folder: str = ""
+    """Where relative paths of documents lead; by default the folder of its parent."""
 
 
 class WorkerAnswer(msgspec.Struct, frozen=True, kw_only=True):
@@ -56,6 +59,8 @@ def _answer(connection: Connection) -> None:
     task = msgspec.json.decode(connection.recv_bytes(), type=WorkerTask)
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, (task.memory_bytes, hard))
+    if task.folder:
+        os.chdir(task.folder)
     trials: Trials | None = None
     while True:
         try:
@@ -73,9 +78,10 @@ def _answer(connection: Connection) -> None:
 
 def _subject(task: WorkerTask) -> SweepSubject:
     subject = SweepSubject.load(parse_sweep(task.document, file=task.file))
-    if subject.hash != task.subject:
+    found = other_versions(subject.versions, task.versions)
+    if found:
         raise DocumentError(
-            "a document, a state or a package has changed while the sweep is running",
+            f"what decides a run is not as it was when the sweep began: {found}",
             where=task.file,
             hint="start the sweep again: results of both versions are kept apart",
         )

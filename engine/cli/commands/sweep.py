@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 from engine.cli.exit_code import ExitCode
 from engine.cli.output.output_file import prepare, write
 from engine.cli.output.sweep_output import SweepPrinter, write_github_summary, write_sweep_junit
+from engine.cli.sweep_execution_options import ClusterAddress, execution_options
 from engine.cli.sweep_options import SweepOverrides, read_sweep
 from engine.document.duration import seconds
 from engine.errors import FlexcellError
@@ -25,7 +26,6 @@ from engine.sweep import (
     SweepSummary,
     TrialResult,
     Trials,
-    WorkerOptions,
     compare_with_baseline,
     configurations,
     execute_sweep,
@@ -36,8 +36,8 @@ from engine.sweep.case_file import case_document
 from engine.sweep.report import markdown, report
 from engine.sweep.shrinking import same_cause, same_outcome
 from engine.sweep.shrinking import shrink as shrink_failure
-from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
-from engine.sweep.worker_pool import DEFAULT_MEMORY_BYTES
+from engine.sweep.sweep_table import DEFAULT_RESULTS
+from engine.sweep.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"
@@ -114,6 +114,17 @@ def run(
     memory: Annotated[int, typer.Option(help="Memory for the data of one process in MiB.", min=256)] = (
         DEFAULT_MEMORY_BYTES // _MEBIBYTE
     ),
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Execute runs on the workers of this Dask cluster, tls://HOST:8786; needs the extra `dask`."),
+    ] = None,
+    tls_ca_file: Annotated[
+        Path | None, typer.Option(help="With --scheduler: certificate of the authority of the cluster, PEM.")
+    ] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="With --scheduler: certificate of this client, PEM.")] = None,
+    tls_key: Annotated[
+        Path | None, typer.Option(help="With --scheduler: its private key, PEM, if it is not with the certificate.")
+    ] = None,
     shard: Annotated[str | None, typer.Option(help="Execute only part I of N, I/N; `sweep merge` joins them.")] = None,
     again: Annotated[
         bool, typer.Option("--again", help="Execute configurations again whose process crashed or hung.")
@@ -122,7 +133,7 @@ def run(
     margin: Margin = None,
     report_: Annotated[
         list[Path] | None,
-        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json, .csv or .parquet; may be repeated."),
     ] = None,
     junit: Junit = None,
     json: Json = False,
@@ -134,6 +145,7 @@ def run(
     executed. 130: interrupted; what had ended is saved, and the same command goes on.
     """
     prepare(junit, *(report_ or ()))
+    cluster = ClusterAddress(scheduler=scheduler, tls_ca_file=tls_ca_file, tls_cert=tls_cert, tls_key=tls_key)
     overrides = SweepOverrides(
         vary=tuple(vary or ()),
         runs=runs,
@@ -149,11 +161,8 @@ def run(
     sweep = read_sweep(file, overrides)
     planned = configurations(sweep)
     subject = SweepSubject.load(sweep)
-    options = WorkerOptions(
-        workers=workers or available_processors(),
-        timeout_s=seconds(sweep.document.timeout),
-        memory_bytes=memory * _MEBIBYTE,
-    )
+    limits = ProcessLimits(timeout_s=seconds(sweep.document.timeout), memory_bytes=memory * _MEBIBYTE)
+    options = execution_options(cluster, workers, limits)
     printer = SweepPrinter(quiet=quiet or json)
     with SweepResults.open(results) as saved, printer:
         end = execute_sweep(subject, planned, saved, options, shard=_shard(shard), again=again, show=printer.show)
@@ -178,7 +187,7 @@ def report_saved(
     margin: Margin = None,
     output: Annotated[
         list[Path] | None,
-        typer.Option("--report", help="Write a report: FILE.md, .html, .json or .csv; may be repeated."),
+        typer.Option("--report", help="Write a report: FILE.md, .html, .json, .csv or .parquet; may be repeated."),
     ] = None,
     junit: Junit = None,
     json: Json = False,

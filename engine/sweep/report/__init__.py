@@ -1,4 +1,4 @@
-"""Reports of sweeps: Markdown for people and pull requests, one HTML page with figures, JSON and CSV for programs."""
+"""Reports of sweeps: Markdown for people and pull requests, one HTML page with figures, and tables for programs."""
 
 from __future__ import annotations
 
@@ -7,18 +7,19 @@ from pathlib import Path
 from engine.errors import FlexcellError
 from engine.sweep.comparison import Comparison
 from engine.sweep.report.markdown import markdown
+from engine.sweep.report.parquet_table import parquet_table
 from engine.sweep.report.result_rows import csv_table, json_report
 from engine.sweep.report.sweep_page import html_page
 from engine.sweep.summary import SweepSummary
 
-SUFFIXES = (".md", ".html", ".json", ".csv")
+SUFFIXES = (".md", ".html", ".json", ".csv", ".parquet")
 
 
 def report(summary: SweepSummary, comparison: Comparison | None, file: Path) -> bytes:
     """Return the report that the suffix of a file asks for.
 
     Raises:
-        FlexcellError: there is no such report.
+        FlexcellError: there is no such report, or what it needs is not installed.
     """
     match file.suffix:
         case ".md":
@@ -29,8 +30,10 @@ def report(summary: SweepSummary, comparison: Comparison | None, file: Path) -> 
             return json_report(summary, comparison)
         case ".csv":
             return csv_table(summary.results).encode()
+        case ".parquet":
+            return parquet_table(summary.results)
         case _:
             raise FlexcellError(f"there is no report `{file.suffix}`", where=file, hint=", ".join(SUFFIXES))
 
 
-__all__ = ["SUFFIXES", "csv_table", "html_page", "json_report", "markdown", "report"]
+__all__ = ["SUFFIXES", "csv_table", "html_page", "json_report", "markdown", "parquet_table", "report"]

@@ -41,6 +41,9 @@ class Try(State, frozen=True, kw_only=True):
                 os.kill(os.getpid(), signal.SIGKILL)
             case "exit":
                 os._exit(7)
+            case "orphan":
+                os.kill(os.getppid(), signal.SIGKILL)
+                signal.pause()
             case "hang":
                 signal.pause()
             case "eat":

@@ -8,7 +8,7 @@ import pytest
 
 from engine.document.sweep import parse_sweep
 from engine.errors import DocumentError
-from engine.sweep.subject import SweepSubject, package_versions
+from engine.sweep.subject import SweepSubject, other_versions, package_versions
 from tests.engine.sweep.luck_project import LuckProject
 
 CELL = """\
@@ -70,6 +70,33 @@ def test_every_document_and_state_is_part_of_the_hash(project: LuckProject, file
     assert old in text
     path.write_text(f"{text}\n# {new}\n" if not file else text.replace(old, new), encoding="utf-8")
     assert _subject(project, **keys).hash != before
+
+
+def test_what_a_state_imports_of_its_project_is_part_of_the_hash(project: LuckProject) -> None:
+    """Loaded anew: Python imports a module once."""
+    tools, module = project.path / "tools_of_luck.py", project.path / f"{project.module}.py"
+    tools.write_text("LIMIT = 3\n", encoding="utf-8")
+    module.write_text(f"import tools_of_luck\n{module.read_text(encoding='utf-8')}", encoding="utf-8")
+    before = _subject(project)
+    tools.write_text("LIMIT = 4\n", encoding="utf-8")
+    assert other_versions(_subject(project).versions, before.versions) == "states"
+
+
+def test_a_model_beside_the_cell_is_part_of_the_hash(project: LuckProject) -> None:
+    model = project.path / "mine" / "robot.yaml"
+    model.parent.mkdir()
+    model.write_text("flexcell: 1\n", encoding="utf-8")
+    (project.path / "cell.yaml").write_text(f"{CELL}robots: {{left: {{model: ./mine}}}}\n", encoding="utf-8")
+    before = _subject(project)
+    model.write_text("flexcell: 1\nname: other\n", encoding="utf-8")
+    assert other_versions(_subject(project).versions, before.versions) == "models"
+
+
+def test_versions_that_differ_are_named() -> None:
+    assert other_versions({"a": "1.0", "c": "2", "s": "0" * 64}, {"a": "1.1", "s": "1" * 64}) == (
+        "a 1.0 instead of 1.1, c 2 instead of none, s"
+    )
+    assert other_versions({}, {"a": "1"}) == "a missing instead of 1"
 
 
 def test_comments_and_the_design_are_no_part_of_it(project: LuckProject) -> None:

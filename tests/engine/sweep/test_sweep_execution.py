@@ -189,7 +189,7 @@ def test_documents_that_change_during_a_sweep_end_it(tmp_path: Path) -> None:
     text = project.behavior.read_text(encoding="utf-8")
     project.behavior.write_text(text.replace("default: 0.5", "default: 0.6"), encoding="utf-8")
     with SweepResults.open(tmp_path / "r.db") as saved:
-        with pytest.raises(FlexcellError, match="has changed while the sweep is running"):
+        with pytest.raises(FlexcellError, match="is not as it was when the sweep began: behavior"):
             execute_sweep(subject, configurations(sweep), saved, ONE)
         assert saved.all_of(subject.hash) == []
 

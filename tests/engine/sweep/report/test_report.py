@@ -95,5 +95,5 @@ def test_small_sweeps_have_every_report(tmp_path: Path, suffix: str, keys: dict[
 
 
 def test_another_suffix_is_refused(summary: SweepSummary) -> None:
-    with pytest.raises(FlexcellError, match=r"s.pdf: there is no report `.pdf` \(.md, .html, .json, .csv\)"):
+    with pytest.raises(FlexcellError, match=r"s.pdf: there is no report `.pdf` \(.md, .html, .json, .csv, .parquet\)"):
         report(summary, None, Path("s.pdf"))
