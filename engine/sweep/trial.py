@@ -126,7 +126,7 @@ def _completed(configuration: Configuration, run: CompletedRun, *, covered: str)
         events_sha256=sha256(encode_event_log(list(run.events))).hexdigest(),
         nodes=_node_times(run.events),
         outputs=_numbers(result.userdata),
-        measures={"run.duration_s": result.duration_s},
+        measures={"run.duration_s": result.duration_s, **run.measures},
         covered=covered,
     )
 

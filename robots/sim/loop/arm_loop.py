@@ -28,6 +28,7 @@ from robots.sim.commands.arm_commands import (
     StartStream,
     TrackForce,
 )
+from robots.sim.measures.run_measures import MeasuredArm
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
@@ -69,6 +70,19 @@ class SimArmLoop:
         """True while a motion is active, or its end is not reported yet."""
         return self.control.motion.number != 0 or self.control.has_unreported_end
 
+    def tool_point(self) -> Array:
+        """Return the tool centre point in the world at the start of the last step, (3,)."""
+        return self._physics.point_of(self._tool_link, self.control.tool_xyz_m)
+
+    def measured(self) -> MeasuredArm:
+        """Return what the measures of a run need of this arm."""
+        return MeasuredArm(
+            control=self.control,
+            tool_point=self.tool_point,
+            tool_link=self._tool_link,
+            beyond_flange=frozenset(self._beyond_flange.tolist()),
+        )
+
     def take(self, command: ArmCommand) -> None:
         """Apply a command to this arm from the next step on; numbers of other motions are ignored."""
         control = self.control
@@ -99,12 +113,11 @@ class SimArmLoop:
     def move(self, step_s: float) -> list[AnyMotionEvent]:
         """Read the measurements, advance the set point, and return the events."""
         physics, indices, control = self._physics, self.indices, self.control
-        tool = physics.point_of(self._tool_link, control.tool_xyz_m)
         control.measure(
             physics.positions[indices.qpos],
             physics.velocities[indices.dof],
             pull_nm=physics.pull[indices.dof],
-            wrench=physics.wrench_on(self._beyond_flange, tool),
+            wrench=physics.wrench_on(self._beyond_flange, self.tool_point()),
             step_s=step_s,
         )
         return control.advance(step_s)
