@@ -20,7 +20,7 @@ class ArmMeasures:
     Args:
         values: Where the measures are kept, in the order of `MeasureLayout`.
         control: The control loop of the arm.
-        tool_point: Returns the tool centre point in the world, (3,).
+        tool_xyz: Returns the tool centre point in the world in the last step, (3,).
         steps: Steps in a block.
         samples: Samples in a block.
         sample_s: Time between two samples.
@@ -31,7 +31,7 @@ class ArmMeasures:
         values: Array,
         *,
         control: ArmControlLoop,
-        tool_point: Callable[[], Array],
+        tool_xyz: Callable[[], Array],
         steps: int,
         samples: int,
         sample_s: float,
@@ -43,7 +43,7 @@ class ArmMeasures:
         """One row for each step of the block; the loop fills it."""
         self._values = values
         self._control = control
-        self._tool_point = tool_point
+        self._tool_xyz = tool_xyz
         self._sample_s = sample_s
         # The first row is the last sample of the block before.
         self._points = np.zeros((samples + 1, 3))
@@ -60,7 +60,7 @@ class ArmMeasures:
             self._reduce_path()
             self._count = row = 0
         self._tool_xyz_m = control.tool_xyz_m
-        self._points[row] = self._tool_point()
+        self._points[row] = self._tool_xyz()
         self._joints[row] = control.state.position
         self._set_points[row] = control.motion.position
         self._count = row + 1

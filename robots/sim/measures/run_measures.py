@@ -17,10 +17,10 @@ from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.physics import Physics
 
 # Path, speed and lag of arms, and contacts that last; forces on tools and new contacts are those of every step.
-_SAMPLE_S = 0.02
+_SAMPLE_S = 0.025
 # Grips of tools that touch a part.
-_GRIP_S = 0.05
-_BLOCK_SAMPLES = 25
+_GRIP_S = 0.1
+_BLOCK_SAMPLES = 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +28,8 @@ class MeasuredArm:
     """An arm of the loop, as its measures need it."""
 
     control: ArmControlLoop
-    tool_point: Callable[[], Array]
-    """Returns the tool centre point in the world, (3,)."""
+    tool_xyz: Callable[[], Array]
+    """Returns the tool centre point in the world at the start of the last step, (3,)."""
     tool_link: int
     """The body of its tool link."""
     beyond_flange: frozenset[int]
@@ -73,7 +73,7 @@ class RunMeasures:
             ArmMeasures(
                 self._values[layout.arms[name]],
                 control=arm.control,
-                tool_point=arm.tool_point,
+                tool_xyz=arm.tool_xyz,
                 steps=self._block_steps,
                 samples=_BLOCK_SAMPLES,
                 sample_s=self._sample_steps * step_s,
