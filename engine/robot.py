@@ -92,7 +92,7 @@ class MeasurePort(Protocol):
     """A device, simulated or real, that sums up numbers while runs command it."""
 
     def measures(self) -> Mapping[str, float]:
-        """Return the measures since it was connected, by name as in `engine.measure`.
+        """Return the measures since it was connected, by name as in `engine.messages.measures`.
 
         Raises:
             RobotError: it is not connected.

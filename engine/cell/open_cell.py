@@ -142,7 +142,7 @@ class OpenCell:
             ) from failures[0]
 
     def measures(self) -> dict[str, float]:
-        """Return what the devices have summed up since the cell was opened, by name as in `engine.measure`.
+        """Return what the devices have summed up since the cell was opened, by name as in `engine.messages.measures`.
 
         Raises:
             RobotError: a device is not connected.

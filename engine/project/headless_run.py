@@ -28,7 +28,7 @@ class CompletedRun:
     result: RunResult
     events: tuple[Event, ...]
     measures: Mapping[str, float] = field(default_factory=dict[str, float])
-    """What the devices of the cell have summed up until its end, by name as in `engine.measure`."""
+    """What the devices of the cell have summed up until its end, by name as in `engine.messages.measures`."""
 
     @property
     def outcome(self) -> str | None:

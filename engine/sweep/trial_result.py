@@ -45,7 +45,7 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
     outputs: Mapping[str, float] = {}
     """Userdata at the end that are numbers."""
     measures: Mapping[str, float] = {}
-    """Numbers that the run summed up while it went, by `OWNER.QUANTITY_REDUCTION_UNIT`, see `engine.measure`.
+    """Numbers that the run summed up while it went, by `OWNER.QUANTITY_REDUCTION_UNIT`, see `engine.messages.measures`.
 
     `run.duration_s`; of an arm `left.path_m`, `left.joint_path_rad`, `left.speed_max_m_s`, `left.force_max_n`,
     `left.torque_max_nm`, `left.tracking_error_max_rad`; of its tool `left.gripper.force_min_n` (while it holds),

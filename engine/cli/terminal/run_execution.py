@@ -61,7 +61,7 @@ class ExecutionResult:
     log: list[Event]
     interrupted: bool
     measures: Mapping[str, float]
-    """What the devices have summed up until its end, by name as in `engine.measure`."""
+    """What the devices have summed up until its end, by name as in `engine.messages.measures`."""
 
     @property
     def exit_code(self) -> ExitCode:

@@ -80,10 +80,15 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
         [
             (each.name, kind, *_quantiles(found, "")[1:])
             for each in summary.measures
+            if each.least < each.most
             for kind, found in (("succeeded", each.successes), ("failed", each.failures))
             if found is not None
         ],
     )
+    same = [f"{each.name} {value_text(each.least)}" for each in summary.measures if each.least == each.most]
+    if same:
+        yield ""
+        yield f"The same in all runs: {', '.join(same)}."
     yield from _section(
         "Inputs covered", ("factor", "parts with a run", "likeliest gap"), map(_input, summary.inputs.factors)
     )

@@ -28,7 +28,7 @@ from robots.sim.commands.arm_commands import (
     StartStream,
     TrackForce,
 )
-from robots.sim.measures.run_measures import MeasuredArm
+from robots.sim.measures.run_measures import LoopArm
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
@@ -71,9 +71,9 @@ class SimArmLoop:
         """True while a motion is active, or its end is not reported yet."""
         return self.control.motion.number != 0 or self.control.has_unreported_end
 
-    def measured(self) -> MeasuredArm:
+    def measured(self) -> LoopArm:
         """Return what the measures of a run need of this arm."""
-        return MeasuredArm(
+        return LoopArm(
             control=self.control,
             tool_xyz=lambda: self._tool_xyz,
             tool_link=self._tool_link,

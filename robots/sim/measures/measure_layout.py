@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from engine.measure import Measure
+from engine.messages.measures import Measure
 from robots.port import Array
 
 _CELL = (

@@ -24,7 +24,7 @@ _BLOCK_SAMPLES = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class MeasuredArm:
+class LoopArm:
     """An arm of the loop, as its measures need it."""
 
     control: ArmControlLoop
@@ -52,7 +52,7 @@ class RunMeasures:
         cell: CellModel,
         physics: Physics,
         *,
-        arms: Mapping[str, MeasuredArm],
+        arms: Mapping[str, LoopArm],
         tools: Mapping[str, ToolMechanics],
         step_s: float,
     ) -> None:

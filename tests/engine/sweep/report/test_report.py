@@ -79,7 +79,7 @@ def test_json_and_csv_have_a_row_for_each_run(summary: SweepSummary) -> None:
     assert sum(row["success"] == "True" for row in rows) == summary.successes
 
 
-def test_measures_are_told_apart_by_how_their_runs_ended(summary: SweepSummary) -> None:
+def test_measures_of_successes_and_of_failures_are_apart(summary: SweepSummary) -> None:
     (duration,) = summary.measures
     assert duration.name == "run.duration_s"
     assert duration.successes is not None
