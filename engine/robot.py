@@ -7,7 +7,7 @@ processes are its own and end in `__aexit__`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import Enum
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
@@ -83,6 +83,19 @@ class Reconnectable(Protocol):
 
         Raises:
             RobotError: it cannot be reconnected; the hint says what to check.
+        """
+        ...
+
+
+@runtime_checkable
+class MeasurePort(Protocol):
+    """A device, simulated or real, that sums up numbers while runs command it."""
+
+    def measures(self) -> Mapping[str, float]:
+        """Return the measures since it was connected, by name as in `engine.messages.measures`.
+
+        Raises:
+            RobotError: it is not connected.
         """
         ...
 

@@ -22,7 +22,7 @@ from engine.document.entries_document import load_entries
 from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
 from engine.preemption import OverduePolicy, preempt
 from engine.registry import DRIVERS, WORLDS, load_factory
-from engine.robot import Robot, World
+from engine.robot import MeasurePort, Robot, World
 from engine.stop import StopRelay
 from engine.store import Store, publish_changes, register_store
 
@@ -140,6 +140,22 @@ class OpenCell:
             raise RobotError(
                 "; ".join(str(failure) for failure in failures), where=self.name, hint="use the emergency stop"
             ) from failures[0]
+
+    def measures(self) -> dict[str, float]:
+        """Return what the devices have summed up since the cell was opened, by name as in `engine.messages.measures`.
+
+        Raises:
+            RobotError: a device is not connected.
+        """
+        devices: tuple[Robot, ...] = tuple(self.robots.values())
+        if self._world is not None:
+            devices += (self._world,)
+        return {
+            name: value
+            for device in devices
+            if isinstance(device, MeasurePort)
+            for name, value in device.measures().items()
+        }
 
     async def snapshot(self) -> bytes | None:
         """Return a snapshot of the world for `restore`; None without a world."""

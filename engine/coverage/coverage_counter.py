@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from engine.coverage.coverage_item import Key
 from engine.coverage.inventory import CoverageInventory
 from engine.event import Event
 from engine.runtime.history.run_reducer import DIVERTED_TO_OUTCOME, RunReducer
-from engine.runtime.history.run_state import NodeStep
+from engine.runtime.history.run_state import NodeStep, RunStateChange
 
 
 class CoverageCounter:
@@ -17,17 +17,28 @@ class CoverageCounter:
     Args:
         inventory: The items that can be counted.
         counts: Count of each item, by key; counts are increased, keys never added.
+        watch: Called with each change of the state of the run, for those who would reduce the same events again.
     """
 
-    def __init__(self, inventory: CoverageInventory, counts: dict[Key, int]) -> None:
+    def __init__(
+        self,
+        inventory: CoverageInventory,
+        counts: dict[Key, int],
+        *,
+        watch: Callable[[RunStateChange], None] = lambda _change: None,
+    ) -> None:
         self._inventory = inventory
         self._counts = counts
+        self._watch = watch
         self._reducer = RunReducer()
 
     def take(self, event: Event) -> None:
         """Count an event; events of another version of the document do not count."""
         change = self._reducer.apply(event)
-        if change is None or change.step is None:
+        if change is None:
+            return
+        self._watch(change)
+        if change.step is None:
             return
         if self._reducer.state.document in ("", self._inventory.behavior.meaning):
             self._count_step(change.step)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from engine.coverage.coverage_counter import CoverageCounter
 from engine.coverage.coverage_item import CoverageItem, Key
 from engine.coverage.inventory import CoverageInventory, take_inventory
 from engine.document.behavior import Behavior
 from engine.event import Event
+from engine.runtime.history import RunStateChange
 from engine.runtime.plan import Catalogue
 
 
@@ -31,9 +32,13 @@ class CoverageRuns:
         """All items that can be covered, in document order: the lowest bit is the first."""
         return self._inventory.items
 
-    def follow(self) -> CoveredItems:
-        """Return what a new run covers: give it the events of the run."""
-        return CoveredItems(self._inventory)
+    def follow(self, *, watch: Callable[[RunStateChange], None] = lambda _change: None) -> CoveredItems:
+        """Return what a new run covers: give it the events of the run.
+
+        Args:
+            watch: Called with each change of the state of the run.
+        """
+        return CoveredItems(self._inventory, watch=watch)
 
     def missing(self, bits: Iterable[str]) -> tuple[CoverageItem, ...]:
         """Return the items that none of the runs with these bits covers."""
@@ -46,9 +51,9 @@ class CoverageRuns:
 class CoveredItems:
     """What one run covers; pass its events to `take` in order."""
 
-    def __init__(self, inventory: CoverageInventory) -> None:
+    def __init__(self, inventory: CoverageInventory, *, watch: Callable[[RunStateChange], None]) -> None:
         self._counts: dict[Key, int] = {item.key: 0 for item in inventory.items}
-        self._counter = CoverageCounter(inventory, self._counts)
+        self._counter = CoverageCounter(inventory, self._counts, watch=watch)
 
     def take(self, event: Event) -> None:
         """Count an event."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from engine.clock import run_virtual
@@ -27,6 +27,8 @@ class CompletedRun:
 
     result: RunResult
     events: tuple[Event, ...]
+    measures: Mapping[str, float] = field(default_factory=dict[str, float])
+    """What the devices of the cell have summed up until its end, by name as in `engine.messages.measures`."""
 
     @property
     def outcome(self) -> str | None:
@@ -72,15 +74,16 @@ def run_headless(
     """
     events: list[Event] = []
 
-    async def main() -> RunResult:
+    async def main() -> tuple[RunResult, dict[str, float]]:
         async with open_cell_runner(setup) as runner:
             prepared = await runner.start(request)
             for watcher in (events.append, *watchers):
                 prepared.run.watch(watcher)
-            return await execute_within(limit_s, prepared)
+            result = await execute_within(limit_s, prepared)
+            return result, runner.cell.measures()
 
-    result = outside_loop(lambda: run_virtual(main()))
-    return CompletedRun(result=result, events=tuple(events))
+    result, measures = outside_loop(lambda: run_virtual(main()))
+    return CompletedRun(result=result, events=tuple(events), measures=measures)
 
 
 def outside_loop(work: Callable[[], T]) -> T:

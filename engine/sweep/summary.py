@@ -9,6 +9,7 @@ from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
 from engine.sweep.statistics import Interval, exact_interval
 from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
+from engine.sweep.statistics.input_coverage import InputCoverage, input_coverage
 from engine.sweep.success_count import Verdict
 from engine.sweep.sweep_execution import EndedBy, SweepEnd
 from engine.sweep.trial_result import TrialResult
@@ -49,6 +50,25 @@ class Quantiles:
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeasureSpread:
+    """The distribution of a measure over the runs that succeeded, and over those that did not."""
+
+    name: str
+    successes: Quantiles | None
+    failures: Quantiles | None
+
+    @property
+    def least(self) -> float:
+        """Its least value in any run."""
+        return min(each.least for each in (self.successes, self.failures) if each is not None)
+
+    @property
+    def most(self) -> float:
+        """Its largest value in any run."""
+        return max(each.most for each in (self.successes, self.failures) if each is not None)
+
+
+@dataclass(frozen=True, kw_only=True)
 class SweepSummary:
     """What a sweep has shown. Rates, interval and verdict are of runs without a gap before them; the rest is of all."""
 
@@ -70,8 +90,12 @@ class SweepSummary:
     """Seconds in each node a run, those first that take longest."""
     outputs: Sequence[Quantiles]
     """Userdata at the end that are numbers."""
+    measures: Sequence[MeasureSpread]
+    """In the order of the first result: the run, the world, then each arm and its tool."""
     effects: Sequence[FactorEffect]
     """Those of factors with the largest differences first."""
+    inputs: InputCoverage
+    """How much of what is varied the runs have covered."""
     items: int
     """What can be covered in the behavior."""
     missing: Sequence[CoverageItem]
@@ -110,7 +134,9 @@ def summarize(end: SweepEnd) -> SweepSummary:
         duration_s=_quantiles("run", [each.duration_s for each in results if each.success]),
         nodes=_node_times(results),
         outputs=_outputs(results),
+        measures=_measures(results),
         effects=_effects(end, document.confidence),
+        inputs=input_coverage(document.factors, [each.configuration.values for each in results]),
         items=len(coverage.items),
         missing=coverage.missing(each.covered for each in results),
         results=results,
@@ -164,6 +190,22 @@ def _outputs(results: Sequence[TrialResult]) -> list[Quantiles]:
         for key, value in result.outputs.items():
             values.setdefault(key, []).append(value)
     return [each for key, numbers in sorted(values.items()) if (each := _quantiles(key, numbers)) is not None]
+
+
+def _measures(results: Sequence[TrialResult]) -> list[MeasureSpread]:
+    names = dict.fromkeys(name for result in results for name in result.measures)
+    return [
+        MeasureSpread(
+            name=name,
+            successes=_quantiles(name, _of_measure(name, results, success=True)),
+            failures=_quantiles(name, _of_measure(name, results, success=False)),
+        )
+        for name in names
+    ]
+
+
+def _of_measure(name: str, results: Sequence[TrialResult], *, success: bool) -> list[float]:
+    return [each.measures[name] for each in results if each.success is success and name in each.measures]
 
 
 def _quantiles(name: str, values: Sequence[float]) -> Quantiles | None:

@@ -18,13 +18,13 @@ from engine.coverage import CoverageRuns
 from engine.document.duration import seconds
 from engine.document.sweep import NO_FILE
 from engine.errors import FlexcellError
-from engine.event import Cause, Event
+from engine.event import Cause
 from engine.journal import encode_event_log
 from engine.project.cell_runner import CellSetup
 from engine.project.headless_run import CompletedRun, run_headless
 from engine.project.run_request import RunRequest
 from engine.recording import RecordingOptions, collect_documents
-from engine.runtime.history.run_reducer import RunReducer
+from engine.runtime.history import RunStateChange
 from engine.sweep.cell_variation import varied_cell
 from engine.sweep.configuration import Configuration
 from engine.sweep.subject import SweepSubject
@@ -72,14 +72,15 @@ class Trials:
         )
 
     def _executed(self, configuration: Configuration, setup: CellSetup, request: RunRequest) -> TrialResult:
-        covered = self._coverage.follow()
+        times = _NodeTimes()
+        covered = self._coverage.follow(watch=times.take)
         limit_s = seconds(self.subject.sweep.document.limit)
         try:
             run = run_headless(setup, request, watchers=(covered.take,), limit_s=limit_s)
         except (FlexcellError, MemoryError) as error:
             # A world that cannot be opened with these values, or a run in which everything waits.
             return _failed(configuration, "errored", cause_of(error))
-        return _completed(configuration, run, covered=covered.bits, texts=self._texts)
+        return _completed(configuration, run, covered=covered.bits, times=times.found, texts=self._texts)
 
     def _request(self, configuration: Configuration, folder: Path, record: Path | None) -> tuple[CellSetup, RunRequest]:
         subject, document, values = self.subject, self.subject.sweep.document, configuration.values
@@ -115,7 +116,14 @@ def ended_process(configuration: Configuration, status: TrialStatus, message: st
     return msgspec.structs.replace(_failed(configuration, status, Cause(message=message)), wall_s=wall_s)
 
 
-def _completed(configuration: Configuration, run: CompletedRun, *, covered: str, texts: PortableText) -> TrialResult:
+def _completed(
+    configuration: Configuration,
+    run: CompletedRun,
+    *,
+    covered: str,
+    times: Mapping[str, NodeTime],
+    texts: PortableText,
+) -> TrialResult:
     result = run.result
     cause = result.cause if not result.success else None
     return TrialResult(
@@ -129,8 +137,9 @@ def _completed(configuration: Configuration, run: CompletedRun, *, covered: str,
         duration_s=result.duration_s,
         events=len(run.events),
         events_sha256=sha256(texts.of_json(encode_event_log(list(run.events)))).hexdigest(),
-        nodes=_node_times(run.events),
+        nodes=times,
         outputs=_numbers(result.userdata),
+        measures={"run.duration_s": result.duration_s, **run.measures},
         covered=covered,
     )
 
@@ -154,17 +163,19 @@ def _status(text: str) -> TrialStatus:
             return "errored"
 
 
-def _node_times(events: tuple[Event, ...]) -> dict[str, NodeTime]:
-    reducer = RunReducer()
-    found: dict[str, NodeTime] = {}
-    for event in events:
-        change = reducer.apply(event)
-        if change is None or change.step is None or change.step.kind != "ended":
-            continue
+class _NodeTimes:
+    """Sums up the activations of the nodes of one run."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, NodeTime] = {}
+
+    def take(self, change: RunStateChange) -> None:
+        """Take a change of the state of the run."""
+        if change.step is None or change.step.kind != "ended":
+            return
         path = change.step.path
-        before = found.get(path, NodeTime(visits=0, total_s=0.0))
-        found[path] = NodeTime(visits=before.visits + 1, total_s=before.total_s + change.duration_s)
-    return found
+        before = self.found.get(path, NodeTime(visits=0, total_s=0.0))
+        self.found[path] = NodeTime(visits=before.visits + 1, total_s=before.total_s + change.duration_s)
 
 
 def _numbers(userdata: Mapping[str, object]) -> dict[str, float]:

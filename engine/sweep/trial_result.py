@@ -44,6 +44,14 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
     """By path."""
     outputs: Mapping[str, float] = {}
     """Userdata at the end that are numbers."""
+    measures: Mapping[str, float] = {}
+    """Numbers that the run summed up while it went, by `OWNER.QUANTITY_REDUCTION_UNIT`, see `engine.messages.measures`.
+
+    `run.duration_s`; of an arm `left.path_m`, `left.joint_path_rad`, `left.speed_max_m_s`, `left.force_max_n`,
+    `left.torque_max_nm`, `left.tracking_error_max_rad`; of its tool `left.gripper.force_min_n` (while it holds),
+    `left.gripper.force_max_n`, `left.gripper.slip_max_m`; of the world `cell.contacts`, `cell.contact_s`,
+    `cell.contact_force_max_n`. What a run has nothing of (no grip, no end) is absent.
+    """
     covered: str = ""
     """Hexadecimal bits of the coverage items of the behavior that the run executed, in document order."""
     wall_s: float = 0.0

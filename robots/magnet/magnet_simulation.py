@@ -16,8 +16,8 @@ from robots.magnet.magnet_skills import MagnetState
 from robots.magnet.simulated_magnet_port import SimMagnetPort, magnet_sample
 from robots.model.tool_model import ToolModel
 from robots.sim.grip.mechanics import ToolMechanics
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
-from robots.sim.loop.snapshot import ToolReading
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics

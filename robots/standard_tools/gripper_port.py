@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robots.port import GripperSample
-from robots.sim.loop.snapshot import ToolReading
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.ports.tool_ports import ToolLine
 

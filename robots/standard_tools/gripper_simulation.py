@@ -11,8 +11,8 @@ from robots.gripper import GripperServer, ToolServer
 from robots.model.finger_mechanisms import ClawModel, GripperModel, LinkageModel
 from robots.model.tool_model import ToolModel
 from robots.sim.grip.mechanics import ToolMechanics
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
-from robots.sim.loop.snapshot import ToolReading
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics

@@ -11,8 +11,8 @@ from robots.model.hand_mechanism import SynergyModel
 from robots.model.tool_model import ToolModel
 from robots.port.hand_grasp_check import hand_state
 from robots.sim.grip.mechanics import ToolMechanics
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
-from robots.sim.loop.snapshot import ToolReading
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics

@@ -11,11 +11,11 @@ from typing import Protocol, cast
 from robots.gripper.tool_server import ToolServer
 from robots.model.tool_model import ToolModel
 from robots.sim.grip.mechanics import MechanicsMaker
+from robots.sim.grip.tool_reading import StatePublisher
 from robots.sim.grip.tool_summary import ToolSummarizer
 from robots.sim.physics.tool_body import ToolBody
 from robots.sim.ports.tool_ports import PortMaker
 from robots.sim.world.sim_world import SimWorld
-from robots.sim.world.tool_topics import StatePublisher
 from robots.tool_kinds import kind_of_mechanism, load_simulation
 
 

@@ -45,7 +45,6 @@ EXCEPTIONS = {
 """What else looks at the class of such an event, and why."""
 
 REDUCERS = {
-    "engine/sweep/trial.py": "the times in nodes of a run of a sweep, which nobody else watches",
     "editor_web/past/state_history.py": "a run at any instant; keeps copies",
     "engine/cli/output/progress_printer.py": "a run in a terminal",
     "engine/coverage/coverage_counter.py": "many runs, each read once",

@@ -128,7 +128,7 @@ def resume(
     )
 
     def report(ended: ExecutionResult) -> None:
-        report_run(ended.result, ended.log, as_json=json, events=events)
+        report_run(ended.result, ended.log, ended.measures, as_json=json, events=events)
 
     raise typer.Exit(execute_run(setup, report=report))
 

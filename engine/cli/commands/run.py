@@ -187,7 +187,7 @@ def run(
     )
 
     def report(ended: ExecutionResult) -> None:
-        report_run(ended.result, ended.log, as_json=json, events=events)
+        report_run(ended.result, ended.log, ended.measures, as_json=json, events=events)
         if covered is not None and coverage is not None:
             covered.accumulate(coverage)
         if junit is not None:

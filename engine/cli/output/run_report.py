@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 
@@ -17,18 +17,20 @@ from engine.journal import encode_event_log
 from engine.runtime.run_result import RunResult
 
 
-def report_run(result: RunResult, log: Sequence[Event], *, as_json: bool, events: Path | None) -> None:
+def report_run(
+    result: RunResult, log: Sequence[Event], measures: Mapping[str, float], *, as_json: bool, events: Path | None
+) -> None:
     """Print the result of a run, as one JSON object or for people, and write its event log to `events`, if given."""
     encoded = encode_event_log(log)
     if as_json:
-        _print_json(result, encoded, len(log))
+        _print_json(result, encoded, len(log), measures)
     else:
         print_result(result)
     if events is not None:
         write(events, encoded)
 
 
-def _print_json(result: RunResult, encoded: bytes, count: int) -> None:
+def _print_json(result: RunResult, encoded: bytes, count: int, measures: Mapping[str, float]) -> None:
     """Print the result as one JSON object; `encoded` is its event log."""
     document = {
         "run": result.run,
@@ -41,6 +43,7 @@ def _print_json(result: RunResult, encoded: bytes, count: int) -> None:
         "events": count,
         "events_sha256": sha256(encoded).hexdigest(),
         "userdata": result.userdata,
+        **({"measures": measures} if measures else {}),
         **({"stood_in_for": result.stood_in_for} if result.stood_in_for else {}),
     }
     sys.stdout.write(msgspec.json.encode(document).decode() + "\n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
@@ -61,6 +61,8 @@ class ExecutionResult:
     result: RunResult
     log: list[Event]
     interrupted: bool
+    measures: Mapping[str, float]
+    """What the devices have summed up until its end, by name as in `engine.messages.measures`."""
 
     @property
     def exit_code(self) -> ExitCode:
@@ -142,12 +144,13 @@ async def _execute(setup: RunSetup) -> ExecutionResult:
             freeze_loaded_objects(collect=not setup.virtual)
             with short_switch_interval(), LoopWatchdog():
                 result = await execute_within(setup.timeout_s, prepared)
+            measures = runner.cell.measures()
             over.set()
     if prepared.faults is not None and setup.quiet:
         # The progress output shows these lines already.
         for line in prepared.faults.unapplied():
             _print_message(line)
-    return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason))
+    return ExecutionResult(result=result, log=log, interrupted=bool(interruption.reason), measures=measures)
 
 
 async def _stop_run(run: Run, over: asyncio.Event, notice: StopNotice) -> None:

@@ -8,6 +8,7 @@ from html import escape
 from engine.sweep.report.words import interval_text, percent, value_text
 from engine.sweep.statistics import rate_interval
 from engine.sweep.statistics.effects import FactorEffect
+from engine.sweep.summary import MeasureSpread
 from engine.sweep.trial_result import TrialResult
 
 _WIDTH, _HEIGHT = 640, 240
@@ -15,6 +16,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 52, 12, 12, 34
 _POINTS = 200
 _ROW = 22
 _NAMES = 210
+_BARS, _BAR_HEIGHT = 24, 110
 
 
 def convergence(results: Sequence[TrialResult], *, confidence: float, required: float | None) -> str:
@@ -80,6 +82,39 @@ def scatter(results: Sequence[TrialResult], first: str, second: str) -> str:
         f'<text x="{_LEFT - 6}" y="{_TOP + 10}" text-anchor="end">{value_text(most_y)}</text>'
     )
     return _svg(_frame() + ends + "".join(marks), _HEIGHT, f"Runs by {first} and {second}: crosses did not succeed")
+
+
+def histogram(results: Sequence[TrialResult], spread: MeasureSpread) -> str:
+    """Return how often a measure has which values: runs that failed stand on those that succeeded."""
+    least, most = spread.least, spread.most
+    good, bad = [0] * _BARS, [0] * _BARS
+    for each in results:
+        value = each.measures.get(spread.name)
+        if value is not None:
+            bars = good if each.success else bad
+            bars[min(int((value - least) / (most - least) * _BARS), _BARS - 1)] += 1
+    highest = max(map(sum, zip(good, bad, strict=True)))
+    width = (_WIDTH - _LEFT - _RIGHT) / _BARS
+    full, floor = _BAR_HEIGHT - _TOP - _BOTTOM, _BAR_HEIGHT - _BOTTOM
+    bars_drawn: list[str] = []
+    for index, (successes, failures) in enumerate(zip(good, bad, strict=True)):
+        x, foot = _LEFT + width * index, float(floor)
+        for kind, runs in (("good", successes), ("bad", failures)):
+            height = full * runs / highest
+            foot -= height
+            if runs:
+                bars_drawn.append(
+                    f'<rect class="{kind}" x="{x + 1:.1f}" y="{foot:.1f}" width="{width - 2:.1f}" '
+                    f'height="{height:.1f}"><title>{runs} runs</title></rect>'
+                )
+    ends = (
+        f'<line class="grid" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{floor}" y2="{floor}"/>'
+        f'<text x="{_LEFT - 6}" y="{_TOP + 10}" text-anchor="end">{highest}</text>'
+        f'<text x="{_LEFT}" y="{floor + 18}">{value_text(least)}</text>'
+        f'<text x="{_WIDTH - _RIGHT}" y="{floor + 18}" text-anchor="end">{value_text(most)}</text>'
+    )
+    label = f"Runs by {spread.name}, from {value_text(least)} to {value_text(most)}; those that failed are on top"
+    return _svg("".join(bars_drawn) + ends, _BAR_HEIGHT, label)
 
 
 def _running(successes: Sequence[bool]) -> list[int]:

@@ -8,6 +8,7 @@ from engine.sweep.comparison import Comparison
 from engine.sweep.report.words import (
     difference_text,
     end_text,
+    gap_text,
     interval_text,
     percent,
     rate_text,
@@ -15,10 +16,12 @@ from engine.sweep.report.words import (
     verdict_text,
 )
 from engine.sweep.statistics.effects import FactorEffect
+from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import Quantiles, SweepSummary
 
 _NODES = 12
 _FAILING = 20
+_PAIRS = 6
 
 
 def markdown(summary: SweepSummary, comparison: Comparison | None = None) -> str:
@@ -71,6 +74,33 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
         ("userdata", "runs", "least", "middle", "95 %", "most"),
         [_quantiles(each, "") for each in summary.outputs],
     )
+    yield from _section(
+        "Measures",
+        ("measure", "runs", "number", "least", "middle", "95 %", "most"),
+        [
+            (each.name, kind, *_quantiles(found, "")[1:])
+            for each in summary.measures
+            if each.least < each.most
+            for kind, found in (("succeeded", each.successes), ("failed", each.failures))
+            if found is not None
+        ],
+    )
+    same = [f"{each.name} {value_text(each.least)}" for each in summary.measures if each.least == each.most]
+    if same:
+        yield ""
+        yield f"The same in all runs: {', '.join(same)}."
+    yield from _section(
+        "Inputs covered", ("factor", "parts with a run", "likeliest gap"), map(_input, summary.inputs.factors)
+    )
+    yield from _section(
+        f"Pairs of inputs covered least, of {len(summary.inputs.pairs)}",
+        ("factor", "with", "pairs of parts with a run"),
+        [
+            (each.first, each.second, f"{each.covered} of {each.parts}")
+            for each in summary.inputs.pairs[:_PAIRS]
+            if each.covered < each.parts
+        ],
+    )
     yield ""
     covered = summary.items - len(summary.missing)
     yield f"Coverage of the behavior: {covered} of {summary.items} nodes and exits."
@@ -100,6 +130,10 @@ def _effect(effect: FactorEffect) -> tuple[object, ...]:
     levels = "; ".join(f"{each.label}: {each.successes}/{each.runs}" for each in effect.levels)
     share = percent(effect.input_share) if effect.input_share is not None else "–"
     return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels, share
+
+
+def _input(each: FactorCoverage) -> tuple[object, ...]:
+    return each.address, f"{each.covered} of {each.parts}", gap_text(each)
 
 
 def _correlation(value: float | None) -> str:

@@ -18,10 +18,11 @@ Row = dict[str, object]
 def rows(results: Sequence[TrialResult]) -> list[Row]:
     """Return one flat row for each result; all have the same keys.
 
-    Factors have their addresses, userdata at the end `outputs.KEY`, times in nodes `seconds.PATH`; what a run lacks
-    is None.
+    Factors have their addresses, userdata at the end `outputs.KEY`, measures `measures.NAME`, times in nodes
+    `seconds.PATH`; what a run lacks is None.
     """
     outputs = sorted({key for result in results for key in result.outputs})
+    measures = list(dict.fromkeys(name for result in results for name in result.measures))
     paths = list(dict.fromkeys(path for result in results for path in result.nodes))
     return [
         {
@@ -39,6 +40,7 @@ def rows(results: Sequence[TrialResult]) -> list[Row]:
             "wall_s": result.wall_s,
             "cpu_s": result.cpu_s,
             **{f"outputs.{key}": result.outputs.get(key) for key in outputs},
+            **{f"measures.{name}": result.measures.get(name) for name in measures},
             **{f"seconds.{path}": node.total_s if (node := result.nodes.get(path)) else None for path in paths},
         }
         for result in results
@@ -76,7 +78,9 @@ def json_report(summary: SweepSummary, comparison: Comparison | None) -> bytes:
         "duration_s": summary.duration_s,
         "nodes": summary.nodes,
         "outputs": summary.outputs,
+        "measures": summary.measures,
         "effects": summary.effects,
+        "inputs": summary.inputs,
         "coverage": {"items": summary.items, "missing": summary.missing},
         "comparison": comparison,
         "cpu_s": summary.cpu_s,

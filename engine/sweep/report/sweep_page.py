@@ -7,10 +7,11 @@ from html import escape
 from pathlib import Path
 
 from engine.sweep.comparison import Comparison
-from engine.sweep.report.figures import convergence, level_rates, scatter
+from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
 from engine.sweep.report.words import (
     difference_text,
     end_text,
+    gap_text,
     interval_text,
     percent,
     rate_text,
@@ -23,6 +24,7 @@ _STYLE = Path(__file__).with_name("report.css")
 _NODES = 25
 _FAILING = 200
 _FIGURES = 8
+_PAIRS = 15
 
 
 def html_page(summary: SweepSummary, comparison: Comparison | None = None) -> str:
@@ -70,6 +72,8 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
     head = ("runs", "least", "middle", "95 %", "most")
     yield from _table("Seconds by node", ("node", *head), map(_quantiles, (*durations, *summary.nodes[:_NODES])))
     yield from _table("Outputs", ("userdata", *head), map(_quantiles, summary.outputs))
+    yield from _measures(summary)
+    yield from _inputs(summary)
     covered = summary.items - len(summary.missing)
     yield f"<h2>Coverage</h2><p>{covered} of {summary.items} nodes and exits of the behavior were executed.</p>"
     yield from _table(
@@ -123,6 +127,37 @@ def _factors(summary: SweepSummary) -> Iterator[str]:
         first, second = numbers[:2]
         figure = scatter(summary.results, first, second)
         yield f"<figure><figcaption>Runs over the first two</figcaption>{figure}</figure>"
+
+
+def _measures(summary: SweepSummary) -> Iterator[str]:
+    yield from _table(
+        "Measures",
+        ("measure", "runs", "number", "least", "middle", "95 %", "most"),
+        [
+            (each.name, kind, *_quantiles(found)[1:])
+            for each in summary.measures
+            for kind, found in (("succeeded", each.successes), ("failed", each.failures))
+            if found is not None
+        ],
+    )
+    for each in summary.measures:
+        if each.least < each.most:
+            caption = f"<figcaption><code>{escape(each.name)}</code></figcaption>"
+            yield f"<figure>{caption}{histogram(summary.results, each)}</figure>"
+
+
+def _inputs(summary: SweepSummary) -> Iterator[str]:
+    inputs = summary.inputs
+    yield from _table(
+        "Inputs covered",
+        ("factor", "parts with a run", "likeliest gap"),
+        [(each.address, f"{each.covered} of {each.parts}", gap_text(each)) for each in inputs.factors],
+    )
+    yield from _table(
+        "Pairs of inputs, those covered least first",
+        ("factor", "with", "pairs of parts with a run"),
+        [(each.first, each.second, f"{each.covered} of {each.parts}") for each in inputs.pairs[:_PAIRS]],
+    )
 
 
 def _quantiles(each: Quantiles) -> tuple[object, ...]:

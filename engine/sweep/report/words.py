@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from engine.sweep.comparison import Comparison
 from engine.sweep.statistics import Interval
+from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import SweepSummary
 
 
@@ -72,6 +73,14 @@ def difference_text(comparison: Comparison) -> str:
         f"{change} the baseline: {rates} on {pair.runs} equal configurations, {pair.only_second} mended and "
         f"{pair.only_first} broken{verdict}"
     )
+
+
+def gap_text(coverage: FactorCoverage) -> str:
+    """Return the range of a factor without a run and how likely a value in it is; a dash for a list of values."""
+    if coverage.gap is None or coverage.gap_share is None:
+        return "–"
+    low, high = coverage.gap
+    return f"{value_text(low)} to {value_text(high)} ({percent(coverage.gap_share)} of its values)"
 
 
 def signed(share: float) -> str:

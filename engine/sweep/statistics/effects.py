@@ -13,13 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from engine.document.sweep import Factor
-from engine.sweep.distributions import share_of
+from engine.sweep.statistics.input_coverage import covered_share
 from engine.sweep.statistics.intervals import Interval, exact_interval
 from engine.sweep.statistics.special_functions import rank_correlation
 
 _BINS = 4
 """Levels of a factor of numbers: parts with equally many runs."""
-_INPUT_PARTS = 10
 _FEW = 3
 
 
@@ -154,13 +153,7 @@ def _order(label: str) -> tuple[float, str]:
 
 
 def _share_of_values(values: Sequence[object], factor: Factor | None) -> float | None:
-    if factor is None:
-        return None
-    if factor.values is not None:
-        known = {_label(value) for value in factor.values}
-        return len(known & {_label(value) for value in values}) / len(known)
-    shares = [share for value in values if (share := share_of(factor, value)) is not None]
-    return len({min(int(share * _INPUT_PARTS), _INPUT_PARTS - 1) for share in shares}) / _INPUT_PARTS
+    return covered_share(factor, values) if factor is not None else None
 
 
 def _label(value: object) -> str:

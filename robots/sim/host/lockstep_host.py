@@ -59,6 +59,11 @@ class LockstepHost:
         self.simulation.write_image(image)
         return image
 
+    def measures(self) -> dict[str, float]:
+        """Return what the world has summed up, the last step included."""
+        measures = self.simulation.measures
+        return measures.layout.read(measures.values())
+
     async def restore(self, image: Array) -> None:
         """Restore an image of this world, at rest."""
         before = self.simulation.steps

@@ -82,6 +82,10 @@ class ProcessHost:
         layout, state = self._opened()
         return state.read()[layout.size :]
 
+    def measures(self) -> dict[str, float]:
+        """Return what the world has summed up until a fraction of a second ago."""
+        return self.snapshot().measures()
+
     async def restore(self, image: Array) -> None:
         """Restore an image of this world; returns when the process has confirmed it."""
         restored = self._alive().ask(RestoreWorld(image=image)).answer

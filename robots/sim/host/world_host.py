@@ -39,6 +39,10 @@ class WorldHost(Protocol):
         """Return the complete state, at most a few steps old, as in `ImageLayout`."""
         ...
 
+    def measures(self) -> dict[str, float]:
+        """Return what the world has summed up since it was opened or restored, by name as in `engine.messages.measures`."""
+        ...
+
     async def restore(self, image: Array) -> None:
         """Restore an image of this world, at rest; nothing moves, and nothing may be started meanwhile.
 

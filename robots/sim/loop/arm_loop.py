@@ -28,6 +28,7 @@ from robots.sim.commands.arm_commands import (
     StartStream,
     TrackForce,
 )
+from robots.sim.measures.run_measures import LoopArm
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
@@ -55,6 +56,7 @@ class SimArmLoop:
         self._acceleration_rad_s2 = np.array(model.limits.acceleration_rad_s2)
         self._tool_link = physics.body_number(f"{indices.name}/{model.tool_link}")
         self._beyond_flange = physics.members(physics.body_number(f"{indices.name}/{model.flange_link}"))
+        self._tool_xyz: Array = np.zeros(3)
         self.control = ArmControlLoop(
             name=indices.name,
             kinematics=ArmKinematics(model, base=base),
@@ -68,6 +70,15 @@ class SimArmLoop:
     def busy(self) -> bool:
         """True while a motion is active, or its end is not reported yet."""
         return self.control.motion.number != 0 or self.control.has_unreported_end
+
+    def measured(self) -> LoopArm:
+        """Return what the measures of a run need of this arm."""
+        return LoopArm(
+            control=self.control,
+            tool_xyz=lambda: self._tool_xyz,
+            tool_link=self._tool_link,
+            beyond_flange=frozenset(self._beyond_flange.tolist()),
+        )
 
     def take(self, command: ArmCommand) -> None:
         """Apply a command to this arm from the next step on; numbers of other motions are ignored."""
@@ -99,12 +110,12 @@ class SimArmLoop:
     def move(self, step_s: float) -> list[AnyMotionEvent]:
         """Read the measurements, advance the set point, and return the events."""
         physics, indices, control = self._physics, self.indices, self.control
-        tool = physics.point_of(self._tool_link, control.tool_xyz_m)
+        self._tool_xyz = physics.point_of(self._tool_link, control.tool_xyz_m)
         control.measure(
             physics.positions[indices.qpos],
             physics.velocities[indices.dof],
             pull_nm=physics.pull[indices.dof],
-            wrench=physics.wrench_on(self._beyond_flange, tool),
+            wrench=physics.wrench_on(self._beyond_flange, self._tool_xyz),
             step_s=step_s,
         )
         return control.advance(step_s)

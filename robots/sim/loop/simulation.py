@@ -29,6 +29,7 @@ from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.external_pushes import ExternalPushes
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
 from robots.sim.loop.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
+from robots.sim.measures.run_measures import RunMeasures
 from robots.sim.people.people_loop import PeopleLoop
 from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.contacts import ContactReader
@@ -69,6 +70,14 @@ class Simulation:
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, ToolMechanics] = {name: tool for name, tool in tools.items() if tool is not None}
+        self.measures = RunMeasures(
+            cell,
+            physics,
+            arms={name: arm.measured() for name, arm in self._arms.items()},
+            tools=self._tools,
+            step_s=self.step_s,
+        )
+        """What the world sums up while it runs."""
         arms = _arm_summaries(cell)
         self._tool_names = {arm.name: f"{arm.name}/{arm.tool.kind}" for arm in arms if arm.tool is not None}
         self._arm_dof = np.concatenate([np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms)])
@@ -157,6 +166,7 @@ class Simulation:
         self._physics.finish_step()
         self._people.count()
         self.steps += 1
+        self.measures.step(self.steps)
         return events
 
     def write_snapshot(self, values: Array) -> None:
@@ -172,6 +182,7 @@ class Simulation:
         values[layout.positions] = xyz.reshape(-1)
         values[layout.quaternions] = wxyz.reshape(-1)
         self._people.write_report(values[layout.people])
+        values[layout.measures] = self.measures.summed_up
 
     def write_image(self, image: Array) -> None:
         """Write the complete state into an array of `image_layout`'s size."""
@@ -197,6 +208,7 @@ class Simulation:
         for name, tool in self._tools.items():
             tool.take_over(tuple(image[layout.tools[name]].tolist()))
         self._people.take_over(image[layout.people])
+        self.measures.restart(self.steps)
 
     def state_hash(self) -> str:
         """Return the SHA-256 of everything that the future of the physics depends on."""

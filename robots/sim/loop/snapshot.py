@@ -9,7 +9,9 @@ import numpy as np
 
 from engine.messages import Quaternion, Vector3
 from robots.port import ArmSample, Array
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
+from robots.sim.measures.measure_layout import MeasureLayout
 from robots.sim.people.person_report import PersonSample, person_sample, report_size
 
 # Motion number, progress, three measurements of the device, then the contacts.
@@ -82,20 +84,15 @@ class SnapshotLayout:
         self.quaternions = slice(at + 3 * frames, at + 7 * frames)
         at += 7 * frames
         self.people = slice(at, at + report_size(len(summary.people), body_count=len(summary.bodies)))
-        self.size = self.people.stop
+        self.measure_layout = MeasureLayout(
+            {arm.name: arm.tool.kind if arm.tool is not None else None for arm in summary.arms}
+        )
+        self.measures = slice(self.people.stop, self.people.stop + self.measure_layout.size)
+        self.size = self.measures.stop
 
     def new_array(self) -> Array:
         """Return an array of the right size, zero."""
         return np.zeros(self.size)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ToolReading:
-    """The measurement of a tool: three numbers as its kind says, and the names of the touched bodies, "" for none."""
-
-    time_s: float
-    values: tuple[float, float, float]
-    contacts: tuple[str, ...]
 
 
 class SimSnapshot:
@@ -140,6 +137,10 @@ class SimSnapshot:
         """Motion and contacts of one person."""
         summary = self._layout.summary
         return person_sample(self._values[self._layout.people], summary.people, name, bodies=summary.bodies)
+
+    def measures(self) -> dict[str, float]:
+        """Measures by name, as of a fraction of a second before."""
+        return self._layout.measure_layout.read(self._values[self._layout.measures])
 
     def tool_progress(self, name: str, motion: int) -> float | None:
         """Progress of a tool's motion; None if the tool does not execute this motion."""

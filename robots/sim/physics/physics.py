@@ -125,6 +125,11 @@ class Physics:
         """Return the two geometries of each contact of the last step."""
         return [(a, b) for a, b in self._data.contact.geom.tolist()] if self._data.ncon else []
 
+    @property
+    def contact_count(self) -> int:
+        """The number of contact points of the last step."""
+        return self._data.ncon
+
     def contact_geoms(self) -> NDArray[np.int32]:
         """Return the contact pairs as an array, (m, 2), valid until the next step."""
         return self._data.contact.geom
@@ -176,6 +181,10 @@ class Physics:
         attraction = self._attractions.setdefault(body, np.zeros(6))
         attraction[:3] += force
         attraction[3:] += cross(point - self._data.xipos[body], force)
+
+    def seen_from(self, body: int, other: int) -> Array:
+        """Return the origin of another body in the frame of a body, (3,), at the start of the last step."""
+        return (self._xpos[other] - self._xpos[body]) @ self._rotations[body]
 
     def body_poses(self, bodies: NDArray[np.intp]) -> tuple[Array, Array]:
         """Return positions (m, 3) and quaternions w x y z (m, 4) of bodies at the start of the last step."""

@@ -8,9 +8,10 @@ from typing import Protocol, cast
 
 from engine.errors import CellError, RobotError
 from robots.sim.commands.world_commands import MoveTool
+from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.host.world_host import WorldHost
-from robots.sim.loop.snapshot import ArmSummary, ToolReading
+from robots.sim.loop.snapshot import ArmSummary
 from robots.sim.ports.exclusive_motion import ExclusiveMotion
 from robots.sim.ports.motion_registry import MotionRegistry, SimMotion
 from robots.tool_kinds import load_simulation

@@ -112,6 +112,10 @@ class SimWorld:
         """Return the devices of the world itself, entered, registered and exited with it."""
         return self._devices
 
+    def measures(self) -> dict[str, float]:
+        """Return what arms, tools and contacts have summed up since the open world was opened or restored."""
+        return self._host.measures()
+
     def each_step(self, hook: StepHook, *, busy: Callable[[], bool]) -> None:
         """Call `hook` after every lockstep step; time advances while `busy` returns true."""
         self._hooks.append((hook, busy))

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from typing import Generic, Protocol, TypeVar, cast
+from typing import Generic, Protocol, TypeVar
 
 from engine.bus import SkillBus, Topic
 from engine.messages import Message
-from robots.sim.grip.tool_summary import ToolSummary
+from robots.sim.grip.tool_reading import state_publisher
 from robots.sim.host.world_host import WorldHost
-from robots.sim.loop.snapshot import ArmSummary, SimSnapshot, ToolReading
-from robots.tool_kinds import load_simulation, tool_kind
+from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
+from robots.tool_kinds import tool_kind
 
 State = TypeVar("State", bound=Message)
-
-
-class StatePublisher(Protocol):
-    """How a kind of tool reports its measurements on the bus."""
-
-    def state(self, reading: ToolReading, tool: ToolSummary, *, parts: Collection[str]) -> Message:
-        """Return the state of a tool, of the type that its kind declares; `parts` are the free parts of the world."""
-        ...
 
 
 class ToolTopic(Protocol):
@@ -59,7 +51,7 @@ def tool_topic(bus: SkillBus, host: WorldHost, arm: ArmSummary, *, parts: Collec
     tool, name = arm.tool, arm.name
     if tool is None:
         return None
-    publisher = cast("StatePublisher", load_simulation(tool.kind))
+    publisher = state_publisher(tool.kind)
 
     def state(snapshot: SimSnapshot) -> Message:
         return publisher.state(snapshot.tool(name), tool, parts=parts)

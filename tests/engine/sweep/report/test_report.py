@@ -62,7 +62,7 @@ def test_the_page_is_well_formed_and_loads_nothing(summary: SweepSummary) -> Non
         .replace('<meta charset="utf-8">', "")
         .replace('<meta name="viewport" content="width=device-width, initial-scale=1">', "")
     )
-    assert len(list(root.iter("svg"))) == 2
+    assert len(list(root.iter("svg"))) == 3
     assert all(figure.get("aria-label") for figure in root.iter("svg"))
     assert not [word for word in ("src=", "href=", "url(", "@import") if word in text]
     assert "<script" not in text
@@ -77,6 +77,30 @@ def test_json_and_csv_have_a_row_for_each_run(summary: SweepSummary) -> None:
     assert [row["number"] for row in rows] == [str(row["number"]) for row in document["results"]]
     assert [float(row["parameters.luck"]) for row in rows] == [row["parameters.luck"] for row in document["results"]]
     assert sum(row["success"] == "True" for row in rows) == summary.successes
+
+
+def test_measures_of_successes_and_of_failures_are_apart(summary: SweepSummary) -> None:
+    (duration,) = summary.measures
+    assert duration.name == "run.duration_s"
+    assert duration.successes is not None
+    assert duration.failures is not None
+    assert duration.successes.most < duration.failures.least
+    assert duration.successes.runs == summary.successes
+    text = report(summary, None, Path("s.md")).decode()
+    assert "| run.duration_s | succeeded |" in text
+    assert "| run.duration_s | failed    |" in text
+    page = report(summary, None, Path("s.html")).decode()
+    assert f"Runs by run.duration_s, from {duration.least:.4g} to {duration.most:.4g}" in page
+    rows = json.loads(report(summary, None, Path("s.json")))["results"]
+    assert [row["measures.run.duration_s"] for row in rows] == [row["duration_s"] for row in rows]
+
+
+def test_covered_inputs_are_there(summary: SweepSummary) -> None:
+    (luck,) = summary.inputs.factors
+    assert (luck.address, luck.parts) == ("parameters.luck", 10)
+    assert 3 < luck.covered <= 10
+    assert summary.inputs.pairs == []
+    assert f"| parameters.luck | {luck.covered} of 10 " in report(summary, None, Path("s.md")).decode()
 
 
 def test_times_coverage_and_the_factor_are_there(summary: SweepSummary) -> None:

@@ -1,0 +1,69 @@
+"""Which measures a world has, and where each lies among its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from engine.messages.measures import Measure
+from robots.port import Array
+
+_CELL = (
+    Measure(name="contacts", unit="", reduction="sum"),
+    Measure(name="contact_s", unit="s", reduction="sum"),
+    Measure(name="contact_force_max_n", unit="N", reduction="largest"),
+)
+_ARM = (
+    Measure(name="path_m", unit="m", reduction="sum"),
+    Measure(name="joint_path_rad", unit="rad", reduction="sum"),
+    Measure(name="speed_max_m_s", unit="m/s", reduction="largest"),
+    Measure(name="tracking_error_max_rad", unit="rad", reduction="largest"),
+    Measure(name="force_max_n", unit="N", reduction="largest"),
+    Measure(name="torque_max_nm", unit="N m", reduction="largest"),
+)
+_TOOL = (
+    Measure(name="force_max_n", unit="N", reduction="largest"),
+    Measure(name="force_min_n", unit="N", reduction="least"),
+    Measure(name="slip_max_m", unit="m", reduction="largest"),
+)
+
+
+class MeasureLayout:
+    """The measures of a world in one array: those of the cell, then of each arm and of its tool.
+
+    NaN is what a run has nothing of: the grip force where nothing was held.
+
+    Args:
+        tools: The kind of tool of each arm, None for a bare flange.
+    """
+
+    def __init__(self, tools: Mapping[str, str | None]) -> None:
+        measures: list[Measure] = []
+        self.cell = _add(measures, "cell", _CELL)
+        self.arms: dict[str, slice] = {}
+        self.tools: dict[str, slice] = {}
+        for arm, kind in tools.items():
+            self.arms[arm] = _add(measures, arm, _ARM)
+            if kind is not None:
+                self.tools[arm] = _add(measures, f"{arm}.{kind}", _TOOL)
+        self.measures = tuple(measures)
+        self.size = len(measures)
+
+    def new_values(self) -> Array:
+        """Return the values of a world in which nothing has happened, (`size`,)."""
+        values = np.zeros(self.size)
+        for tool in self.tools.values():
+            values[tool] = np.nan
+        return values
+
+    def read(self, values: Array) -> dict[str, float]:
+        """Return the values by name, without those that a run has nothing of."""
+        pairs = zip(self.measures, values.tolist(), strict=True)
+        return {measure.name: value for measure, value in pairs if value == value}  # noqa: PLR0124 - NaN is not itself
+
+
+def _add(measures: list[Measure], owner: str, kinds: tuple[Measure, ...]) -> slice:
+    first = len(measures)
+    measures.extend(Measure(name=f"{owner}.{kind.name}", unit=kind.unit, reduction=kind.reduction) for kind in kinds)
+    return slice(first, len(measures))
