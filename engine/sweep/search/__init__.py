@@ -12,8 +12,8 @@ _HOMES = {
     "SearchSummary": "engine.sweep.search.search_summary",
     "execute_search": "engine.sweep.search.search_execution",
     "saved_search": "engine.sweep.search.search_execution",
-    "search_markdown": "engine.sweep.search.search_report",
-    "search_report": "engine.sweep.search.search_report",
+    "search_markdown": "engine.sweep.search.report",
+    "search_report": "engine.sweep.search.report",
     "summarize_search": "engine.sweep.search.search_summary",
 }
 

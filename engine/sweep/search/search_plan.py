@@ -70,7 +70,8 @@ class SearchPlan:
                 return
             self.steps.append(step)
         self.target.require_known((step.result for step in taken), where=self._where)
-        self._sampler.learn([ScoredPoint(step.point, self.target.score(step.result)) for step in taken])
+        if len(taken) == len(self._batch):
+            self._sampler.learn([ScoredPoint(step.point, self.target.score(step.result)) for step in taken])
 
 
 def _new_sampler(sweep: Sweep) -> SearchSampler:

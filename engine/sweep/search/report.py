@@ -58,7 +58,7 @@ def found_text(summary: SearchSummary) -> str:
         text += f"; the first one is run #{summary.failing[0].configuration.number}"
     match summary.ended_by:
         case "failures":
-            return f"{text}. The search ended with {failing} failures."
+            return f"{text}. The search ended with {'its first failure' if failing == 1 else f'{failing} failures'}."
         case "time":
             return f"{text}. Its time is over, {planned - done} runs are left."
         case "interrupted":
