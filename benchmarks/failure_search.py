@@ -166,10 +166,11 @@ def first_failures(seeds: int, most: int, optuna_seeds: int) -> None:
 
 def estimates(seeds: int, runs: int) -> None:
     """Print the second table."""
+    print(f"{seeds} searches of {runs} runs\n")
     print(
-        f"| planted | probability | mean estimate of {seeds} searches of {runs} runs | error of the mean | deviation |"
+        "| planted | probability | mean estimate | its error | deviation | at random | intervals that miss |"
     )
-    print("random, deviation | intervals that miss |\n|---|--:|--:|--:|--:|--:|--:|")
+    print("|---|--:|--:|--:|--:|--:|--:|")
     for case in CASES:
         found = [failure_probability(searched(case, case.sweep(seed, runs=runs)).steps, runs) for seed in range(seeds)]
         values = [each.estimate for each in found if each is not None]
