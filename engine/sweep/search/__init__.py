@@ -1,7 +1,8 @@
 """Searches for failures: what has ended decides which configurations of a sweep are executed next.
 
 `execute_search` executes what is left of a search, `saved_search` reads it; `summarize_search` and `search_report` tell
-what it found: failures and where they are, the least margin, and, of cross-entropy, the probability of a failure.
+what it found: failures and where they are, the nearest successes, and, of cross-entropy, the probability of a failure.
+`run_search` does it all, for scripts and notebooks.
 """
 
 from engine.lazy_face import lazy_face
@@ -11,6 +12,7 @@ _HOMES = {
     "SearchProgress": "engine.sweep.search.search_execution",
     "SearchSummary": "engine.sweep.search.search_summary",
     "execute_search": "engine.sweep.search.search_execution",
+    "run_search": "engine.sweep.search.scripted_search",
     "saved_search": "engine.sweep.search.search_execution",
     "search_markdown": "engine.sweep.search.report",
     "search_report": "engine.sweep.search.report",

@@ -8,8 +8,8 @@ import pytest
 
 from engine.document.sweep import Sweep
 from engine.errors import FlexcellError
-from engine.sweep import SweepResults, SweepSubject, WorkerOptions, configurations
-from engine.sweep.search import SearchEnd, SearchProgress, execute_search, saved_search
+from engine.sweep import SweepResults, SweepSubject, WorkerOptions, configurations, run_sweep
+from engine.sweep.search import SearchEnd, SearchProgress, execute_search, run_search, saved_search
 from tests.engine.sweep.luck_project import LuckProject
 from tests.engine.sweep.search.luck_search import ReversedPool, luck_result, luck_search
 
@@ -97,3 +97,14 @@ def test_nothing_is_saved_of_a_search_that_was_not_executed(project: LuckProject
 def test_what_is_saved_of_an_unknown_number_is_refused(project: LuckProject, tmp_path: Path) -> None:
     with pytest.raises(FlexcellError, match="no run has a number `gap_m`"):
         _execute(luck_search(project, towards="least gap_m"), tmp_path / "r.db")
+
+
+@pytest.mark.usefixtures("without_processes")
+def test_a_script_gets_what_was_found_and_no_success_rate(project: LuckProject, tmp_path: Path) -> None:
+    sweep = luck_search(project, stop_after=2)
+    found = run_search(sweep, results=tmp_path / "r.db", workers=1)
+    assert len(found.failing) == 2
+    with pytest.raises(FlexcellError, match="the sweep is a search"):
+        run_sweep(sweep, results=tmp_path / "r.db")
+    with pytest.raises(FlexcellError, match="the sweep has no search"):
+        run_search(project.sweep(), results=tmp_path / "r.db")
