@@ -18,7 +18,7 @@ _LEAST_SHARE = 1e-12
 _LEAST_DEVIATION = 1e-4
 _LEARNED = 0.7
 """The share of what a batch shows in the next distribution; the rest is the last one."""
-_EVEN = 0.1
+_EVEN = 0.2
 """The share of equal probabilities in those of a list: no value is given up."""
 
 

@@ -89,10 +89,8 @@ def _lines(summary: SearchSummary) -> Iterator[str]:
     yield f"{found_text(summary)} {_method(summary)}"
     yield ""
     yield probability_text(summary)
-    for number, cluster in enumerate(summary.clusters, start=1):
-        yield ""
-        yield f"## Cause {number}: {_cause(cluster)}"
-        yield from list(markdown_section("", _REGION_HEAD, map(_region, cluster.regions)))[2:]
+    for cluster in summary.clusters:
+        yield from markdown_section(_cause(cluster), _REGION_HEAD, map(_region, cluster.regions))
     for title, head, found in _tables(summary):
         yield from markdown_section(title, head, found)
     if summary.failing:
@@ -116,8 +114,8 @@ def _sections(summary: SearchSummary, title: str) -> Iterator[str]:
     yield f"<p>{escape(probability_text(summary))}</p>"
     if summary.steps:
         yield f"<h2>How near to failure</h2><figure>{margin_trace(summary)}</figure>"
-    for number, cluster in enumerate(summary.clusters, start=1):
-        yield from html_table(f"Cause {number}: {_cause(cluster)}", _REGION_HEAD, map(_region, cluster.regions))
+    for cluster in summary.clusters:
+        yield from html_table(_cause(cluster), _REGION_HEAD, map(_region, cluster.regions))
         numbers = [
             each.address for each in cluster.regions if summary.sweep.document.factors[each.address].values is None
         ]
@@ -133,6 +131,12 @@ def _sections(summary: SearchSummary, title: str) -> Iterator[str]:
 def _tables(summary: SearchSummary) -> Iterator[Table]:
     addresses = [address for address in summary.sweep.document.factors if address != "seed"]
     failing = summary.failing
+    rare = [cluster.cause for cluster in summary.clusters if not cluster.regions]
+    yield (
+        "Causes of one or two runs",
+        ("runs", "where", "cause", "for example"),
+        [(each.runs, each.at, each.message, ", ".join(f"#{number}" for number in each.examples)) for each in rare],
+    )
     yield (
         f"Failing runs, the first {_FAILING} of {len(failing)}" if len(failing) > _FAILING else "Failing runs",
         ("run", "seed", *addresses, "ended", "cause"),

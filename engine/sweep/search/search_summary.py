@@ -34,10 +34,11 @@ class FactorRegion:
 
 @dataclass(frozen=True, kw_only=True)
 class FailureCluster:
-    """Failing runs with the same root cause, and where they are; the factors that tell most come first."""
+    """Failing runs with the same root cause, and where they are."""
 
     cause: CauseGroup
     regions: Sequence[FactorRegion]
+    """The factors that tell most come first; none of fewer than three runs, whose ranges say nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,6 +81,7 @@ class SearchSummary:
 
 
 _NEAREST = 5
+_LEAST_OF_REGION = 3
 
 
 def summarize_search(end: SearchEnd) -> SearchSummary:
@@ -114,7 +116,8 @@ def _clusters(
         alike.setdefault(result.cause_key, []).append(result)
     clusters: list[FailureCluster] = []
     for group in sorted(alike.values(), key=lambda each: -len(each)):
-        regions = [_region(name, factor, group, results) for name, factor in factors.items() if name != "seed"]
+        told = factors if len(group) >= _LEAST_OF_REGION else {}
+        regions = [_region(name, factor, group, results) for name, factor in told.items() if name != "seed"]
         # The narrower a range for its likelihood, and the fewer runs succeed in it, the more it tells.
         regions.sort(key=lambda each: (each.share, each.passed_inside))
         clusters.extend(FailureCluster(cause=cause, regions=regions) for cause in cause_groups(group))
