@@ -51,7 +51,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
         return RecordingTestFile.from_parent(parent, path=file_path)  # pyright: ignore[reportUnknownMemberType]
     if file_path.suffix == ".yaml" and _is_in(file_path, parent.config, _SWEEPS):
-        from engine.testing.sweep_tests import SweepTestFile, is_sweep_file
+        from engine.sweep.sweep_tests import SweepTestFile, is_sweep_file
 
         if is_sweep_file(file_path):
             return SweepTestFile.from_parent(parent, path=file_path)  # pyright: ignore[reportUnknownMemberType]

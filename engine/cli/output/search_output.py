@@ -10,7 +10,7 @@ from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_n
 from engine.cli.output.sweep_output import append_github_summary
 from engine.sweep.report.words import value_text
 from engine.sweep.search import SearchProgress, SearchSummary, search_markdown
-from engine.sweep.search.report import found_text
+from engine.sweep.search.search_reports import found_text
 
 _EVERY_S = 10.0
 _MINUTE_S = 60.0

@@ -14,8 +14,8 @@ _HOMES = {
     "execute_search": "engine.sweep.search.search_execution",
     "run_search": "engine.sweep.search.scripted_search",
     "saved_search": "engine.sweep.search.search_execution",
-    "search_markdown": "engine.sweep.search.report",
-    "search_report": "engine.sweep.search.report",
+    "search_markdown": "engine.sweep.search.search_reports",
+    "search_report": "engine.sweep.search.search_reports",
     "summarize_search": "engine.sweep.search.search_summary",
 }
 
