@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from engine.sweep.report.words import value_text
 from engine.sweep.shrinking import ShrinkProgress, Shrunk
 
 _EVERY = 5
@@ -21,7 +22,7 @@ def shrunk_text(found: Shrunk) -> str:
     """Return what is left of a failing configuration, a line for each factor."""
     lines = [f"{found.result.label}: {found.result.cause}"]
     for address, (nominal, value) in found.changed.items():
-        near = f"; with {found.passes[address]} it does not fail so" if address in found.passes else ""
+        near = f"; with {value_text(found.passes[address])} it does not fail so" if address in found.passes else ""
         lines.append(f"  {address}: {value} instead of {nominal}{near}")
     seed = found.result.configuration.seed
     if not found.changed:
