@@ -167,9 +167,7 @@ def first_failures(seeds: int, most: int, optuna_seeds: int) -> None:
 def estimates(seeds: int, runs: int) -> None:
     """Print the second table."""
     print(f"{seeds} searches of {runs} runs\n")
-    print(
-        "| planted | probability | mean estimate | its error | deviation | at random | intervals that miss |"
-    )
+    print("| planted | probability | mean estimate | its error | deviation | at random | intervals that miss |")
     print("|---|--:|--:|--:|--:|--:|--:|")
     for case in CASES:
         found = [failure_probability(searched(case, case.sweep(seed, runs=runs)).steps, runs) for seed in range(seeds)]
