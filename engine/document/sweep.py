@@ -88,8 +88,8 @@ class SearchSpec(StrictModel, frozen=True, kw_only=True):
     """A search for failures instead of a design: what has ended decides which configurations are executed next.
 
     The first `batch` configurations are those of a random design; each later batch is drawn nearer to the runs that
-    failed, or came nearest to it. `towards` names the number that tells how near a run that succeeded is: `failure`
-    takes its duration, the longer the nearer. A run that fails is always nearer. The same seed finds the same
+    failed, or came nearest to it. `towards` names the number that tells how near a run that succeeded is; with
+    `failure` none does. A run that fails is always nearer. The same seed finds the same
     configurations, with any number of workers.
 
     Of the method `cross_entropy`, `elite` is the share of a batch that the

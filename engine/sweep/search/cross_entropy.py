@@ -20,7 +20,7 @@ _LEAST_ELITES = 4
 _PATIENCE = 3
 """Batches without a nearer run after which the search begins anew: its number may mislead, or it is in a dead end."""
 _WIDE = 1.5
-"""The deviation with which it begins anew: many behaviors fail at the ends of their factors."""
+"""The deviation while nothing is known, and with which it begins anew: many behaviors fail at the ends of factors."""
 
 
 class CrossEntropySampler:
@@ -61,7 +61,9 @@ class CrossEntropySampler:
             self._proposals = written_proposals(self._factors, deviation=_WIDE)
             return
         elites, weights = self._elites()
-        if elites:
+        if not elites:
+            self._proposals = written_proposals(self._factors, deviation=_WIDE)
+        else:
             columns = zip(*(each.point.shares for each in elites), strict=True)
             self._proposals = tuple(
                 proposal.fitted(list(shares), weights)
@@ -76,7 +78,9 @@ class CrossEntropySampler:
         if len(failed) > count:
             # Enough of them to know where failures are likely, and not only where there is one.
             return failed, [each.point.weight or 1.0 for each in failed]
-        nearest = [each for each in ordered if each.score < math.inf][:count]
+        # A run that is as far as the farthest says nothing.
+        farthest = ordered[-1].score
+        nearest = [each for each in ordered if each.score < farthest][:count]
         return nearest, [1.0] * len(nearest)
 
     def _point(self, number: int) -> SearchPoint:

@@ -16,6 +16,8 @@ from engine.document.sweep import Factor
 _STANDARD = NormalDist()
 _LEAST_SHARE = 1e-12
 _LEAST_DEVIATION = 1e-4
+_FEW = 3
+"""Points from which on a deviation is learned."""
 _LEARNED = 0.7
 """The share of what a batch shows in the next distribution; the rest is the last one."""
 _EVEN = 0.2
@@ -49,7 +51,9 @@ class NumberProposal:
         total = sum(weights)
         mean = sum(weight * score for weight, score in zip(weights, scores, strict=True)) / total
         squares = sum(weight * (score - self.mean) ** 2 for weight, score in zip(weights, scores, strict=True))
-        deviation = _LEARNED * math.sqrt(squares / total) + (1.0 - _LEARNED) * self.deviation
+        deviation = self.deviation
+        if len(shares) >= _FEW:
+            deviation = _LEARNED * math.sqrt(squares / total) + (1.0 - _LEARNED) * self.deviation
         return NumberProposal(
             mean=_LEARNED * mean + (1.0 - _LEARNED) * self.mean, deviation=max(deviation, _LEAST_DEVIATION)
         )

@@ -45,7 +45,8 @@ def margin_trace(summary: SearchSummary) -> str:
         began += batch.runs
         x = place_x(began / total)
         marks.append(f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}"/>')
-    caption = f"{escape(target.name)} of each run; the line is the nearest of a batch"
+    first = "nearest" if target.guides else "longest"
+    caption = f"{escape(target.name)} of each run; the line is the {first} of a batch"
     texts = (
         f'<text x="{LEFT - 6}" y="{height(highest) + 4:.1f}" text-anchor="end">{value_text(highest)}</text>'
         f'<text x="{LEFT - 6}" y="{height(lowest) + 4:.1f}" text-anchor="end">{value_text(lowest)}</text>'

@@ -143,7 +143,7 @@ def _tables(summary: SearchSummary) -> Iterator[Table]:
         [(*_row(each, addresses), each.label, each.reason) for each in failing[:_FAILING]],
     )
     yield (
-        "Nearest successes",
+        "Nearest successes" if summary.target.guides else "Successes that took longest",
         ("run", "seed", *addresses, summary.target.text),
         [(*_row(each, addresses), value_text(summary.target.value(each))) for each in summary.nearest],
     )
@@ -162,7 +162,8 @@ def _row(result: TrialResult, addresses: list[str]) -> tuple[object, ...]:
 
 def _method(summary: SearchSummary) -> str:
     name = "cross-entropy" if summary.spec.method == "cross_entropy" else "optuna"
-    return f"Searched by {name} towards {summary.target.text} of runs that succeed, in {len(summary.batches)} batches."
+    towards = f"{summary.target.text} of runs that succeed" if summary.target.guides else "failures alone"
+    return f"Searched by {name} towards {towards}, in {len(summary.batches)} batches."
 
 
 def _cause(cluster: FailureCluster) -> str:

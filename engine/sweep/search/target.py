@@ -21,12 +21,14 @@ class SearchTarget:
     name: str
     sign: float
     """1 where the least value is nearest to failure, -1 where the largest is."""
+    guides: bool = True
+    """Whether the number says how near a success is; else it is reported only, and all successes are equally near."""
 
     @classmethod
     def parse(cls, towards: str) -> Self:
         """Return the target that a valid `search.towards` names."""
         if towards == "failure":
-            return cls(name=DURATION, sign=-1.0)
+            return cls(name=DURATION, sign=-1.0, guides=False)
         direction, _, name = towards.partition(" ")
         return cls(name=name.strip(), sign=1.0 if direction == "least" else -1.0)
 
@@ -43,6 +45,8 @@ class SearchTarget:
         """Return how near a run is to failure: -inf for one that failed, inf for one of which nothing is known."""
         if is_failure(result):
             return -math.inf
+        if result.success and not self.guides:
+            return 0.0
         value = self.value(result) if result.success else None
         return self.sign * value if value is not None and math.isfinite(value) else math.inf
 

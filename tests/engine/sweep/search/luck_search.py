@@ -18,7 +18,7 @@ def luck_search(project: LuckProject, *, time: float | None = None, **search: ob
     """Return a search for runs with too much luck, which take longest."""
     factors = {"parameters.luck": {"uniform": [0.0, 1.0]}, "parameters.otherwise": {"values": ["miss", "raise"]}}
     keys = {"time": time} if time is not None else {}
-    spec = {"runs": 60, "batch": 10, "elite": 0.4, **search}
+    spec = {"runs": 60, "batch": 10, "elite": 0.4, "towards": "most duration_s", **search}
     return project.sweep(factors=factors, parameters={"rate": LIMIT}, search=spec, **keys)
 
 

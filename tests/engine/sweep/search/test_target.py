@@ -28,10 +28,14 @@ def test_a_failure_is_nearer_than_every_success_and_less_is_nearer() -> None:
     assert scores == [-math.inf, 0.1, 0.3]
 
 
-@pytest.mark.parametrize("towards", ["failure", "most duration_s"])
-def test_a_search_for_failures_takes_long_runs_for_near_ones(towards: str) -> None:
-    target = SearchTarget.parse(towards)
+def test_the_most_of_a_number_may_be_nearest() -> None:
+    target = SearchTarget.parse("most duration_s")
     assert (target.text, target.score(_result())) == ("most duration_s", -7.0)
+
+
+def test_without_a_number_all_successes_are_equally_near() -> None:
+    target = SearchTarget.parse("failure")
+    assert target.score(_result(gap_m=0.1)) == target.score(_result()) > target.score(_result(success=False))
 
 
 def test_a_run_without_the_number_is_far_and_a_refused_one_is_no_failure() -> None:
