@@ -1,8 +1,9 @@
-"""The pytest plugin `flexcell`: replays recordings as tests, and runs behaviors in tests.
+"""The pytest plugin `flexcell`: recordings and sweeps as tests, and behaviors in tests.
 
-Every `*.mcap` in the folders of the ini option `flexcell_recordings` or of `--flexcell-recordings`
-is a test that replays it; its failure is the first difference. Fixtures: `flexcell_run` runs a
-behavior file headless in virtual time, `flexcell_replay` replays a recording.
+Every `*.mcap` in the folders of the ini option `flexcell_recordings` or of `--flexcell-recordings` is a test that
+replays it; its failure is the first difference. Every sweep document in those of `flexcell_sweeps` or
+`--flexcell-sweeps` is a test that executes it and fails unless it reaches what it requires. Fixtures: `flexcell_run`
+runs a behavior file headless in virtual time, `flexcell_replay` replays a recording.
 
 The engine is imported on use, not at the top: pytest loads the plugin in every
 environment that has this package, mostly without using it. The project file counts that stands in the
@@ -16,37 +17,45 @@ from pathlib import Path
 
 import pytest
 
-_OPTION = "flexcell_recordings"
+_RECORDINGS, _SWEEPS = "flexcell_recordings", "flexcell_sweeps"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare the options for recording folders."""
-    parser.addini(_OPTION, "folders with flexcell recordings that are replayed as tests", type="paths", default=[])
-    parser.getgroup("flexcell").addoption(
-        "--flexcell-recordings",
-        action="append",
-        default=[],
-        dest=_OPTION,
-        metavar="DIR",
-        help="replay the flexcell recordings in this folder as tests; may be repeated",
-    )
+    """Declare the options for folders of recordings and of sweeps."""
+    group = parser.getgroup("flexcell")
+    for option, what in ((_RECORDINGS, "flexcell recordings, replayed"), (_SWEEPS, "flexcell sweeps, executed")):
+        parser.addini(option, f"folders with {what} as tests", type="paths", default=[])
+        group.addoption(
+            f"--{option.replace('_', '-')}",
+            action="append",
+            default=[],
+            dest=option,
+            metavar="DIR",
+            help=f"a folder with {what} as tests; may be repeated",
+        )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker, and collect the folders given on the command line."""
+    """Register the markers, and collect the folders given on the command line."""
     config.addinivalue_line("markers", "flexcell_replay: a recording that is replayed; set automatically")
-    for folder in _given(config):
+    config.addinivalue_line("markers", "flexcell_sweep: a sweep that is executed; set automatically")
+    for folder in (*_given(config, _RECORDINGS), *_given(config, _SWEEPS)):
         if folder not in config.args:
             config.args.append(folder)
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """Collect a recording in one of the folders."""
-    if file_path.suffix != ".mcap" or not any(file_path.is_relative_to(folder) for folder in _folders(parent.config)):
-        return None
-    from engine.testing.recording_tests import RecordingTestFile
+    """Collect a recording or sweep in one of the folders."""
+    if file_path.suffix == ".mcap" and _is_in(file_path, parent.config, _RECORDINGS):
+        from engine.testing.recording_tests import RecordingTestFile
 
-    return RecordingTestFile.from_parent(parent, path=file_path)  # pyright: ignore[reportUnknownMemberType]
+        return RecordingTestFile.from_parent(parent, path=file_path)  # pyright: ignore[reportUnknownMemberType]
+    if file_path.suffix == ".yaml" and _is_in(file_path, parent.config, _SWEEPS):
+        from engine.sweep.sweep_tests import SweepTestFile, is_sweep_file
+
+        if is_sweep_file(file_path):
+            return SweepTestFile.from_parent(parent, path=file_path)  # pyright: ignore[reportUnknownMemberType]
+    return None
 
 
 @pytest.fixture
@@ -67,11 +76,12 @@ def flexcell_replay(pytestconfig: pytest.Config) -> object:
     return partial(replay_file, catalogue=load_states(pytestconfig.rootpath))
 
 
-def _folders(config: pytest.Config) -> list[Path]:
-    kept: list[Path] = config.getini(_OPTION)
-    return [folder.resolve() for folder in (*kept, *(config.invocation_params.dir / each for each in _given(config)))]
+def _is_in(file: Path, config: pytest.Config, option: str) -> bool:
+    kept: list[Path] = config.getini(option)
+    folders = (*kept, *(config.invocation_params.dir / each for each in _given(config, option)))
+    return any(file.is_relative_to(folder.resolve()) for folder in folders)
 
 
-def _given(config: pytest.Config) -> list[str]:
-    given: list[str] = config.getoption(_OPTION) or []
+def _given(config: pytest.Config, option: str) -> list[str]:
+    given: list[str] = config.getoption(option) or []
     return given

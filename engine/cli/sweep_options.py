@@ -20,6 +20,8 @@ from engine.document.text.yaml_source import DocumentSource, load_source, parse_
 from engine.sweep.factor_text import parse_factor
 
 _PLAIN = ("runs", "time", "width", "require", "design", "seed", "confidence")
+NO_SEARCH = "none"
+"""The text of `--search` with which there is none."""
 Data = dict[str, object]
 
 
@@ -37,6 +39,10 @@ class SweepOverrides:
     cell: Path | None = None
     parameters: Sequence[str] = ()
     confidence: float | None = None
+    search: str | None = None
+    """What is searched for; `none` for the design of a document that has a search too."""
+    method: str | None = None
+    stop_after: int | None = None
 
 
 def read_sweep(file: Path, options: SweepOverrides) -> Sweep:
@@ -51,6 +57,7 @@ def read_sweep(file: Path, options: SweepOverrides) -> Sweep:
         value = getattr(options, name)
         if value is not None:
             data[name] = value
+    _with_search(data, options)
     if options.cell is not None:
         data["cell"] = os.path.relpath(options.cell.resolve(), file.parent.resolve())
     if options.vary:
@@ -59,6 +66,19 @@ def read_sweep(file: Path, options: SweepOverrides) -> Sweep:
         given = read_parameters(options.parameters, _declared(file, data))
         data["parameters"] = {**cast("Data", data.get("parameters") or {}), **given}
     return sweep_of_source(replace(source, data=data), file=file)
+
+
+def _with_search(data: Data, options: SweepOverrides) -> None:
+    """Put the options of a search into a document; `runs` are then those of the search."""
+    if options.search == NO_SEARCH:
+        data.pop("search", None)
+        return
+    given = {"towards": options.search, "method": options.method, "stop_after": options.stop_after}
+    written = cast("Data", data.get("search") or {})
+    changed = {**written, **{name: value for name, value in given.items() if value is not None}}
+    if changed or "search" in data:
+        runs = {"runs": options.runs} if options.runs is not None else {}
+        data["search"] = {**changed, **runs}
 
 
 def _source(file: Path) -> DocumentSource:

@@ -84,6 +84,30 @@ class PointsFile(StrictModel, frozen=True, kw_only=True):
     csv: Annotated[str, Meta(min_length=1, description="CSV file, relative to this document")]
 
 
+class SearchSpec(StrictModel, frozen=True, kw_only=True):
+    """A search for failures instead of a design: what has ended decides which configurations are executed next.
+
+    The first `batch` configurations are those of a random design; each later batch is drawn nearer to the runs that
+    failed, or came nearest to it. `towards` names the number that tells how near a run that succeeded is; with
+    `failure` none does. A run that fails is always nearer. The same seed finds the same
+    configurations, with any number of workers.
+
+    Of the method `cross_entropy`, `elite` is the share of a batch that the
+    next one is drawn around, and `random_share` the share of each batch that is drawn at random all the same: it finds
+    what the number does not point at, and bounds the weight of a run in the estimate of the failure probability.
+    """
+
+    towards: Annotated[
+        str, Meta(pattern=r"^(failure|(least|most) +\S+)$", description="`failure`, `least NAME` or `most NAME`")
+    ] = "failure"
+    method: Literal["cross_entropy", "optuna"] = "cross_entropy"
+    runs: Annotated[int, Meta(ge=1, le=1_000_000, description="Runs, at least 1")] = 200
+    batch: Annotated[int, Meta(ge=4, le=100_000, description="Runs between which nothing is learned")] = 20
+    stop_after: Annotated[int, Meta(ge=1, description="Failures after which the search ends")] | None = None
+    elite: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.2
+    random_share: Annotated[float, Meta(ge=0.01, le=1.0)] = 0.2
+
+
 class SweepDocument(StrictModel, frozen=True, kw_only=True):
     """A sweep as written.
 
@@ -94,7 +118,8 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
     Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts
     that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of
     the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its
-    time on the clock of the run.
+    time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is
+    required of a success rate is then not decided.
     """
 
     flexcell: Literal[1]
@@ -108,6 +133,7 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
     substitutes: Annotated[str, Meta(min_length=1, description="Substitutes document of all runs")] | None = None
     factors: dict[Address, Factor] = {}
     design: Design | PointsFile = "random"
+    search: SearchSpec | None = None
     seed: Annotated[int, Meta(ge=0, le=2**53)] = 0
     placement_noise: bool = True
     runs: Annotated[int, Meta(ge=1, le=10_000_000, description="Runs, at least 1")] = 100
@@ -187,12 +213,27 @@ def sweep_of_source(source: DocumentSource, *, file: Path) -> Sweep:
             where=source.position(("width",), of_key=True),
             hint="`design: random` and `interval: anytime`, or remove `width`",
         )
+    _require_searchable(document, source)
     for address, factor in document.factors.items():
         path: DataPath = ("factors", address)
         _require_one_distribution(source, path, factor)
         _require_order(source, path, factor)
         _require_target(document, source, path, address, factor)
     return Sweep(document=document, file=file, source=source)
+
+
+def _require_searchable(document: SweepDocument, source: DocumentSource) -> None:
+    if document.search is None:
+        return
+    where = source.position(("search",), of_key=True)
+    if document.design != "random":
+        raise DocumentError(
+            "a search starts with configurations of a random design",
+            where=where,
+            hint="`design: random`, or remove `search`",
+        )
+    if not set(document.factors) - {"seed"}:
+        raise DocumentError("a search has nothing to vary", where=where, hint="`factors: {...}`; seeds have no order")
 
 
 def _require_one_distribution(source: DocumentSource, path: DataPath, factor: Factor) -> None:

@@ -14,13 +14,14 @@ from engine.sweep.trial_result import TrialResult
 _FILES = ("faults", "substitutes")
 
 
-def case_document(sweep: Sweep, result: TrialResult, file: Path) -> bytes:
+def case_document(sweep: Sweep, result: TrialResult, file: Path, *, placement_noise: bool | None = None) -> bytes:
     """Return a sweep document with the configuration of a result, which requires that it succeeds.
 
     Args:
         sweep: The sweep that the result is of.
         result: The result.
         file: Where the document is written: its paths are relative to it.
+        placement_noise: Whether the result is with placement noise; by default as in the sweep.
     """
     document, configuration = sweep.document, result.configuration
 
@@ -48,5 +49,6 @@ def case_document(sweep: Sweep, result: TrialResult, file: Path) -> bytes:
         "seed": {"values": [configuration.seed]},
         **{address: {"values": [value]} for address, value in values.items()},
     }
-    data |= {"design": "grid", "runs": 1, "require": "success >= 1", "placement_noise": document.placement_noise}
+    noise = document.placement_noise if placement_noise is None else placement_noise
+    data |= {"design": "grid", "runs": 1, "require": "success >= 1", "placement_noise": noise}
     return write_yaml(msgspec.to_builtins(data)).encode()

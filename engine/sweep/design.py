@@ -33,12 +33,12 @@ def configurations(sweep: Sweep) -> Sequence[Configuration]:
     if isinstance(document.design, PointsFile):
         rows = list(_read_points(sweep, document.design.csv))
         # A file is the whole design: its rows are run once, unless `runs` asks for fewer.
-        return [_configuration(sweep, number, row) for number, row in enumerate(rows[: document.runs])]
+        return [configuration_of(document.seed, number, row) for number, row in enumerate(rows[: document.runs])]
     match document.design:
         case "random":
-            points = _random(document.seed, document.runs, len(factors))
+            points = [random_shares(document.seed, number, len(factors)) for number in range(document.runs)]
         case "grid":
-            return [_configuration(sweep, number, row) for number, row in _grid(factors, document.runs)]
+            return [configuration_of(document.seed, number, row) for number, row in _grid(factors, document.runs)]
         case "latin_hypercube":
             points = _quasi_random(qmc.LatinHypercube(max(len(factors), 1), rng=document.seed), document.runs)
         case "sobol":
@@ -46,8 +46,8 @@ def configurations(sweep: Sweep) -> Sequence[Configuration]:
             # Drawn by the power of two, as its balance needs it: a longer sweep then starts with a shorter one.
             points = _quasi_random(engine, 2 ** math.ceil(math.log2(document.runs)))[: document.runs]
     return [
-        _configuration(
-            sweep,
+        configuration_of(
+            document.seed,
             number,
             {name: value_at(factor, share) for (name, factor), share in zip(factors.items(), point, strict=False)},
         )
@@ -60,19 +60,17 @@ def run_seed(sweep_seed: int, number: int) -> int:
     return int.from_bytes(sha256(f"{sweep_seed}/{number}".encode()).digest()[:8]) >> 11
 
 
-def _configuration(sweep: Sweep, number: int, values: Mapping[str, object]) -> Configuration:
+def random_shares(sweep_seed: int, number: int, dimensions: int) -> list[float]:
+    """Return the probabilities at which a random design takes the values of a run, whatever the number of runs."""
+    source = random.Random(f"{sweep_seed}/{number}/factors")  # noqa: S311 - no secret
+    return [source.random() for _ in range(dimensions)]
+
+
+def configuration_of(sweep_seed: int, number: int, values: Mapping[str, object]) -> Configuration:
+    """Return a configuration; where `seed` is no factor, it has a seed of its own."""
     given = values.get("seed")
-    seed = given if isinstance(given, int) else run_seed(sweep.document.seed, number)
+    seed = given if isinstance(given, int) else run_seed(sweep_seed, number)
     return Configuration(number=number, seed=seed, values=values)
-
-
-def _random(seed: int, runs: int, dimensions: int) -> list[list[float]]:
-    # A generator for each run: the values of a run do not depend on how many there are.
-    return [[source.random() for _ in range(dimensions)] for source in _sources(seed, runs)]
-
-
-def _sources(seed: int, runs: int) -> Iterator[random.Random]:
-    return (random.Random(f"{seed}/{number}/factors") for number in range(runs))  # noqa: S311 - no secret
 
 
 def _quasi_random(engine: qmc.QMCEngine, count: int) -> list[list[float]]:

@@ -6,7 +6,7 @@ import inspect
 import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -86,6 +86,15 @@ class SweepSubject:
         elif found is None and kind == "displace":
             found = 0.0
         return found if found is not None else nominal(factor)
+
+    def without_placement_noise(self) -> Self:
+        """Return the same subject with each part where the cell has it."""
+        document = msgspec.structs.replace(self.sweep.document, placement_noise=False)
+        return replace(
+            self,
+            sweep=replace(self.sweep, document=document),
+            versions={**self.versions, "placement_noise": str(document.placement_noise)},
+        )
 
     @classmethod
     def load(cls, sweep: Sweep) -> Self:

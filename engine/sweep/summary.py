@@ -130,7 +130,7 @@ def summarize(end: SweepEnd) -> SweepSummary:
         verdict=count.verdict,
         ended_by=end.ended_by,
         outcomes=_outcomes(results, document.confidence),
-        causes=_causes(results),
+        causes=cause_groups(results),
         duration_s=_quantiles("run", [each.duration_s for each in results if each.success]),
         nodes=_node_times(results),
         outputs=_outputs(results),
@@ -159,7 +159,8 @@ def _outcomes(results: Sequence[TrialResult], confidence: float) -> list[Outcome
     ]
 
 
-def _causes(results: Sequence[TrialResult]) -> list[CauseGroup]:
+def cause_groups(results: Sequence[TrialResult]) -> list[CauseGroup]:
+    """Return the failed runs grouped by root cause, the most frequent first."""
     found: dict[tuple[str, str], list[TrialResult]] = {}
     for result in results:
         if not result.success:

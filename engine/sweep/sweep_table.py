@@ -9,6 +9,7 @@ from pathlib import Path
 
 from engine.document.duration import seconds
 from engine.document.sweep import Sweep, load_sweep
+from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.comparison import Comparison
@@ -73,6 +74,9 @@ def run_sweep(
         FlexcellError: the sweep or a document that it names has errors, or results cannot be saved.
     """
     loaded = sweep if isinstance(sweep, Sweep) else load_sweep(sweep)
+    if loaded.document.search is not None:
+        hint = "`engine.sweep.search.run_search`, or remove `search`"
+        raise DocumentError("the sweep is a search, which has no success rate", where=loaded.file, hint=hint)
     subject = SweepSubject.load(loaded)
     timeout_s = seconds(loaded.document.timeout)
     options = (

@@ -11,8 +11,12 @@ import typer
 from typer.core import TyperGroup
 
 from engine.cli.exit_code import ExitCode
+from engine.cli.failure_search import report_search, require_no_search, search_exit_code
 from engine.cli.output.output_file import prepare, write
+from engine.cli.output.search_output import SearchPrinter
+from engine.cli.output.shrink_output import show_shrinking, shrunk_text
 from engine.cli.output.sweep_output import SweepPrinter, write_github_summary, write_sweep_junit
+from engine.cli.sweep_choice import chosen_result, existing_results
 from engine.cli.sweep_execution_options import ClusterAddress, execution_options
 from engine.cli.sweep_options import SweepOverrides, read_sweep
 from engine.document.duration import seconds
@@ -24,7 +28,6 @@ from engine.sweep import (
     SweepResults,
     SweepSubject,
     SweepSummary,
-    TrialResult,
     Trials,
     compare_with_baseline,
     configurations,
@@ -34,6 +37,7 @@ from engine.sweep import (
 )
 from engine.sweep.case_file import case_document
 from engine.sweep.report import markdown, report
+from engine.sweep.search import execute_search, saved_search, summarize_search
 from engine.sweep.shrinking import same_cause, same_outcome
 from engine.sweep.shrinking import shrink as shrink_failure
 from engine.sweep.sweep_table import DEFAULT_RESULTS
@@ -83,6 +87,15 @@ Width = Annotated[
     float | None, typer.Option(help="End when the interval of the success rate is at most so wide.", min=0.0, max=1.0)
 ]
 Confidence = Annotated[float | None, typer.Option(help="Confidence of intervals.", min=0.5, max=0.9999)]
+Search = Annotated[
+    str | None,
+    typer.Option(
+        help="Search for failures instead: `failure`, or towards a number of runs that succeed, `least NAME` or `most "
+        "NAME`; `none` for the design of a document with a search."
+    ),
+]
+Method = Annotated[Literal["cross_entropy", "optuna"] | None, typer.Option(help="With --search: how it chooses runs.")]
+StopAfter = Annotated[int | None, typer.Option(help="With --search: failures after which it ends.", min=1)]
 Baseline = Annotated[
     Path | None, typer.Option(help="Compare with another version that has executed this sweep into this file.")
 ]
@@ -103,9 +116,12 @@ def run(
     width: Width = None,
     require: Require = None,
     design: Design = None,
+    search: Search = None,
+    method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
     parameter: Parameter = None,
+    stop_after: StopAfter = None,
     confidence: Confidence = None,
     results: Results = DEFAULT_RESULTS,
     workers: Annotated[
@@ -157,12 +173,23 @@ def run(
         cell=cell,
         parameters=tuple(parameter or ()),
         confidence=confidence,
+        search=search,
+        method=method,
+        stop_after=stop_after,
     )
     sweep = read_sweep(file, overrides)
-    planned = configurations(sweep)
-    subject = SweepSubject.load(sweep)
     limits = ProcessLimits(timeout_s=seconds(sweep.document.timeout), memory_bytes=memory * _MEBIBYTE)
     options = execution_options(cluster, workers, limits)
+    if sweep.document.search is not None:
+        require_no_search(shard=shard, baseline=baseline)
+        subject = SweepSubject.load(sweep)
+        with SweepResults.open(results) as saved:
+            show = SearchPrinter(quiet=quiet or json).show
+            found = summarize_search(execute_search(subject, saved, options, again=again, show=show))
+        report_search(found, file, report_ or (), junit, json=json)
+        raise typer.Exit(search_exit_code(found))
+    planned = configurations(sweep)
+    subject = SweepSubject.load(sweep)
     printer = SweepPrinter(quiet=quiet or json)
     with SweepResults.open(results) as saved, printer:
         end = execute_sweep(subject, planned, saved, options, shard=_shard(shard), again=again, show=printer.show)
@@ -178,9 +205,12 @@ def report_saved(
     runs: Runs = None,
     require: Require = None,
     design: Design = None,
+    search: Search = None,
+    method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
     parameter: Parameter = None,
+    stop_after: StopAfter = None,
     confidence: Confidence = None,
     results: Results = DEFAULT_RESULTS,
     baseline: Baseline = None,
@@ -203,9 +233,18 @@ def report_saved(
         cell=cell,
         parameters=tuple(parameter or ()),
         confidence=confidence,
+        search=search,
+        method=method,
+        stop_after=stop_after,
     )
     sweep = read_sweep(file, overrides)
-    with _existing(results) as saved:
+    if sweep.document.search is not None:
+        require_no_search(shard=None, baseline=baseline)
+        with existing_results(results) as saved:
+            found = summarize_search(saved_search(SweepSubject.load(sweep), saved))
+        report_search(found, file, output or (), junit, json=json)
+        raise typer.Exit(search_exit_code(found))
+    with existing_results(results) as saved:
         end = saved_sweep(SweepSubject.load(sweep), configurations(sweep), saved)
     summary, comparison = _compared(end, baseline, margin)
     _report(summary, comparison, file, output or (), junit, json=json)
@@ -230,6 +269,8 @@ def rerun(
     vary: Vary = None,
     runs: Runs = None,
     design: Design = None,
+    search: Search = None,
+    method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
     parameter: Parameter = None,
@@ -239,9 +280,16 @@ def rerun(
     """Execute one configuration again in this process, and say whether it ends as its saved result."""
     prepare(record)
     overrides = SweepOverrides(
-        vary=tuple(vary or ()), runs=runs, design=design, seed=seed, cell=cell, parameters=tuple(parameter or ())
+        vary=tuple(vary or ()),
+        runs=runs,
+        design=design,
+        seed=seed,
+        cell=cell,
+        parameters=tuple(parameter or ()),
+        search=search,
+        method=method,
     )
-    subject, saved = _chosen(file, overrides, results, number)
+    subject, saved = chosen_result(file, overrides, results, number)
     result = Trials(subject).run(saved.configuration, record=record)
     same = (result.label, result.events_sha256) == (saved.label, saved.events_sha256)
     sys.stdout.write(f"#{number}: {result.label}{f': {result.cause}' if result.cause else ''}\n")
@@ -256,6 +304,8 @@ def shrink(
     vary: Vary = None,
     runs: Runs = None,
     design: Design = None,
+    search: Search = None,
+    method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
     parameter: Parameter = None,
@@ -273,48 +323,36 @@ def shrink(
     """Find the smallest change from nominal with which a run still fails as this one did."""
     prepare(record, case)
     overrides = SweepOverrides(
-        vary=tuple(vary or ()), runs=runs, design=design, seed=seed, cell=cell, parameters=tuple(parameter or ())
+        vary=tuple(vary or ()),
+        runs=runs,
+        design=design,
+        seed=seed,
+        cell=cell,
+        parameters=tuple(parameter or ()),
+        search=search,
+        method=method,
     )
-    subject, failing = _chosen(file, overrides, results, number)
-    trials = Trials(subject)
+    subject, failing = chosen_result(file, overrides, results, number)
+    noisy = Trials(subject)
+    quiet = Trials(subject.without_placement_noise()) if subject.sweep.document.placement_noise else None
     found = shrink_failure(
-        failing, subject.sweep.document.factors, subject.nominal, trials.run, same=_SAME[same], most_runs=most
+        failing,
+        subject.sweep.document.factors,
+        subject.nominal,
+        noisy.run,
+        quiet=quiet.run if quiet is not None else None,
+        same=_SAME[same],
+        most_runs=most,
+        show=show_shrinking,
     )
-    sys.stdout.write(f"{found.result.label}: {found.result.cause}\n")
-    for address, (nominal, value) in found.changed.items():
-        near = f"; with {found.passes[address]} it does not fail so" if address in found.passes else ""
-        sys.stdout.write(f"  {address}: {value} instead of {nominal}{near}\n")
-    if not found.changed:
-        sys.stdout.write(f"  nothing is varied: seed {failing.configuration.seed} alone fails\n")
-    sys.stdout.write(f"found in {found.runs} runs\n")
+    sys.stdout.write(shrunk_text(found))
     if record is not None:
-        trials.run(found.result.configuration, record=record)
+        (noisy if found.placement_noise or quiet is None else quiet).run(found.result.configuration, record=record)
         sys.stdout.write(f"recorded to {record}\n")
     if case is not None:
-        write(case, case_document(subject.sweep, found.result, case))
+        noise = found.placement_noise and quiet is not None
+        write(case, case_document(subject.sweep, found.result, case, placement_noise=noise))
         sys.stdout.write(f"`flexcell sweep {case}` fails until it is mended\n")
-
-
-def _chosen(file: Path, overrides: SweepOverrides, results: Path, number: int) -> tuple[SweepSubject, TrialResult]:
-    """Return the subject of a sweep and one of its saved results."""
-    sweep = read_sweep(file, overrides)
-    planned = configurations(sweep)
-    subject = SweepSubject.load(sweep)
-    if number >= len(planned):
-        raise FlexcellError(f"the sweep has no configuration {number}", where=file, hint=f"0 to {len(planned) - 1}")
-    with _existing(results) as saved:
-        key = planned[number].key(subject.hash)
-        found = saved.of(subject.hash, [key]).get(key)
-    if found is None:
-        hint = "run the sweep first, with the same options; results of other versions are kept apart"
-        raise FlexcellError(f"configuration {number} has no result in {results}", where=file, hint=hint)
-    return subject, found
-
-
-def _existing(results: Path) -> SweepResults:
-    if not results.is_file():
-        raise FlexcellError("there are no results yet", where=results, hint="`flexcell sweep FILE` executes a sweep")
-    return SweepResults.open(results)
 
 
 def _shard(text: str | None) -> Shard | None:
@@ -332,7 +370,7 @@ def _compared(end: SweepEnd, baseline: Path | None, margin: float | None) -> tup
         if margin is not None:
             raise FlexcellError("--margin requires --baseline", hint="--baseline FILE has the results to compare with")
         return summary, None
-    with _existing(baseline) as saved:
+    with existing_results(baseline) as saved:
         return summary, compare_with_baseline(
             summary.results,
             summary.subject,

@@ -107,18 +107,27 @@ def write_github_summary(summary: SweepSummary, comparison: Comparison | None, e
     Raises:
         FlexcellError: the file of the summary cannot be written.
     """
+    if append_github_summary(markdown(summary, comparison), environment) and summary.verdict in ("failed", "undecided"):
+        level = "error" if summary.verdict == "failed" else "warning"
+        sys.stderr.write(f"::{level} title={verdict_text(summary)}::{rate_text(summary)}\n")
+
+
+def append_github_summary(text: str, environment: Mapping[str, str]) -> bool:
+    """Append Markdown to the summary of a GitHub job; returns whether this is one.
+
+    Raises:
+        FlexcellError: the file of the summary cannot be written.
+    """
     file = environment.get("GITHUB_STEP_SUMMARY")
     if not file:
-        return
+        return False
     try:
         with Path(file).open("a", encoding="utf-8") as stream:
-            stream.write(markdown(summary, comparison))
+            stream.write(text)
     except OSError as error:
         hint = "unset GITHUB_STEP_SUMMARY"
         raise FlexcellError(f"the summary cannot be written: {error.strerror}", where=file, hint=hint) from error
-    if summary.verdict in ("failed", "undecided"):
-        level = "error" if summary.verdict == "failed" else "warning"
-        sys.stderr.write(f"::{level} title={verdict_text(summary)}::{rate_text(summary)}\n")
+    return True
 
 
 def _problem(verdict: str | None, message: str, text: str) -> JunitProblem | None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 
 from engine.sweep.comparison import Comparison
+from engine.sweep.report.tables import markdown_section
 from engine.sweep.report.words import (
     difference_text,
     end_text,
@@ -44,7 +45,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     if comparison is not None:
         yield ""
         yield f"The success rate is {difference_text(comparison)}. Changed: {', '.join(comparison.changed)}."
-    yield from _section(
+    yield from markdown_section(
         "Outcomes",
         ("outcome", "runs", "share", "interval"),
         [
@@ -52,29 +53,29 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
             for each in summary.outcomes
         ],
     )
-    yield from _section(
+    yield from markdown_section(
         "Causes of failures",
         ("runs", "where", "cause", "for example"),
         [(each.runs, each.at, each.message, ", ".join(f"#{n}" for n in each.examples)) for each in summary.causes],
     )
     yield from _failing(summary)
-    yield from _section(
+    yield from markdown_section(
         "Factors, those that matter most first",
         ("factor", "correlation with success", "with duration", "success by level", "input covered"),
         [_effect(each) for each in summary.effects],
     )
     durations = [summary.duration_s] if summary.duration_s is not None else []
-    yield from _section(
+    yield from markdown_section(
         "Seconds",
         ("node", "runs", "least", "middle", "95 %", "most"),
         [_quantiles(each, "s") for each in (*durations, *summary.nodes[:_NODES])],
     )
-    yield from _section(
+    yield from markdown_section(
         "Outputs",
         ("userdata", "runs", "least", "middle", "95 %", "most"),
         [_quantiles(each, "") for each in summary.outputs],
     )
-    yield from _section(
+    yield from markdown_section(
         "Measures",
         ("measure", "runs", "number", "least", "middle", "95 %", "most"),
         [
@@ -89,10 +90,10 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     if same:
         yield ""
         yield f"The same in all runs: {', '.join(same)}."
-    yield from _section(
+    yield from markdown_section(
         "Inputs covered", ("factor", "parts with a run", "likeliest gap"), map(_input, summary.inputs.factors)
     )
-    yield from _section(
+    yield from markdown_section(
         f"Pairs of inputs covered least, of {len(summary.inputs.pairs)}",
         ("factor", "with", "pairs of parts with a run"),
         [
@@ -110,7 +111,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
 def _failing(summary: SweepSummary) -> Iterator[str]:
     failing = summary.failing
     addresses = [address for address in (failing[0].configuration.values if failing else ()) if address != "seed"]
-    yield from _section(
+    yield from markdown_section(
         f"Failing runs, the first {_FAILING} of {len(failing)}" if len(failing) > _FAILING else "Failing runs",
         ("run", "seed", *addresses, "ended", "cause"),
         [
@@ -143,25 +144,3 @@ def _correlation(value: float | None) -> str:
 def _quantiles(each: Quantiles, unit: str) -> tuple[object, ...]:
     numbers = (each.least, each.middle, each.p95, each.most)
     return (each.name, each.runs, *(f"{number:.3f}" if unit else f"{number:.4g}" for number in numbers))
-
-
-def _section(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    found = [tuple(map(_cell, row)) for row in rows]
-    if not found:
-        return
-    # Padded, so that the text reads well in a terminal too.
-    widths = [max(len(row[column]) for row in (tuple(head), *found)) for column in range(len(head))]
-    yield ""
-    yield f"## {title}"
-    yield ""
-    yield _row(head, widths)
-    yield _row(["-" * width for width in widths], widths)
-    yield from (_row(row, widths) for row in found)
-
-
-def _row(cells: Sequence[str], widths: Sequence[int]) -> str:
-    return f"| {' | '.join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))} |"
-
-
-def _cell(value: object) -> str:
-    return " ".join(str(value).replace("|", "\\|").split())

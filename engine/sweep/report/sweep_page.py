@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from html import escape
-from pathlib import Path
 
 from engine.sweep.comparison import Comparison
 from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
+from engine.sweep.report.tables import html_document, html_table
 from engine.sweep.report.words import (
     difference_text,
     end_text,
@@ -20,7 +20,6 @@ from engine.sweep.report.words import (
 )
 from engine.sweep.summary import Quantiles, SweepSummary
 
-_STYLE = Path(__file__).with_name("report.css")
 _NODES = 25
 _FAILING = 200
 _FIGURES = 8
@@ -30,12 +29,7 @@ _PAIRS = 15
 def html_page(summary: SweepSummary, comparison: Comparison | None = None) -> str:
     """Return the page; it loads nothing."""
     title = f"Sweep of {summary.sweep.document.behavior}"
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
-        "</head>\n<body>\n<main>\n" + "\n".join(_sections(summary, comparison, title)) + "\n</main>\n</body>\n</html>\n"
-    )
+    return html_document(title, _sections(summary, comparison, title))
 
 
 def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) -> Iterator[str]:
@@ -53,13 +47,13 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
     if ordered and document.design == "random":
         figure = convergence(ordered, confidence=document.confidence, required=document.required_rate)
         yield f"<h2>Success rate after each run</h2><figure>{figure}</figure>"
-    yield from _table(
+    yield from html_table(
         "Causes of failures",
         ("runs", "where", "cause", "for example"),
         [(each.runs, each.at, each.message, ", ".join(f"#{n}" for n in each.examples)) for each in summary.causes],
     )
     yield from _failing(summary)
-    yield from _table(
+    yield from html_table(
         "Outcomes",
         ("outcome", "runs", "share", "interval"),
         [
@@ -70,18 +64,18 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
     yield from _factors(summary)
     durations = [summary.duration_s] if summary.duration_s is not None else []
     head = ("runs", "least", "middle", "95 %", "most")
-    yield from _table("Seconds by node", ("node", *head), map(_quantiles, (*durations, *summary.nodes[:_NODES])))
-    yield from _table("Outputs", ("userdata", *head), map(_quantiles, summary.outputs))
+    yield from html_table("Seconds by node", ("node", *head), map(_quantiles, (*durations, *summary.nodes[:_NODES])))
+    yield from html_table("Outputs", ("userdata", *head), map(_quantiles, summary.outputs))
     yield from _measures(summary)
     yield from _inputs(summary)
     covered = summary.items - len(summary.missing)
     yield f"<h2>Coverage</h2><p>{covered} of {summary.items} nodes and exits of the behavior were executed.</p>"
-    yield from _table(
+    yield from html_table(
         "Never executed",
         ("place", "node", "exit"),
         [(item.place, item.path, item.label) for item in summary.missing],
     )
-    yield from _table(
+    yield from html_table(
         "Versions", ("of", "version"), [(name, text[:16]) for name, text in summary.versions.items() if text]
     )
 
@@ -89,7 +83,7 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
 def _failing(summary: SweepSummary) -> Iterator[str]:
     failing = summary.failing[:_FAILING]
     addresses = [address for address in (failing[0].configuration.values if failing else ()) if address != "seed"]
-    yield from _table(
+    yield from html_table(
         "Failing runs",
         ("run", "seed", *addresses, "ended", "cause"),
         [
@@ -130,7 +124,7 @@ def _factors(summary: SweepSummary) -> Iterator[str]:
 
 
 def _measures(summary: SweepSummary) -> Iterator[str]:
-    yield from _table(
+    yield from html_table(
         "Measures",
         ("measure", "runs", "number", "least", "middle", "95 %", "most"),
         [
@@ -148,12 +142,12 @@ def _measures(summary: SweepSummary) -> Iterator[str]:
 
 def _inputs(summary: SweepSummary) -> Iterator[str]:
     inputs = summary.inputs
-    yield from _table(
+    yield from html_table(
         "Inputs covered",
         ("factor", "parts with a run", "likeliest gap"),
         [(each.address, f"{each.covered} of {each.parts}", gap_text(each)) for each in inputs.factors],
     )
-    yield from _table(
+    yield from html_table(
         "Pairs of inputs, those covered least first",
         ("factor", "with", "pairs of parts with a run"),
         [(each.first, each.second, f"{each.covered} of {each.parts}") for each in inputs.pairs[:_PAIRS]],
@@ -162,13 +156,3 @@ def _inputs(summary: SweepSummary) -> Iterator[str]:
 
 def _quantiles(each: Quantiles) -> tuple[object, ...]:
     return (each.name, each.runs, *(f"{number:.4g}" for number in (each.least, each.middle, each.p95, each.most)))
-
-
-def _table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    body = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
-    if body:
-        names = "".join(f'<th scope="col">{escape(name)}</th>' for name in head)
-        yield (
-            f'<h2>{escape(title)}</h2><div class="scroll" tabindex="0"><table><thead><tr>{names}</tr></thead>'
-            f"<tbody>{body}</tbody></table></div>"
-        )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.document.sweep import PointsFile, SweepDocument, load_sweep, parse_sweep, require_address
+from engine.document.sweep import PointsFile, SearchSpec, SweepDocument, load_sweep, parse_sweep, require_address
 from engine.errors import DocumentError
 
 HEAD = "flexcell: 1\nbehavior: folder/b.yaml\n"
@@ -113,3 +113,28 @@ def test_a_factor_with_a_fixed_value_is_refused(fixed: str, factor: str) -> None
 def test_what_is_no_address_is_refused_where_it_stands(text: str) -> None:
     with pytest.raises(DocumentError, match=r"points.csv:1: .* is not the address of a factor"):
         require_address(text, where="points.csv:1")
+
+
+def test_a_search_has_a_default_for_everything() -> None:
+    text = HEAD + "factors: {parameters.speed: {uniform: [0, 1]}}\nsearch: {}\n"
+    assert parse_sweep(text, file="s.yaml").document.search == SearchSpec()
+    assert (SearchSpec().towards, SearchSpec().method, SearchSpec().runs) == ("failure", "cross_entropy", 200)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("search: {}", "a search has nothing to vary"),
+        ("factors: {seed: {values: [1, 2]}}\nsearch: {}", "a search has nothing to vary"),
+        (
+            "factors: {parameters.speed: {uniform: [0, 1]}}\ndesign: sobol\nsearch: {}",
+            "starts with configurations",
+        ),
+        ("factors: {parameters.speed: {uniform: [0, 1]}}\nsearch: {towards: gap_m}", "towards"),
+        ("factors: {parameters.speed: {uniform: [0, 1]}}\nsearch: {random_share: 0}", "random_share"),
+    ],
+)
+def test_a_search_that_cannot_be_is_refused_with_its_position(text: str, message: str) -> None:
+    with pytest.raises(DocumentError, match=message) as caught:
+        parse_sweep(HEAD + text, file="s.yaml")
+    assert "s.yaml" in str(caught.value)

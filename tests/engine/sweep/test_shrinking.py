@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from engine.document.sweep import Factor, Normal
 from engine.errors import ControlError
 from engine.sweep.configuration import Configuration
-from engine.sweep.shrinking import same_cause, shrink
+from engine.sweep.shrinking import ShrinkProgress, same_cause, shrink
 from engine.sweep.trial_result import TrialResult
 
 FACTORS = {
@@ -72,7 +72,7 @@ def test_only_the_factor_that_matters_is_left_and_as_near_to_nominal_as_it_fails
     assert 1.4 < float(str(value)) < 1.4 + 0.9 / 64 + 1e-9
     assert float(str(found.passes["cell.parts.bolt.mass_kg"])) <= 1.4
     assert found.runs == len(runs) < 20
-    assert {run.seed for run in runs} == {11}
+    assert {run.seed for run in runs} == {0}
 
 
 def test_two_factors_that_fail_only_together_are_both_left() -> None:
@@ -83,10 +83,89 @@ def test_two_factors_that_fail_only_together_are_both_left() -> None:
     assert set(found.changed) == {"parameters.speed", "faults"}
 
 
-def test_a_seed_that_fails_alone_leaves_nothing_varied() -> None:
+def test_a_behavior_that_always_fails_leaves_nothing_varied() -> None:
     found = shrink(_failing(FAR), FACTORS, NOMINAL, _executes(lambda _values: True, []))
-    assert found.changed == {}
-    assert found.runs == 1
+    assert (found.changed, found.seed_matters) == ({}, False)
+    assert found.runs == 2
+
+
+def test_a_seed_that_fails_alone_is_kept_and_named() -> None:
+    def execute(configuration: Configuration) -> TrialResult:
+        success = configuration.seed != 11
+        return TrialResult(
+            configuration=configuration, status="finished", outcome="good" if success else "bad", success=success
+        )
+
+    found = shrink(_failing(FAR), FACTORS, NOMINAL, execute)
+    assert (found.changed, found.seed_matters, found.runs) == ({}, True, 2)
+    assert found.result.configuration.seed == 11
+
+
+@pytest.mark.parametrize("needed", [False, True], ids=["not needed", "needed"])
+def test_placement_noise_is_off_unless_the_failure_needs_it(needed: bool) -> None:
+    noisy: list[Configuration] = []
+    quiet: list[Configuration] = []
+    found = shrink(
+        _failing(FAR),
+        FACTORS,
+        NOMINAL,
+        _executes(lambda v: _number(v, "cell.parts.bolt.mass_kg") > 1.4, noisy),
+        quiet=_executes(lambda v: not needed and _number(v, "cell.parts.bolt.mass_kg") > 1.4, quiet),
+    )
+    assert found.placement_noise is needed
+    assert (len(noisy) > 0) is needed
+    assert len(noisy) + len(quiet) == found.runs
+    assert list(found.changed) == ["cell.parts.bolt.mass_kg"]
+
+
+def test_factors_that_can_only_be_set_back_in_a_pair_are_set_back() -> None:
+    def fails(values: Values) -> bool:
+        """Fail where speed and x are both far or both nominal, and the mass is large."""
+        fast = _number(values, "parameters.speed") > 0.5
+        off = _number(values, "displace.bolt.x_m") > 0.01
+        return fast == off and _number(values, "cell.parts.bolt.mass_kg") > 1.4 and values["faults"] == "slip.yaml"
+
+    found = shrink(_failing(FAR), FACTORS, NOMINAL, _executes(fails, []))
+    assert set(found.changed) == {"cell.parts.bolt.mass_kg", "faults"}
+
+
+def test_what_is_left_has_few_decimals_and_stays_within_its_limits() -> None:
+    def fails(values: Values) -> bool:
+        return _number(values, "cell.parts.bolt.mass_kg") > 1.4 and _number(values, "parameters.speed") > 0.97
+
+    values = {**FAR, "parameters.speed": 0.9873121, "cell.parts.bolt.mass_kg": 1.9123}
+    found = shrink(_failing(values), FACTORS, NOMINAL, _executes(fails, []))
+    kept = {name: float(str(value)) for name, (_, value) in found.changed.items()}
+    assert kept.keys() == {"cell.parts.bolt.mass_kg", "parameters.speed"}
+    assert len(str(kept["cell.parts.bolt.mass_kg"])) <= len("1.42")
+    assert 0.97 < kept["parameters.speed"] <= 1.0
+    assert len(str(kept["parameters.speed"])) <= len("0.98")
+
+
+def test_several_numbers_move_together_first() -> None:
+    def fails(values: Values) -> bool:
+        return _number(values, "parameters.speed") + _number(values, "cell.parts.bolt.mass_kg") > 2.2
+
+    found = shrink(_failing(FAR), FACTORS, NOMINAL, _executes(fails, []))
+    assert {name: round(float(str(value)), 1) for name, (_, value) in found.changed.items()} == {
+        "parameters.speed": 0.6,
+        "cell.parts.bolt.mass_kg": 1.6,
+    }
+
+
+def test_progress_counts_every_run_and_names_what_is_left() -> None:
+    seen: list[ShrinkProgress] = []
+    runs: list[Configuration] = []
+    fails = _executes(lambda v: _number(v, "cell.parts.bolt.mass_kg") > 1.4, runs)
+    shrink(_failing(FAR), FACTORS, NOMINAL, fails, show=seen.append)
+    assert [each.runs for each in seen] == list(range(1, len(runs) + 1))
+    assert seen[-1].changed == ("cell.parts.bolt.mass_kg",)
+    assert {each.step for each in seen} == {
+        "seed and placement noise",
+        "set back to nominal",
+        "move towards nominal",
+        "round",
+    }
 
 
 def test_integers_stay_integers() -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from tests.engine.cli.command import CommandOutput, flexcell
 from tests.engine.sweep.luck_project import LuckProject
+from tests.engine.test_pytest_plugin import run_pytest
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +85,29 @@ def test_a_failure_is_repeated_shrunk_and_kept_as_a_case(project: LuckProject) -
     assert mended.code == 0, mended.out
 
 
+def test_a_search_finds_failures_and_one_is_shrunk_to_a_case_that_pytest_executes(project: LuckProject) -> None:
+    options = ("--vary", "luck=0.0..1.0", "--vary", "rate=0.7..0.8", "--results", "s.db")
+    searched = ("--search", "most duration_s", "--runs", "30", "--stop-after", "3")
+    found = _sweep(project, "luck.yaml", *options, *searched, "--report", "s.html")
+    assert found.code == 1, found.err
+    assert "The search ended with 3 failures" in found.out
+    assert "batch 0, " in found.err
+    assert (project.path / "s.html").read_text(encoding="utf-8").count("<svg") == 2
+    failing = found.out.partition("the first one is run #")[2].partition(".")[0]
+    small = _sweep(
+        project, "shrink", "luck.yaml", failing, *options, *searched[:4], "--case", "cases/lucky.yaml",
+        "--record", "lucky.mcap",
+    )  # fmt: skip
+    assert small.code == 0, small.err
+    assert "without placement noise" in small.out
+    assert "still varied: parameters.luck" in small.err
+    assert (project.path / "lucky.mcap").stat().st_size > 0
+    tested = run_pytest(project.path, "--flexcell-sweeps", "cases", "-m", "flexcell_sweep")
+    assert tested.code == 1, tested.out
+    assert "success >= 1: failed after 1 runs" in tested.out
+    assert "ended with missed" in tested.out
+
+
 def test_a_changed_behavior_is_compared_with_its_baseline(tmp_path: Path) -> None:
     project = LuckProject(tmp_path)
     options = ("--vary", "luck=0.0..1.0", "--runs", "40", "--quiet", *ONE)
@@ -108,6 +132,10 @@ def test_a_changed_behavior_is_compared_with_its_baseline(tmp_path: Path) -> Non
         (["luck.yaml", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"], "--workers is of this machine"),
         (["luck.yaml", "--tls-cert", "me.pem"], "give --scheduler too"),
         (["luck.yaml", "--scheduler", "tls://127.0.0.1:1", "--tls-cert", "me.pem"], "there is no such file"),
+        (["luck.yaml", "--vary", "luck=0..1", "--search", "failure", "--shard", "1/2"], "a search has no parts"),
+        (["luck.yaml", "--vary", "luck=0..1", "--search", "failure", "--baseline", "b.db"], "cannot be compared"),
+        (["luck.yaml", "--search", "failure"], "a search has nothing to vary"),
+        (["luck.yaml", "--vary", "luck=0..1", "--search", "lest duration_s"], "`towards`"),
         (["none.yaml"], "cannot read this file"),
         (["report", "luck.yaml", "--results", "none.db"], "there are no results yet"),
         (["shrink", "luck.yaml", "900"], "the sweep has no configuration 900 (0 to 99)"),
