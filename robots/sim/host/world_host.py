@@ -40,7 +40,7 @@ class WorldHost(Protocol):
         ...
 
     def measures(self) -> dict[str, float]:
-        """Return what the world has summed up since it was opened or restored, by name as in `engine.messages.measures`."""
+        """Return what the world has summed up since it was opened or restored, by name."""
         ...
 
     async def restore(self, image: Array) -> None:

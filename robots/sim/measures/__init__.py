@@ -1,1 +1,1 @@
-"""Measures of a simulated world: what its arms, tools and contacts sum up while it runs, as `engine.messages.measures` has it."""
+"""Measures of a simulated world: what its arms, tools and contacts sum up while it runs."""
