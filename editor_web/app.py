@@ -38,6 +38,7 @@ from editor_web.routes import (
     page,
     runs,
     session,
+    sweeps,
 )
 from editor_web.routes import cell_connection as connection
 from editor_web.routes import cell_stop as halt
@@ -61,6 +62,7 @@ from engine.errors import ControlError, FlexcellError
 from engine.project import Session
 from engine.runtime.history import ResumeDecisionRequired
 from engine.stop import StopEndpoint
+from engine.sweep_library import NoSuchSweep, SweepService
 
 _TITLE = "flexcell"
 STATIC = Path(__file__).parent / "static"
@@ -81,6 +83,7 @@ _ROUTERS = (
     catalogue.router,
     runs.router,
     past.router,
+    sweeps.router,
     control.router,
     halt.router,
     connection.router,
@@ -128,10 +131,12 @@ def new_app(
         sessions = LoginSessions(file=None, tokens=access.fingerprint())
     limit = AttemptLimiter(now_s=time.monotonic)
     app = api()
+    hub = LiveHub(backend)
     app.state.services = Services(
         backend=backend,
-        hub=LiveHub(backend),
+        hub=hub,
         targets=TargetChecks(backend.documents.project),
+        sweeps=SweepService(backend.documents.project, changed=hub.note_sweep),
         access=access,
         sessions=sessions,
         limit=limit,
@@ -220,6 +225,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
         yield
     finally:
         services.targets.close()
+        await services.sweeps.close()
         await services.hub.documents.close()
         services.hub.robots.close()
         services.hub.close()
@@ -236,7 +242,7 @@ async def _refused(request: Request, error: Exception) -> Response:
         message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
     )
     match error:
-        case NoSuchDocument():
+        case NoSuchDocument() | NoSuchSweep():
             return json_response(body, 404)
         case DocumentConflict():
             return json_response(_conflict(body, error), 409)

@@ -14,12 +14,13 @@ from collections import deque
 from collections.abc import Callable
 
 from editor_web.live.document_watch import DocumentWatch
-from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot
+from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot, SweepsChanged
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
 from engine.project import Session
 from engine.runtime.control import ControlView
 from engine.runtime.history import LOG_LINES, LiveRun, LiveRunChange, LogLine, NodeLive
+from engine.sweep_library import SweepLive
 
 
 class LiveClient:
@@ -36,6 +37,7 @@ class LiveClient:
         self._runs: dict[str, None] = {}
         self._robots: dict[str, None] = {}
         self._documents: dict[str, str | None] = {}
+        self._sweeps: dict[str, SweepLive] = dict(hub.sweeps)
         self.dirty = asyncio.Event()
         self.dirty.set()
 
@@ -73,12 +75,20 @@ class LiveClient:
         self._documents |= changed
         self.dirty.set()
 
-    def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | None:
+    def note_sweep(self, sweep: str, live: SweepLive) -> None:
+        """Mark a sweep that has gone on, or has ended."""
+        self._sweeps[sweep] = live
+        self.dirty.set()
+
+    def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | None:
         """Return the pending changes as one frame and clear them; None if there are none."""
         if self._documents and not self._snapshot_due:
             # The other changes stay pending.
             changed, self._documents = self._documents, {}
             return DocumentsChanged(changed=changed)
+        if self._sweeps and not self._snapshot_due:
+            gone_on, self._sweeps = self._sweeps, {}
+            return SweepsChanged(changed=gone_on)
         self.dirty.clear()
         if self._snapshot_due:
             frame: LiveSnapshot | LiveDelta | None = self._snapshot()
@@ -88,7 +98,7 @@ class LiveClient:
             frame = None
         self._snapshot_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
-        if self._documents:
+        if self._documents or self._sweeps:
             self.dirty.set()
         # The engine reports the end of a run before it has stored it; such a run is read again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
@@ -144,6 +154,8 @@ class LiveHub:
         self._wall_s = wall_s
         self._seen_at_s: dict[str, float] = {}
         self._clients: set[LiveClient] = set()
+        self.sweeps: dict[str, SweepLive] = {}
+        """The sweeps that are being executed."""
         self._unsubscribe: Callable[[], None] | None = None
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
         self.documents = DocumentWatch(
@@ -174,6 +186,14 @@ class LiveHub:
     def leave(self, client: LiveClient) -> None:
         """Remove a client."""
         self._clients.discard(client)
+
+    def note_sweep(self, sweep: str, live: SweepLive) -> None:
+        """Tell all clients how far a sweep is."""
+        self.sweeps[sweep] = live
+        if live.status == "idle":
+            del self.sweeps[sweep]
+        for client in self._clients:
+            client.note_sweep(sweep, live)
 
     def live_run(self, run_id: str) -> LiveRun:
         """Return a run; a page may request one that no longer exists, which is empty."""

@@ -8,6 +8,7 @@ from editor_web.cell_view import LayerGroup
 from editor_web.live.robot_status import RobotLive
 from engine.runtime.control import ControlView
 from engine.runtime.history import LogLine, NodeLive, RunView
+from engine.sweep_library import SweepLive
 
 PROTOCOL_VERSION = 2
 
@@ -66,6 +67,12 @@ class DocumentsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="documents
     changed: dict[str, str | None]
 
 
+class SweepsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="sweeps", tag_field="k"):
+    """How far sweeps are that are being executed, or have just ended, by id."""
+
+    changed: dict[str, SweepLive]
+
+
 class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
     """Keep-alive; a page that does not answer with `Pong` in time is disconnected."""
 
@@ -95,5 +102,5 @@ class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k")
     """From the client: answer to a ping."""
 
 
-Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping
+Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | Ping
 Request = WatchRun | OperateRun | ShowLayers | Pong

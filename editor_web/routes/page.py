@@ -49,6 +49,8 @@ def notices(services: ServicesOf) -> Response:
 @router.get("/recordings/{rest:path}")
 @router.get("/edit/{rest:path}")
 @router.get("/teach")
+@router.get("/sweeps")
+@router.get("/sweeps/{rest:path}")
 def index(services: ServicesOf, rest: str = "") -> Response:
     """Serve the page, which routes `rest` itself."""
     del rest

@@ -16,6 +16,7 @@ from editor_web.security.login_sessions import LoginSessions
 from engine.editing import DocumentRepository, TargetChecks
 from engine.project import Session
 from engine.stop import StopEndpoint
+from engine.sweep_library import SweepService
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,7 @@ class Services:
     sessions: LoginSessions
     limit: AttemptLimiter
     targets: TargetChecks
+    sweeps: SweepService
     cell_view: CellView | None
     static: Path
     port: int

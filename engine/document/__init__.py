@@ -36,6 +36,7 @@ from engine.document.nodes.node_spec import (
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.document.sweep import SweepDocument
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.yaml_source import MAX_BYTES, DataPath, DocumentSource, load_source, parse_source
 from engine.document.text.yaml_writer import write_yaml
@@ -72,6 +73,7 @@ __all__ = [
     "RobotSpec",
     "StateSignature",
     "StrictModel",
+    "SweepDocument",
     "Template",
     "TimeoutSpec",
     "any_value",

@@ -33,6 +33,8 @@ def test_every_field_has_a_type() -> None:
         "readonly inputs?: Dict<unknown>",
         "readonly message: Dict<unknown>",
         "readonly message: unknown",
+        "readonly nominal: unknown",
+        "readonly options: readonly unknown[]",
         "readonly parameters: Dict<Dict<unknown>>",
         "readonly parameters: Dict<unknown>",
         "readonly parameters?: Dict<unknown>",
@@ -50,4 +52,6 @@ def test_every_field_has_a_type() -> None:
         "readonly value: Dict<unknown>",
         "readonly value: unknown",
         "readonly value?: unknown",
+        "readonly values: Dict<unknown>",
+        "readonly values?: readonly unknown[] | null",
     ]

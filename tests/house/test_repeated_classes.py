@@ -52,6 +52,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "MagnetResult ~ MagnetState": "how an action ended; a measurement",
     "Pose ~ PoseTarget": "a pose; a pose or the name of an entry",
     "SetTransition ~ TransitionTaken": "an edit of a document; that a run took a transition",
+    "SweepSummary ~ SweepView": "made from its fields, so that a page gets each of them; no field is written twice",
 }
 """Pairs of classes with nearly the same names of fields, and why they are not one class."""
 

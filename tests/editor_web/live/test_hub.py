@@ -9,10 +9,11 @@ import pytest
 from websockets.exceptions import ConnectionClosedError
 
 from editor_web.live.hub import LiveClient, LiveHub
-from editor_web.live.live_frames import LiveDelta, LiveSnapshot
+from editor_web.live.live_frames import LiveDelta, LiveSnapshot, SweepsChanged
 from editor_web.sockets import page_socket as sockets
 from engine.event import MessageLogged, NodeEntered, NodeExited, RunEnded, RunStarted
 from engine.runtime.history.live_run import LOG_LINES
+from engine.sweep_library import SweepLive
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import TRANSFER
@@ -222,3 +223,21 @@ async def test_another_start_of_the_server_has_another_epoch(serve: Serve) -> No
         async with serve() as served, served.live() as live:
             epochs.append((await live.frame())["epoch"])
     assert epochs[0] != epochs[1]
+
+
+async def test_a_sweep_is_sent_as_it_is_now_also_to_a_page_that_comes_later() -> None:
+    """Only its last state counts; one that has ended is told once."""
+    hub = open_hub(FakeBackend())
+    client = watching(hub, "")
+    for done in range(3):
+        hub.note_sweep("s.yaml", SweepLive(status="running", planned=9, done=done))
+    newest = SweepsChanged(changed={"s.yaml": SweepLive(status="running", planned=9, done=2)})
+    assert client.frame() == newest
+    assert client.frame() is None
+    later = watching(hub, "")
+    assert later.dirty.is_set()
+    assert later.frame() == newest
+    end = SweepLive(planned=9, done=9)
+    hub.note_sweep("s.yaml", end)
+    assert client.frame() == SweepsChanged(changed={"s.yaml": end})
+    assert watching(hub, "").frame() is None

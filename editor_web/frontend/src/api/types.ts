@@ -300,6 +300,14 @@ export interface Cause {
   readonly nodes?: readonly string[]
 }
 
+/** Failed runs with the same innermost cause; numbers in its message may differ between them. */
+export interface CauseGroup {
+  readonly at: string
+  readonly message: string
+  readonly runs: number
+  readonly examples: readonly number[]
+}
+
 /** One link of the cause chain of a failure; those of a whole chain are in order, root cause first. */
 export interface CauseLink {
   readonly message: string
@@ -339,6 +347,13 @@ export interface ConcurrencyCondition {
   readonly when: Dict<string>
   readonly at_least: number | null
   readonly preempt: readonly string[]
+}
+
+/** What is different in one run of a sweep; the rest is what all its runs have in common. */
+export interface Configuration {
+  readonly number: number
+  readonly seed: number
+  readonly values: Dict<unknown>
 }
 
 /** The document has changed on disk; `merged` has both changes, null if they conflict. */
@@ -392,6 +407,25 @@ export interface CopyBody {
 /** Nodes as YAML, ready to paste. */
 export interface CopyResultBody {
   readonly yaml: string
+}
+
+/** A node that can be entered, or an exit of the node at `path`. `name` is the outcome of an `outcome` or `transition`, the text of a `condition` with its number in front, or the status of a tree node; `target` is its target. `count` is how often it was executed. */
+export interface CoverageItem {
+  readonly kind: "condition" | "guard" | "node" | "on_error" | "outcome" | "status" | "timeout" | "transition"
+  readonly path: string
+  readonly name?: string
+  readonly target?: string
+  readonly file: string
+  readonly line: number
+  readonly column: number
+  readonly count?: number
+}
+
+/** What a number of runs has shown of the success rate; a design that is not random has no interval. */
+export interface CurvePoint {
+  readonly runs: number
+  readonly rate: number
+  readonly interval: Interval | null
 }
 
 /** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run. */
@@ -611,6 +645,37 @@ export interface ErrorBody {
 export interface EventsBody {
   readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
+}
+
+/** What a factor is varied over: a list of values, each equally likely, or a distribution of numbers. `nominal` is its value where nothing is varied: by default that of the parameter or of the cell. `levels` is the number of values that a grid takes of a distribution: the middles of so many equally likely parts. */
+export interface Factor {
+  readonly values?: readonly unknown[] | null
+  readonly uniform?: readonly [number, number] | null
+  readonly log_uniform?: readonly [number, number] | null
+  readonly normal?: Normal | null
+  readonly integer?: boolean
+  readonly nominal?: number | string | boolean | null
+  readonly levels?: number
+}
+
+/** A value of a behavior or its cell that a sweep can vary, with its value where nothing is varied. */
+export interface FactorChoice {
+  readonly address: string
+  readonly nominal: unknown
+  readonly unit: string
+  readonly description: string
+  readonly least: number | null
+  readonly most: number | null
+  readonly options: readonly unknown[]
+}
+
+/** How the success and the duration of runs depend on a factor. */
+export interface FactorEffect {
+  readonly address: string
+  readonly with_success: number | null
+  readonly with_duration: number | null
+  readonly levels: readonly Level[]
+  readonly input_share: number | null
 }
 
 /** A fault of the fault file was applied to a request. */
@@ -894,6 +959,9 @@ export interface InterruptedRun {
   readonly last_seq: number
 }
 
+/** The rates, from 0 to 1 (of a difference from -1), that the runs do not exclude. */
+export type Interval = readonly [number, number]
+
 /** The arm that this page jogs, empty for none, and what limits its motion, as text. */
 export interface JogStatus {
   readonly k: "jogging"
@@ -983,6 +1051,14 @@ export interface LeaseMetrics {
   readonly node: string
   readonly goal: string
   readonly held_s: number
+}
+
+/** The runs with one value of a factor, or with values of one range; the interval is of their success rate. */
+export interface Level {
+  readonly label: string
+  readonly runs: number
+  readonly interval: Interval
+  readonly successes: number
 }
 
 /** The changes of the watched run since `after`, the changed runs and arms, and the current control of the run. `dropped` is the number of missing log lines. */
@@ -1125,6 +1201,12 @@ export interface NewIdBody {
   readonly id: string
 }
 
+/** A sweep document to be written to `id`, a path in the project; so are the paths in `document`. */
+export interface NewSweepBody {
+  readonly id: string
+  readonly document: SweepDocument
+}
+
 /** A node did not stop in time and was abandoned; the run continues without it. */
 export interface NodeAbandoned {
   readonly event: "abandoned"
@@ -1205,6 +1287,18 @@ export interface NodeRetried {
   readonly cause: Cause | null
 }
 
+/** The activations of a node that ended in a run, and the seconds that they took on its clock. */
+export interface NodeTime {
+  readonly visits: number
+  readonly total_s: number
+}
+
+/** A normal distribution. */
+export interface Normal {
+  readonly mean?: number
+  readonly deviation: number
+}
+
 /** An open past run or recording, with the behavior as of the start of the run. It is shown as it stands: a run without an end is `interrupted`. */
 export interface OpenRunBody {
   readonly run: PastRunBody
@@ -1244,6 +1338,14 @@ export interface OutcomeRequested {
   readonly visit: number
   readonly outcome: string
   readonly required: string
+}
+
+/** The runs that ended with one outcome, or status where they had none; the interval is of its share of all. */
+export interface OutcomeShare {
+  readonly label: string
+  readonly runs: number
+  readonly interval: Interval
+  readonly success: boolean
 }
 
 /** The request of `OutcomeRequested` is withdrawn or has been answered. */
@@ -1383,6 +1485,11 @@ export interface PlaybackResult {
   readonly cause: string
 }
 
+/** A design read from a file: the header row has addresses, whether they are `factors` or not; a row is a run. */
+export interface PointsFile {
+  readonly csv: string
+}
+
 /** From the client: answer to a ping. */
 export interface Pong {
   readonly k: "pong"
@@ -1445,6 +1552,24 @@ export interface PushToolBody {
   readonly arm: string
   readonly force_n: readonly [number, number, number]
   readonly duration_s: number
+}
+
+/** The distribution of a number over runs. */
+export interface Quantiles {
+  readonly name: string
+  readonly runs: number
+  readonly least: number
+  readonly middle: number
+  readonly p95: number
+  readonly most: number
+}
+
+/** A run of a sweep that was executed again and recorded to `recording`, a path in the project. */
+export interface RecordedTrial {
+  readonly recording: string
+  readonly same: boolean
+  readonly result: TrialResult
+  readonly saved: TrialResult
 }
 
 /** One recording of the project; `problem` says why it cannot be opened, else empty. */
@@ -1840,6 +1965,110 @@ export interface Supervision {
   readonly loss_timeout_s?: number
 }
 
+/** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. */
+export interface SweepDocument {
+  readonly flexcell: 1
+  readonly description?: string
+  readonly behavior: string
+  readonly cell?: string | null
+  readonly store?: string | null
+  readonly parameters?: Dict<unknown>
+  readonly inputs?: Dict<unknown>
+  readonly faults?: string | null
+  readonly substitutes?: string | null
+  readonly factors?: Dict<Factor>
+  readonly design?: "grid" | "latin_hypercube" | "random" | "sobol" | PointsFile
+  readonly seed?: number
+  readonly placement_noise?: boolean
+  readonly runs?: number
+  readonly time?: number | string | null
+  readonly width?: number | null
+  readonly interval?: "anytime" | "exact"
+  readonly confidence?: number
+  readonly require?: string | null
+  readonly timeout?: number | string
+  readonly limit?: number | string
+}
+
+/** The sweep that was made. */
+export interface SweepIdBody {
+  readonly id: string
+}
+
+/** One line of the list of sweeps; `id` is the path of the document in the project. */
+export interface SweepLine {
+  readonly id: string
+  readonly description: string
+  readonly behavior: string
+  readonly design: string
+  readonly require: string
+  readonly factors: readonly string[]
+  readonly live: SweepLive
+  readonly problem: string
+}
+
+/** The sweeps of a project, and the results that belong to none of them. */
+export interface SweepList {
+  readonly sweeps: readonly SweepLine[]
+  readonly others: readonly UndescribedResults[]
+}
+
+/** How far a sweep is. `looked_at` counts the runs without a gap before them: rate and interval are of those. */
+export interface SweepLive {
+  readonly status: "idle" | "running" | "stopping"
+  readonly planned: number
+  readonly done: number
+  readonly looked_at: number
+  readonly successes: number
+  readonly interval: Interval | null
+  readonly verdict: "failed" | "passed" | "undecided" | null
+  readonly rate_hz: number
+  readonly remaining_s: number | null
+  readonly problem: string
+}
+
+/** Runs of a sweep without their times in nodes, failing ones first, each in the order of configurations. `alike` has the numbers of all failing runs with the same cause, the most frequent cause first. */
+export interface SweepRuns {
+  readonly runs: readonly TrialResult[]
+  readonly total: number
+  readonly alike: readonly (readonly number[])[]
+}
+
+/** A request to execute what is left of a sweep; `again` also what crashed or hung before. */
+export interface SweepStartBody {
+  readonly again?: boolean
+}
+
+export interface SweepView {
+  readonly line: SweepLine
+  readonly document: SweepDocument
+  readonly curve: readonly CurvePoint[]
+  readonly subject: string
+  readonly versions: Dict<string>
+  readonly planned: number
+  readonly done: number
+  readonly looked_at: number
+  readonly successes: number
+  readonly interval: Interval | null
+  readonly verdict: "failed" | "passed" | "undecided" | null
+  readonly ended_by: "decided" | "interrupted" | "runs" | "time"
+  readonly outcomes: readonly OutcomeShare[]
+  readonly causes: readonly CauseGroup[]
+  readonly duration_s: Quantiles | null
+  readonly nodes: readonly Quantiles[]
+  readonly outputs: readonly Quantiles[]
+  readonly effects: readonly FactorEffect[]
+  readonly items: number
+  readonly missing: readonly CoverageItem[]
+  readonly cpu_s: number
+}
+
+/** How far sweeps are that are being executed, or have just ended, by id. */
+export interface SweepsChanged {
+  readonly k: "sweeps"
+  readonly changed: Dict<SweepLive>
+}
+
 /** New tags of an entry; `revision` is the revision that they are based on. */
 export interface TagsBody {
   readonly kind: string
@@ -1977,6 +2206,26 @@ export interface TransitionTaken {
   readonly target: string
 }
 
+/** How one configuration ended; everything but the costs is the same wherever it is executed. */
+export interface TrialResult {
+  readonly configuration: Configuration
+  readonly status: "crashed" | "errored" | "finished" | "hung" | "refused" | "stopped"
+  readonly outcome: string | null
+  readonly success: boolean
+  readonly cause: string
+  readonly reason: string
+  readonly reason_at: string
+  readonly duration_s: number
+  readonly events: number
+  readonly events_sha256: string
+  readonly nodes: Dict<NodeTime>
+  readonly outputs: Dict<number>
+  readonly covered: string
+  readonly wall_s: number
+  readonly cpu_s: number
+  readonly memory_bytes: number
+}
+
 /** A trigger with its callback and robot; the fields of RCY figure 12. The topic's field `field` (when empty, the only boolean one, or `value` or `data`) is compared with `trig_value`: `rising_edge` fires when they become equal, `falling_edge` when they become unequal, `hold` is active while they are equal. `joint_dmp_N` is the number of kernels of the primitive, 0 selects it by the fit. `tf_save` captures the pose of `source_frame` in `target_frame`, `gripper_save` the opening of the gripper and whether it holds a part. */
 export interface Trigger {
   readonly trig_name: string
@@ -2009,6 +2258,14 @@ export interface TriggerStatus {
 export interface TrimInterval {
   readonly start_s: number
   readonly end_s: number
+}
+
+/** Saved results that no sweep document of the project asks for: of the command line, or of an earlier version. */
+export interface UndescribedResults {
+  readonly subject: string
+  readonly behavior: string
+  readonly runs: number
+  readonly successes: number
 }
 
 /** The undo ended: done, failed with `cause`, or `preempted`. */
@@ -2106,7 +2363,7 @@ export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | Userdata
 
 export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 
-export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | Ping
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 

@@ -1,7 +1,7 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
 import { AppShell, Burger } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
-import { IconHistory, IconLayoutGrid } from '@tabler/icons-react'
+import { IconChartDots, IconHistory, IconLayoutGrid } from '@tabler/icons-react'
 import { Suspense, useEffect } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
@@ -19,7 +19,7 @@ import { RunList } from '../features/runs/RunList'
 import { Header } from './Header'
 import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
-import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, TEACH_HREF, useRoute, type Route } from './route'
+import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, SWEEPS_HREF, TEACH_HREF, useRoute, type Route } from './route'
 import { RoutedPage } from './RoutedPage'
 import { useFetched } from './useFetched'
 
@@ -38,6 +38,7 @@ export function App() {
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
   const isOfRuns = route.page === 'runs' || route.page === 'beside'
+  const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
   const isTouring = useTour((s) => s.isOn)
   const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
@@ -98,6 +99,10 @@ export function App() {
           <PageLink href={PAST_HREF} className={sideItem(route.page === 'past')} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
             <IconHistory size={15} aria-hidden />
             <span className="side-item-name">Past runs and recordings</span>
+          </PageLink>
+          <PageLink href={SWEEPS_HREF} className={sideItem(isOfSweeps)} isCurrent={isOfSweeps} onOpen={() => open(SWEEPS_HREF)}>
+            <IconChartDots size={15} aria-hidden />
+            <span className="side-item-name">Sweeps</span>
           </PageLink>
         </div>
       </AppShell.Navbar>

@@ -13,9 +13,11 @@ import { CellFrame } from '../features/cell/CellFrame'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
+import { RerunLine } from '../features/sweeps/RerunLine'
 import { PastLine } from '../features/timeline/PastLine'
 import { Breadcrumb } from './Breadcrumb'
 import { pastBodies } from './dock'
+import { sweepHref } from './route'
 import { useFetched } from './useFetched'
 import { Wide } from './WorkSpace'
 
@@ -26,6 +28,7 @@ export interface PastPageProps {
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onAll: () => void
+  readonly onOpen: (href: string) => void
 }
 
 export function PastPage(props: PastPageProps) {
@@ -46,7 +49,7 @@ export function PastPage(props: PastPageProps) {
   return <Opened {...props} opened={fetched.value} />
 }
 
-function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageProps & { opened: OpenRunBody }) {
+function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: PastPageProps & { opened: OpenRunBody }) {
   const { run, behavior } = opened
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
@@ -102,6 +105,7 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
           <span className="command-label">All past runs</span>
         </button>
       </header>
+      {isRecording && <RerunLine recording={id} href={sweepHref} onOpen={(sweep, number) => onOpen(sweepHref(sweep, number))} />}
       <PastLine run={run} hasCellView={hasCellView(session)} />
       {isNarrow ? (
         <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock, Graph: graph, Cell: cell, Outline: outline }} />

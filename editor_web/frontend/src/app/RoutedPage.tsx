@@ -17,6 +17,8 @@ const PastPage = lazyView(async () => (await import('./PastPage')).PastPage)
 const PastRunsPage = lazyView(async () => (await import('./PastRunsPage')).PastRunsPage)
 const RunsPage = lazyView(async () => (await import('./RunsPage')).RunsPage)
 const BesidePage = lazyView(async () => (await import('./SideBySidePage')).SideBySidePage)
+const SweepsPage = lazyView(async () => (await import('./SweepsPage')).SweepsPage)
+const SweepPage = lazyView(async () => (await import('./SweepPage')).SweepPage)
 const EditorPage = lazyView(async () => (await import('../features/editor/EditorPage')).EditorPage)
 const EditorPreview = lazyView(async () => (await import('./EditorPreview')).EditorPreview)
 
@@ -45,6 +47,10 @@ export function RoutedPage(props: RoutedPageProps) {
       return <RunsPage onOpen={onOpen} />
     case 'beside':
       return <BesidePage left={route.left} right={route.right} isNarrow={isNarrow} onOpen={onOpen} />
+    case 'sweeps':
+      return <SweepsPage onOpen={onOpen} />
+    case 'sweep':
+      return <SweepPage key={route.id} id={route.id} onOpen={onOpen} />
     case 'home':
       return <HomePage hasCellView={hasCellView(session)} onOpenRun={(id) => onOpen(runHref(id))} />
   }
@@ -57,6 +63,7 @@ export function RoutedPage(props: RoutedPageProps) {
         session={session}
         isNarrow={isNarrow}
         onAll={() => onOpen(PAST_HREF)}
+        onOpen={onOpen}
       />
     )
   }

@@ -11,6 +11,8 @@ export type Route =
   | { readonly page: 'past' }
   | { readonly page: 'teach' }
   | { readonly page: 'recording'; readonly id: string }
+  | { readonly page: 'sweeps' }
+  | { readonly page: 'sweep'; readonly id: string }
 
 /** Read an address; what it does not know is the home page. */
 export function routeOf(pathname: string): Route {
@@ -23,6 +25,7 @@ export function routeOf(pathname: string): Route {
   if (page === 'past') return { page: 'past' }
   if (page === 'teach') return { page: 'teach' }
   if (page === 'recordings' && id) return { page: 'recording', id }
+  if (page === 'sweeps') return id ? { page: 'sweep', id } : { page: 'sweeps' }
   return { page: 'home' }
 }
 
@@ -60,6 +63,13 @@ export const PAST_HREF = '/past'
 
 export function recordingHref(path: string): string {
   return `/recordings/${path.split('/').map(encodeURIComponent).join('/')}`
+}
+
+export const SWEEPS_HREF = '/sweeps'
+
+/** A sweep, at one of its runs where one is given. */
+export function sweepHref(id: string, run?: number): string {
+  return `/sweeps/${id.split('/').map(encodeURIComponent).join('/')}${run === undefined ? '' : `#${run}`}`
 }
 
 const listeners = new Set<() => void>()

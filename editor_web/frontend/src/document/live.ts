@@ -1,6 +1,6 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
 import type { Dict } from './dict'
-import type { ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot } from '../api/types'
+import type { ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot, SweepLive } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -27,6 +27,8 @@ export interface LiveState {
   readonly robots: Dict<RobotLive>
   /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
   readonly documents: Dict<string | null>
+  /** Sweeps that are being executed, or have ended since the page was loaded. */
+  readonly sweeps: Dict<SweepLive>
 }
 
 export const EMPTY: LiveState = {
@@ -46,6 +48,7 @@ export const EMPTY: LiveState = {
   lockReasons: {},
   robots: {},
   documents: {},
+  sweeps: {},
 }
 
 /** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
@@ -59,6 +62,8 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
       return frame.run !== state.run || frame.after !== state.seq ? 'gap' : withDelta(state, frame, atMs)
     case 'documents':
       return { ...state, documents: { ...state.documents, ...frame.changed } }
+    case 'sweeps':
+      return { ...state, sweeps: { ...state.sweeps, ...frame.changed } }
     case 'ping':
       return state
   }

@@ -1,0 +1,111 @@
+/** A sweep: how far it is, what it has shown, its runs. The run that is chosen stands in the address. */
+import '../features/sweeps/sweeps.css'
+import { useEffect, useState } from 'react'
+import { useLive } from '../api/live'
+import { sweepsApi } from '../api/sweeps'
+import type { SweepRuns, SweepView } from '../api/types'
+import { Empty } from '../components/Empty'
+import { PageLink } from '../components/PageLink'
+import { lookup } from '../document/dict'
+import { currentLive, sweepName } from '../document/sweeps'
+import { SuccessRate, SweepControls, SweepProgress } from '../features/sweeps/SweepControls'
+import { SweepReport } from '../features/sweeps/SweepReport'
+import { VerdictBadge } from '../features/sweeps/VerdictBadge'
+import { behaviorHref, recordingHref, sweepHref, SWEEPS_HREF } from './route'
+import { useFetched } from './useFetched'
+
+/** Results are read again that often while the sweep is executed. */
+const PERIOD_MS = 2000
+
+export interface SweepPageProps {
+  readonly id: string
+  readonly onOpen: (href: string) => void
+}
+
+export function SweepPage({ id, onOpen }: SweepPageProps) {
+  const told = useLive((s) => lookup(s.sweeps, id))
+  const revision = useSlowly(`${told?.status} ${told?.done}`, told === undefined || told.status === 'idle')
+  const { value, problem } = useFetched(id, () => read(id), revision)
+  if (problem) {
+    return (
+      <Empty title="This sweep cannot be read">
+        {problem}
+        <br />
+        <PageLink href={SWEEPS_HREF} onOpen={() => onOpen(SWEEPS_HREF)}>
+          All sweeps
+        </PageLink>
+      </Empty>
+    )
+  }
+  if (!value) return <div className="page-wait" role="status" aria-label="Loading" />
+  return <Opened view={value.view} runs={value.runs} onOpen={onOpen} />
+}
+
+async function read(id: string): Promise<{ readonly view: SweepView; readonly runs: SweepRuns }> {
+  const [view, runs] = await Promise.all([sweepsApi.view(id), sweepsApi.runs(id)])
+  return { view, runs }
+}
+
+function Opened({ view, runs, onOpen }: { readonly view: SweepView; readonly runs: SweepRuns; readonly onOpen: (href: string) => void }) {
+  const { line } = view
+  const [selected, setSelected] = useState<number | undefined>(ofAddress)
+  const live = currentLive(line, useLive((s) => lookup(s.sweeps, line.id)))
+  const mayOperate = useLive((s) => s.role) === 'operator'
+  const broken = runs.runs.filter((run) => run.status === 'crashed' || run.status === 'hung').length
+
+  useEffect(() => {
+    const listen = () => setSelected(ofAddress())
+    addEventListener('hashchange', listen)
+    return () => removeEventListener('hashchange', listen)
+  }, [])
+
+  function select(run: number | undefined): void {
+    history.replaceState(null, '', sweepHref(line.id, run))
+    setSelected(run)
+  }
+
+  return (
+    <div className="sweep-page">
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>{sweepName(line.id)}</h1>
+          <p className="quiet">
+            <PageLink href={SWEEPS_HREF} onOpen={() => onOpen(SWEEPS_HREF)}>
+              All sweeps
+            </PageLink>{' '}
+            / of{' '}
+            <PageLink href={behaviorHref(line.behavior)} onOpen={() => onOpen(behaviorHref(line.behavior))}>
+              {line.behavior}
+            </PageLink>
+            , {line.design.replace('_', ' ')} design, <span className="mono">{line.id}</span>
+          </p>
+        </div>
+        <VerdictBadge live={live} require={line.require} />
+        <span className="spacer" />
+        <SweepControls sweep={line.id} live={live} mayOperate={mayOperate} broken={broken} />
+      </header>
+      <div className="sweep-summary">
+        <SuccessRate live={live} />
+        <SweepProgress live={live} />
+      </div>
+      {line.description && <p className="quiet sweep-description">{line.description}</p>}
+      <SweepReport view={view} runs={runs} mayOperate={mayOperate} selected={selected} onSelect={select} onOpenRecording={(path) => onOpen(recordingHref(path))} />
+    </div>
+  )
+}
+
+/** The run in the address, `#17`. */
+function ofAddress(): number | undefined {
+  return /^#\d+$/.test(location.hash) ? Number(location.hash.slice(1)) : undefined
+}
+
+/** A value that changes at most once in a period; at once where nothing goes on. */
+function useSlowly(value: string, isNow: boolean): string {
+  const [shown, setShown] = useState(value)
+  useEffect(() => {
+    if (value === shown) return
+    const timer = setTimeout(() => setShown(value), isNow ? 0 : PERIOD_MS)
+    return () => clearTimeout(timer)
+  }, [value, shown, isNow])
+  return shown
+}

@@ -1,0 +1,40 @@
+/** All sweeps of the project, and making a new one. */
+import '../features/sweeps/sweeps.css'
+import { sweepsApi } from '../api/sweeps'
+import { useLive } from '../api/live'
+import { Empty } from '../components/Empty'
+import { NewSweep } from '../features/sweeps/NewSweep'
+import { OtherResults, SweepList } from '../features/sweeps/SweepList'
+import { sweepHref } from './route'
+import { useFetched } from './useFetched'
+
+export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void }) {
+  const ends = useLive((s) => Object.values(s.sweeps).filter((each) => each?.status === 'idle').length)
+  const { value, problem } = useFetched('sweeps', sweepsApi.list, ends)
+  const mayOperate = useLive((s) => s.role) === 'operator'
+  return (
+    <div className="sweep-page">
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>Sweeps</h1>
+          <p className="quiet">How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors</p>
+        </div>
+        <span className="spacer" />
+        {mayOperate && value && <NewSweep taken={value.sweeps.map((each) => each.id)} onMade={(id) => onOpen(sweepHref(id))} />}
+      </header>
+      {problem && <Empty title="The sweeps cannot be read">{problem}</Empty>}
+      {!value && !problem && <div className="page-wait" role="status" aria-label="Loading" />}
+      {value && (
+        <div className="sweep-list-page">
+          <SweepList listed={value} href={sweepHref} onOpen={(id) => onOpen(sweepHref(id))} />
+          {value.others.length > 0 && (
+            <section aria-label="Other results">
+              <h2 className="sweep-subtitle">Results that belong to none of them</h2>
+              <OtherResults others={value.others} />
+            </section>
+          )}
+        </div>
+      )}
+    </div>
+  )
+}

@@ -1,0 +1,67 @@
+/** One factor in a form: what is varied, and over which values. */
+import { CloseButton } from '@mantine/core'
+import { useId } from 'react'
+import type { FactorChoice } from '../../api/types'
+import { proposedFactor, short, type FactorDraft } from '../../document/sweeps'
+
+export const NO_FACTOR: FactorDraft = { address: '', kind: 'uniform', first: '', second: '', values: '' }
+const KINDS = [
+  ['uniform', 'uniform'],
+  ['log_uniform', 'log-uniform'],
+  ['normal', 'normal'],
+  ['values', 'values'],
+] as const
+
+export interface FactorFieldsProps {
+  readonly factor: FactorDraft
+  readonly choices: readonly FactorChoice[]
+  readonly onChange: (factor: FactorDraft) => void
+  readonly onRemove: () => void
+}
+
+export function FactorFields({ factor, choices, onChange, onRemove }: FactorFieldsProps) {
+  const list = useId()
+  const choice = choices.find((each) => each.address === factor.address)
+  const name = factor.address || 'the new factor'
+  const isNormal = factor.kind === 'normal'
+
+  function choose(address: string): void {
+    const found = choices.find((each) => each.address === address)
+    onChange(found ? proposedFactor(found) : { ...factor, address })
+  }
+
+  return (
+    <div className="sweep-factor" role="group" aria-label={`Factor ${name}`}>
+      <input className="new-input mono sweep-factor-name" list={list} aria-label="What is varied" placeholder="parameters.…, displace.…, cell.…" value={factor.address} onChange={(event) => choose(event.currentTarget.value)} />
+      <datalist id={list}>
+        {choices.map((each) => (
+          <option key={each.address} value={each.address}>
+            {`${short(each.nominal)} ${each.unit} ${each.description}`}
+          </option>
+        ))}
+      </datalist>
+      <select className="new-input" aria-label={`Distribution of ${name}`} value={factor.kind} onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}>
+        {KINDS.map(([value, words]) => (
+          <option key={value} value={value}>
+            {words}
+          </option>
+        ))}
+      </select>
+      {factor.kind === 'values' ? (
+        <input className="new-input sweep-factor-values" aria-label={`Values of ${name}`} placeholder="0.3, 0.5, 1" value={factor.values} onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })} />
+      ) : (
+        <>
+          <input className="new-input" inputMode="decimal" aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`} placeholder={isNormal ? 'mean' : 'from'} value={factor.first} onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })} />
+          <input className="new-input" inputMode="decimal" aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`} placeholder={isNormal ? 'deviation' : 'to'} value={factor.second} onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })} />
+        </>
+      )}
+      <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
+      {choice && (
+        <p className="quiet sweep-note">
+          {choice.nominal === null ? 'without a default' : `${short(choice.nominal)} ${choice.unit} where nothing is varied`}
+          {choice.description && `; ${choice.description}`}
+        </p>
+      )}
+    </div>
+  )
+}

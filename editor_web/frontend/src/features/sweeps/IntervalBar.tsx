@@ -1,0 +1,17 @@
+/** A rate from 0 to 1 with its interval, as a line with a dot; the numbers stand beside it. */
+import type { Interval } from '../../api/types'
+
+export interface IntervalBarProps {
+  readonly interval: Interval
+  readonly rate: number
+  readonly isBad?: boolean
+}
+
+export function IntervalBar({ interval: [low, high], rate, isBad = false }: IntervalBarProps) {
+  return (
+    <span className={`sweep-bar${isBad ? ' is-bad' : ''}`} aria-hidden>
+      <span className="sweep-whisker" style={{ left: `${100 * low}%`, width: `${100 * (high - low)}%` }} />
+      <span className="sweep-dot" style={{ left: `${100 * rate}%` }} />
+    </span>
+  )
+}

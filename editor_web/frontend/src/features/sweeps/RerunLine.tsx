@@ -1,0 +1,32 @@
+/** Above a recording that was made by executing a run of a sweep again: which one, and whether it was the same. */
+import './sweeps.css'
+import { useReruns } from '../../api/sweeps'
+import { PageLink } from '../../components/PageLink'
+import { StatusIcon } from '../../components/StatusIcon'
+import { lookup } from '../../document/dict'
+import { sweepName } from '../../document/sweeps'
+
+export interface RerunLineProps {
+  readonly recording: string
+  readonly href: (sweep: string, run: number) => string
+  readonly onOpen: (sweep: string, run: number) => void
+}
+
+export function RerunLine({ recording, href, onOpen }: RerunLineProps) {
+  const rerun = useReruns((s) => lookup(s.byRecording, recording))
+  if (!rerun) return null
+  const { sweep, told } = rerun
+  const { number } = told.saved.configuration
+  return (
+    <p className="sweep-rerun" role="status">
+      <StatusIcon status={told.same ? 'done' : 'warning'} size={15} />
+      <span>
+        <PageLink href={href(sweep, number)} onOpen={() => onOpen(sweep, number)}>
+          Run {number} of {sweepName(sweep)}
+        </PageLink>
+        , executed again: {told.same ? `the same ${told.saved.events} events as in the sweep` : `NOT the same events as in the sweep (${told.result.events}, then ${told.saved.events})`}{' '}
+        <span className="mono quiet">sha256 {told.result.events_sha256.slice(0, 12)}</span>
+      </span>
+    </p>
+  )
+}

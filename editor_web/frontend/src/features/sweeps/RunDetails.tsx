@@ -1,0 +1,151 @@
+/** One run of a sweep: how it ended, with which values, where its time went; and the run itself, executed again. */
+import { IconPlayerPlay, IconX } from '@tabler/icons-react'
+import { useEffect, useRef, useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { recordRun, sweepsApi } from '../../api/sweeps'
+import type { RecordedTrial, TrialResult } from '../../api/types'
+import { StatusBadge } from '../../components/StatusBadge'
+import { labelOf, short } from '../../document/sweeps'
+import { duration } from '../../document/time'
+
+const NODES = 8
+
+export interface RunDetailsProps {
+  readonly sweep: string
+  readonly number: number
+  readonly mayOperate: boolean
+  readonly onOpen: (recording: string) => void
+  readonly onClose: () => void
+}
+
+export function RunDetails({ sweep, number, mayOperate, onOpen, onClose }: RunDetailsProps) {
+  const [run, setRun] = useState<TrialResult>()
+  const [problem, setProblem] = useState('')
+  const element = useRef<HTMLElement>(null)
+  useEffect(() => {
+    let isCurrent = true
+    sweepsApi.run(sweep, number).then(
+      (told) => isCurrent && setRun(told),
+      (error: unknown) => isCurrent && setProblem(wordsOf(error)),
+    )
+    return () => {
+      isCurrent = false
+    }
+  }, [sweep, number])
+  useEffect(() => {
+    // A run may be chosen far from where it is told of. What this returns is no clean-up.
+    void element.current?.scrollIntoView({ block: 'nearest' })
+  }, [run])
+  return (
+    <section ref={element} className="sweep-card sweep-details" aria-label={`Run ${number}`}>
+      <header className="sweep-card-head">
+        <h2>Run {number}</h2>
+        {run && <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />}
+        <span className="spacer" />
+        <button type="button" className="command is-quiet" aria-label={`Close run ${number}`} onClick={onClose}>
+          <IconX size={15} aria-hidden />
+        </button>
+      </header>
+      {problem && (
+        <p className="is-failed" role="alert">
+          {problem}
+        </p>
+      )}
+      {run && (
+        <>
+          {run.cause && <p className="sweep-chain">{run.cause}</p>}
+          {mayOperate && <Again sweep={sweep} run={run} onOpen={onOpen} />}
+          <Facts run={run} />
+          <p className="quiet sweep-note">
+            In a terminal: <code className="sweep-command">flexcell sweep rerun {sweep} {number}</code>
+            {!run.success && (
+              <>
+                ; the smallest change that fails: <code className="sweep-command">flexcell sweep shrink {sweep} {number}</code>
+              </>
+            )}
+          </p>
+        </>
+      )}
+    </section>
+  )
+}
+
+function Facts({ run }: { readonly run: TrialResult }) {
+  const times = Object.entries(run.nodes)
+    .map(([path, time]) => [path, time?.total_s ?? 0] as const)
+    .sort((left, right) => right[1] - left[1])
+  return (
+    <dl className="sweep-facts">
+      <Fact name="duration" value={duration(run.duration_s)} />
+      <Fact name="seed" value={String(run.configuration.seed)} />
+      {Object.entries(run.configuration.values).map(([address, value]) => (
+        <Fact key={address} name={address} value={short(value)} />
+      ))}
+      {times.slice(0, NODES).map(([path, seconds]) => (
+        <Fact key={path} name={path} value={duration(seconds)} />
+      ))}
+      {Object.entries(run.outputs).map(([key, value]) => (
+        <Fact key={`output ${key}`} name={`output ${key}`} value={short(value)} />
+      ))}
+    </dl>
+  )
+}
+
+function Fact({ name, value }: { readonly name: string; readonly value: string }) {
+  return (
+    <>
+      <dt className="mono">{name}</dt>
+      <dd>{value}</dd>
+    </>
+  )
+}
+
+/** Executes the run again with recording; the recording opens by itself where the run was the same. */
+function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: TrialResult; readonly onOpen: (recording: string) => void }) {
+  const [isAsking, setAsking] = useState(false)
+  const [told, setTold] = useState<RecordedTrial>()
+  const [problem, setProblem] = useState('')
+
+  async function again(): Promise<void> {
+    setAsking(true)
+    setProblem('')
+    try {
+      const recorded = await recordRun(sweep, run.configuration.number)
+      setTold(recorded)
+      if (recorded.same && recorded.recording) onOpen(recorded.recording)
+    } catch (error) {
+      setProblem(wordsOf(error))
+    }
+    setAsking(false)
+  }
+
+  return (
+    <div className="sweep-again">
+      <button type="button" className="command is-strong" aria-disabled={isAsking || undefined} onClick={() => !isAsking && void again()}>
+        <IconPlayerPlay size={15} aria-hidden />
+        {isAsking ? 'Executing it again …' : 'Open with graph, timeline and 3D'}
+      </button>
+      <p className="quiet sweep-note" role="status">
+        {isAsking ? 'The run is executed again and recorded; it opens when it has ended.' : 'Executes this configuration again, and records it.'}
+      </p>
+      {told && !told.same && (
+        <p className="is-failed" role="alert">
+          It ended differently this time: {labelOf(told.result)} with {told.result.events} events, before {labelOf(told.saved)} with {told.saved.events}.
+          {told.recording && (
+            <>
+              {' '}
+              <button type="button" className="link" onClick={() => onOpen(told.recording)}>
+                Open it anyway
+              </button>
+            </>
+          )}
+        </p>
+      )}
+      {problem && (
+        <p className="is-failed" role="alert">
+          {problem}
+        </p>
+      )}
+    </div>
+  )
+}
