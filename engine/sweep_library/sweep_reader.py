@@ -214,6 +214,7 @@ class SweepReader:
             sweep = load_sweep(sweep_file(self.project, sweep_id))
             known = _Loaded(subject=SweepSubject.load(sweep), configurations=configurations(sweep))
             require_simulated(known.subject)
+            require_design(sweep)
             self._loaded[sweep_id] = known
         return known
 
@@ -308,6 +309,20 @@ def require_simulated(subject: SweepSubject) -> None:
                 where=cell.file if cell is not None else None,
                 hint="give the sweep a `cell` whose robots have `driver: sim`",
             )
+
+
+def require_design(sweep: Sweep) -> None:
+    """Refuse a search for failures, whose runs were chosen to fail: their share is no rate.
+
+    Raises:
+        ControlError: the document has a search.
+    """
+    if sweep.document.search is not None:
+        raise ControlError(
+            "a search for failures has no page yet",
+            where=sweep.source.position(("search",), of_key=True),
+            hint=f"flexcell sweep {sweep.file.name} --report search.html; `--search none` executes its design",
+        )
 
 
 def _forget_oldest(folder: Path) -> None:

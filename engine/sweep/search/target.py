@@ -71,4 +71,5 @@ def is_failure(result: TrialResult) -> bool:
 def _numbers(result: TrialResult) -> Iterator[tuple[str, float]]:
     """Yield the numbers of a run by name."""
     yield from result.outputs.items()
+    yield from result.measures.items()
     yield DURATION, result.duration_s

@@ -226,3 +226,11 @@ def test_a_sweep_is_executed_in_the_end(project: LuckProject) -> None:
         SweepReader(project.path).execute("gone.yaml", again=False, show=shown.append)
     with pytest.raises(NoSuchSweep):
         SweepReader(project.path).runs("gone.yaml")
+
+
+def test_a_search_for_failures_says_where_it_is_executed(project: LuckProject) -> None:
+    project.write(runs=10, search={"towards": "most duration_s"})
+    (line,) = read(project, ListSweeps())["sweeps"]
+    assert "a search for failures has no page yet" in line["problem"]
+    assert "flexcell sweep sweep.yaml --report search.html" in line["problem"]
+    assert refused(project, ReadSweep(sweep=ID)).kind == "state"

@@ -669,6 +669,15 @@ export interface FactorChoice {
   readonly options: readonly unknown[]
 }
 
+/** The parts of one factor in which there is a run. */
+export interface FactorCoverage {
+  readonly address: string
+  readonly parts: number
+  readonly covered: number
+  readonly gap: readonly [number, number] | null
+  readonly gap_share: number | null
+}
+
 /** How the success and the duration of runs depend on a factor. */
 export interface FactorEffect {
   readonly address: string
@@ -951,6 +960,12 @@ export interface IdleFrame {
   readonly k: "ping"
 }
 
+/** What a set of runs has covered of all factors. */
+export interface InputCoverage {
+  readonly factors: readonly FactorCoverage[]
+  readonly pairs: readonly PairCoverage[]
+}
+
 /** A run of the journal whose process died after event `last_seq`; it can be resumed. */
 export interface InterruptedRun {
   readonly id: string
@@ -1129,6 +1144,13 @@ export interface LoopBlocked {
   readonly path: string
   readonly blocked_s: number
   readonly where: string
+}
+
+/** The distribution of a measure over the runs that succeeded, and over those that did not. */
+export interface MeasureSpread {
+  readonly name: string
+  readonly successes: Quantiles | null
+  readonly failures: Quantiles | null
 }
 
 /** Lines that both sides changed differently; `line`, from 1, is their position in our text. */
@@ -1356,6 +1378,14 @@ export interface OutcomeWithdrawn {
   readonly path: string
   readonly visit: number
   readonly outcome: string
+}
+
+/** The pairs of parts of two factors in which there is a run. */
+export interface PairCoverage {
+  readonly first: string
+  readonly second: string
+  readonly parts: number
+  readonly covered: number
 }
 
 /** A parameter with its present value and the JSON Schema of its values. */
@@ -1759,6 +1789,17 @@ export interface ScopeView {
   readonly values: Dict<UserdataRecord>
 }
 
+/** A search for failures instead of a design: what has ended decides which configurations are executed next. The first `batch` configurations are those of a random design; each later batch is drawn nearer to the runs that failed, or came nearest to it. `towards` names the number that tells how near a run that succeeded is; with `failure` none does. A run that fails is always nearer. The same seed finds the same configurations, with any number of workers. Of the method `cross_entropy`, `elite` is the share of a batch that the next one is drawn around, and `random_share` the share of each batch that is drawn at random all the same: it finds what the number does not point at, and bounds the weight of a run in the estimate of the failure probability. */
+export interface SearchSpec {
+  readonly towards?: string
+  readonly method?: "cross_entropy" | "optuna"
+  readonly runs?: number
+  readonly batch?: number
+  readonly stop_after?: number | null
+  readonly elite?: number
+  readonly random_share?: number
+}
+
 /** The service responded, or failed with `cause`. */
 export interface ServiceAnswered {
   readonly event: "answer"
@@ -1965,7 +2006,7 @@ export interface Supervision {
   readonly loss_timeout_s?: number
 }
 
-/** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. */
+/** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is required of a success rate is then not decided. */
 export interface SweepDocument {
   readonly flexcell: 1
   readonly description?: string
@@ -1978,6 +2019,7 @@ export interface SweepDocument {
   readonly substitutes?: string | null
   readonly factors?: Dict<Factor>
   readonly design?: "grid" | "latin_hypercube" | "random" | "sobol" | PointsFile
+  readonly search?: SearchSpec | null
   readonly seed?: number
   readonly placement_noise?: boolean
   readonly runs?: number
@@ -2057,7 +2099,9 @@ export interface SweepView {
   readonly duration_s: Quantiles | null
   readonly nodes: readonly Quantiles[]
   readonly outputs: readonly Quantiles[]
+  readonly measures: readonly MeasureSpread[]
   readonly effects: readonly FactorEffect[]
+  readonly inputs: InputCoverage
   readonly items: number
   readonly missing: readonly CoverageItem[]
   readonly cpu_s: number
@@ -2220,6 +2264,7 @@ export interface TrialResult {
   readonly events_sha256: string
   readonly nodes: Dict<NodeTime>
   readonly outputs: Dict<number>
+  readonly measures: Dict<number>
   readonly covered: string
   readonly wall_s: number
   readonly cpu_s: number

@@ -21,7 +21,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> LuckProject:
 
 @pytest.fixture
 def without_processes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.sweep.search.search_execution.WorkerPool", ReversedPool)
+    monkeypatch.setattr(WorkerOptions, "new_executor", lambda options, subject: ReversedPool(subject, options))
 
 
 def _execute(sweep: Sweep, file: Path, *, workers: int = 1, stop_after: int | None = None) -> SearchEnd:
