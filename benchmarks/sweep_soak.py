@@ -10,10 +10,12 @@ from __future__ import annotations
 import os
 import random
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
 from collections import Counter
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -75,6 +77,8 @@ class Disturbed:
 
     done: Counter[str] = field(default_factory=Counter[str])
     executed: int = 0
+    twice: int = 0
+    """Runs executed in a part beyond the results that it added; those that are executed again on request count too."""
     parts: int = 0
 
 
@@ -96,7 +100,7 @@ def soak(runs: int, seed: int) -> bool:
         _part(file, results, disturbed, again=True)
         second = _table(file, results)
     lost, different = runs - len(second), sum(one != other for one, other in zip(calm, second, strict=False))
-    twice = disturbed.executed - runs - broken
+    twice = disturbed.twice - broken
     done = ", ".join(f"{count} x {what}" for what, count in disturbed.done.items())
     print(f"\n{runs} runs in {disturbed.parts} parts; {done}\n")
     print("| lost | executed although saved | different | crashed or hung, then executed again |\n|--:|--:|--:|--:|")
@@ -144,7 +148,7 @@ def _part(
         [sys.executable, "-c", DRIVER, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     disturbed.parts += 1
-    before = disturbed.executed
+    before, saved = disturbed.executed, _rows(results)
     assert driver.stdout is not None
     assert driver.stderr is not None
     for line in driver.stdout:
@@ -160,6 +164,8 @@ def _part(
     told = driver.stderr.read()
     driver.stdout.close()
     driver.stderr.close()
+    # A driver that is killed may have saved one more than it could print.
+    disturbed.twice += max(disturbed.executed - before - (_rows(results) - saved), 0)
     if full:
         assert "results cannot be written" in told, told
         disturbed.done["full disk"] += 1
@@ -173,6 +179,13 @@ def _hit_a_worker(driver: int, chance: random.Random, disturbed: Disturbed) -> N
         how = chance.choice((signal.SIGKILL, signal.SIGSTOP))
         os.kill(chance.choice(workers), how)
         disturbed.done["kill -9 of a worker" if how is signal.SIGKILL else "worker that hangs"] += 1
+
+
+def _rows(results: Path) -> int:
+    if not results.exists():
+        return 0
+    with closing(sqlite3.connect(results)) as connection:
+        return int(connection.execute("SELECT count(*) FROM results").fetchone()[0])
 
 
 def _files(results: Path) -> list[Path]:
