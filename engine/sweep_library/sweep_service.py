@@ -14,7 +14,7 @@ import msgspec
 
 from engine.errors import ControlError, DocumentError, FlexcellError, RobotError
 from engine.host.child_process import describe_exit, start_child
-from engine.sweep_library.sweep_files import NoSuchSweep
+from engine.sweep_library.sweep_files import NoSuchSweep, sweep_file
 from engine.sweep_library.sweep_requests import (
     CODE,
     Answered,
@@ -54,6 +54,7 @@ class SweepService:
         self._reader: _SweepProcess | None = None
         self._reading = asyncio.Lock()
         self._recording = asyncio.Lock()
+        self._starting = asyncio.Lock()
         self._recorder: _SweepProcess | None = None
         self._executor: _SweepProcess | None = None
         self._following: asyncio.Task[None] | None = None
@@ -89,6 +90,12 @@ class SweepService:
             ControlError: another sweep is being executed, or this one must not be.
             FlexcellError: it cannot be executed.
         """
+        # Without a process, which takes seconds to say the same.
+        await asyncio.to_thread(sweep_file, self._project, sweep_id)
+        async with self._starting:
+            await self._begin(sweep_id, again=again)
+
+    async def _begin(self, sweep_id: str, *, again: bool) -> None:
         if self._live or self._executor is not None:
             running = next(iter(self._live), "another sweep")
             raise ControlError("a sweep is being executed already", where=running, hint="stop it, or wait for its end")
@@ -124,6 +131,7 @@ class SweepService:
         Raises:
             FlexcellError: it is refused, or its process has ended.
         """
+        await asyncio.to_thread(sweep_file, self._project, sweep_id)
         async with self._recording:
             process = self._recorder = await _SweepProcess.start(self._project)
             try:

@@ -180,9 +180,9 @@ class FakeArmPort:
         """Why it was tripped, until it is recovered."""
         return self._reflex
 
-    def when_reflex(self, tell: Callable[[str], None]) -> None:
-        """Call `tell` when it is tripped."""
-        self._reflex_listeners.append(tell)
+    def when_reflex(self, callback: Callable[[str], None]) -> None:
+        """Call `callback` when it is tripped."""
+        self._reflex_listeners.append(callback)
 
     def sample(self) -> ArmSample:
         """Where the arm is now; measured and desired are the same."""

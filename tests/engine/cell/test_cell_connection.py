@@ -64,8 +64,8 @@ class FakeWorld:
     async def stop(self) -> None:
         """Nothing moves."""
 
-    def when_connection_changes(self, tell: Callable[[], None]) -> None:
-        self._tell = tell
+    def when_connection_changes(self, callback: Callable[[], None]) -> None:
+        self._tell = callback
 
     def lose(self) -> None:
         """Be lost from now on."""
