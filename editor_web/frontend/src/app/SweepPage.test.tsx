@@ -29,6 +29,7 @@ function trial(number: number, success: boolean): TrialResult {
     events_sha256: 'abcdef0123456789',
     nodes: { 'root/pick': { visits: 1, total_s: 2.5 } },
     outputs: {},
+    measures: { 'left.path_m': 2.125 },
     covered: '',
     wall_s: 1,
     cpu_s: 1,
@@ -61,7 +62,9 @@ const VIEW: SweepView = {
   duration_s: { ...ROW, name: 'run' },
   nodes: [ROW],
   outputs: [],
+  measures: [{ name: 'left.path_m', successes: ROW, failures: null }],
   effects: [{ address: 'parameters.speed', with_success: -0.5, with_duration: null, levels: [{ label: '0 to 0.3', runs: 4, interval: [0.1, 0.9], successes: 2 }], input_share: 0.4 }],
+  inputs: { factors: [{ address: 'parameters.speed', parts: 10, covered: 4, gap: [0.3, 0.9], gap_share: 0.6 }], pairs: [{ first: 'parameters.speed', second: 'parameters.force', parts: 100, covered: 4 }] },
   items: 9,
   missing: [{ kind: 'outcome', path: 'root/pick', name: 'lost', target: 'failed', file: 'a', line: 1, column: 1 }],
   cpu_s: 4,
@@ -94,6 +97,9 @@ it('tells the rate with its interval, the verdict, causes, factors and what was 
   expect(screen.getByText('Undecided: at least 90.0 %')).toBeVisible()
   expect(screen.getByRole('img', { name: 'Success rate after each of 4 runs; at the end 50.0 %, interval 12.0 % to 88.0 %' })).toBeVisible()
   expect(screen.getByText('correlation with success −0.50; 40.0 % of its range has a run')).toBeVisible()
+  expect(screen.getByRole('rowheader', { name: 'left.path_m' })).toBeVisible()
+  expect(screen.getByText('4 of 10 parts have a run; none from 0.3 to 0.9 (60.0 %)')).toBeVisible()
+  expect(screen.getByText(/with parameters.force: 4 of 100/)).toBeVisible()
   expect(screen.getByText('8 of 9 nodes and exits of the behavior were executed.')).toBeVisible()
   expect(screen.getByRole('list', { name: 'Never executed' })).toHaveTextContent('outcome root/pick —lost→ failed')
 })

@@ -4,6 +4,7 @@ import type { FactorChoice, SweepLine, SweepLive, SweepView, TrialResult } from 
 import {
   alikeOf,
   axisScale,
+  coverageText,
   currentLive,
   documentOf,
   factorOf,
@@ -23,7 +24,7 @@ const LINE: SweepLine = { id: 's.yaml', description: '', behavior: 'b.yaml', des
 const CHOICE: FactorChoice = { address: 'parameters.speed', nominal: 0.5, unit: '', description: '', least: 0.05, most: 1, options: [] }
 const DRAFT: FactorDraft = { address: 'parameters.speed', kind: 'uniform', first: '0.1', second: '0.9', values: '' }
 
-function run(number: number, told: Partial<TrialResult> = {}, values: Record<string, unknown> = { x: number / 10, part: 'bolt' }): TrialResult {
+function run(number: number, changes: Partial<TrialResult> = {}, values: Record<string, unknown> = { x: number / 10, part: 'bolt' }): TrialResult {
   return {
     configuration: { number, seed: number, values },
     status: 'finished',
@@ -37,11 +38,12 @@ function run(number: number, told: Partial<TrialResult> = {}, values: Record<str
     events_sha256: 'a',
     nodes: {},
     outputs: {},
+    measures: {},
     covered: '',
     wall_s: 1,
     cpu_s: 1,
     memory_bytes: 1,
-    ...told,
+    ...changes,
   }
 }
 
@@ -69,14 +71,20 @@ it('reads what is required', () => {
 
 it('finds every distribution of a summary, also one that it has no name for', () => {
   const row = { name: 'force_n', runs: 3, least: 1, middle: 2, p95: 3, most: 4 }
-  const view = { ...LINE, done: 4, causes: [{ at: 'x', runs: 1 }], duration_s: row, nodes: [row, row], measures: [row], outputs: [], peaks: [row] }
+  const spread = { name: 'left.force_max_n', successes: row, failures: row }
+  const view = { ...LINE, done: 4, duration_s: row, nodes: [row, row], measures: [spread, { ...spread, failures: null }], outputs: [] }
   const found = quantileGroups(view as unknown as SweepView)
-  expect(found.map((group) => [group.key, group.title, group.rows.length])).toEqual([
-    ['duration_s', 'Duration of runs that succeeded, s', 1],
-    ['nodes', 'Time in each node, s', 2],
-    ['measures', 'Measures', 1],
-    ['peaks', 'peaks', 1],
+  expect(found.map((group) => [group.title, group.rows.map((each) => each.name)])).toEqual([
+    ['Duration of runs that succeeded, s', ['force_n']],
+    ['Time in each node, s', ['force_n', 'force_n']],
+    ['Measures of runs that succeeded, and of those that failed', ['left.force_max_n', 'left.force_max_n, failed', 'left.force_max_n']],
   ])
+})
+
+it('tells how much of a factor the runs have covered', () => {
+  const factor = { address: 'x', parts: 10, covered: 7, gap: [0.5, 0.8] as const, gap_share: 0.3 }
+  expect(coverageText(factor)).toBe('7 of 10 parts have a run; none from 0.5 to 0.8 (30.0 %)')
+  expect(coverageText({ ...factor, gap: null, gap_share: null })).toBe('7 of 10 parts have a run')
 })
 
 it('lists failing runs first, and runs in any other order', () => {

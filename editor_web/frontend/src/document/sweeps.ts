@@ -1,6 +1,6 @@
 /** What a sweep has shown, in words, orders and scales. Pure. */
-import type { Factor, FactorChoice, Interval, Quantiles, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
-import { lookup, type Dict } from './dict'
+import type { Factor, FactorChoice, FactorCoverage, Interval, MeasureSpread, Quantiles, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
+import { lookup } from './dict'
 import { numeral } from './values'
 
 /** A share as a percentage; what is not quite everything never reads as 100 %. */
@@ -54,24 +54,31 @@ export function requiredRate(require: string | null | undefined): number | undef
   return text === undefined ? undefined : Number(text)
 }
 
-const GROUPS: Dict<string> = { duration_s: 'Duration of runs that succeeded, s', nodes: 'Time in each node, s', outputs: 'Outputs', measures: 'Measures' }
-
 export interface QuantileGroup {
   readonly key: string
   readonly title: string
   readonly rows: readonly Quantiles[]
 }
 
-/** Every distribution that a summary has, whatever it is called. */
-export function quantileGroups(view: SweepView): readonly QuantileGroup[] {
-  return Object.entries(view).flatMap(([key, value]: [string, unknown]) => {
-    const rows = (Array.isArray(value) ? value : [value]).filter(isQuantiles)
-    return rows.length > 0 ? [{ key, title: lookup(GROUPS, key) ?? key, rows }] : []
-  })
+/** The distributions of a sweep that have any values. */
+export function quantileGroups({ duration_s, nodes, outputs, measures }: SweepView): readonly QuantileGroup[] {
+  const groups = [
+    { key: 'duration', title: 'Duration of runs that succeeded, s', rows: duration_s === null ? [] : [duration_s] },
+    { key: 'nodes', title: 'Time in each node, s', rows: nodes },
+    { key: 'outputs', title: 'Outputs', rows: outputs },
+    { key: 'measures', title: 'Measures of runs that succeeded, and of those that failed', rows: measures.flatMap(measureRows) },
+  ]
+  return groups.filter((group) => group.rows.length > 0)
 }
 
-function isQuantiles(value: unknown): value is Quantiles {
-  return typeof value === 'object' && value !== null && 'p95' in value && 'middle' in value
+function measureRows({ name, successes, failures }: MeasureSpread): readonly Quantiles[] {
+  return [...(successes === null ? [] : [{ ...successes, name }]), ...(failures === null ? [] : [{ ...failures, name: `${name}, failed` }])]
+}
+
+/** How much of a factor the runs have covered, and where there was none. */
+export function coverageText({ parts, covered, gap, gap_share }: FactorCoverage): string {
+  const share = `${covered} of ${parts} parts have a run`
+  return gap === null ? share : `${share}; none from ${short(gap[0])} to ${short(gap[1])}${gap_share === null ? '' : ` (${percent(gap_share)})`}`
 }
 
 export interface RunOrder {

@@ -1,4 +1,4 @@
-/** The distributions of numbers over runs, whatever a summary tells: quantiles, and the same as a strip. */
+/** The distributions of numbers over runs: quantiles, and the same as a strip. */
 import { useState } from 'react'
 import type { Quantiles, SweepView } from '../../api/types'
 import { quantileGroups, short, type QuantileGroup } from '../../document/sweeps'

@@ -84,6 +84,9 @@ function Facts({ run }: { readonly run: TrialResult }) {
       {times.slice(0, NODES).map(([path, seconds]) => (
         <Fact key={path} name={path} value={duration(seconds)} />
       ))}
+      {Object.entries(run.measures).map(([key, value]) => (
+        <Fact key={`measure ${key}`} name={key} value={short(value)} />
+      ))}
       {Object.entries(run.outputs).map(([key, value]) => (
         <Fact key={`output ${key}`} name={`output ${key}`} value={short(value)} />
       ))}

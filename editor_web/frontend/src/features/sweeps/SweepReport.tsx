@@ -3,6 +3,7 @@ import { useMemo, useState, type ReactNode } from 'react'
 import type { SweepRuns, SweepView } from '../../api/types'
 import { ViewBoundary } from '../../components/ViewBoundary'
 import { alikeOf, requiredRate } from '../../document/sweeps'
+import { CoveredInputs } from './CoveredInputs'
 import { Distributions } from './Distributions'
 import { FactorEffects } from './FactorEffects'
 import { MissedItems } from './MissedItems'
@@ -74,6 +75,7 @@ export function SweepReport({ view, runs, mayOperate, selected, onSelect, onOpen
       </Card>
       <Card title="Coverage" isWide>
         <MissedItems items={view.items} missing={view.missing} />
+        <CoveredInputs inputs={view.inputs} />
       </Card>
     </div>
   )
