@@ -25,6 +25,8 @@ class SourceFile(NamedTuple):
     """Those that are public and stand in no other class or function."""
     functions: tuple[str, ...]
     """All, with methods and those inside others."""
+    assigned: frozenset[str]
+    """Attributes, parameters, keyword arguments and locals, where the file assigns or passes them."""
     called: frozenset[str]
     """What is called by its name, or by a name and one attribute: `Run`, `Journal.open`."""
 
@@ -61,5 +63,18 @@ def source_text(text: str) -> SourceFile:
         imports=tuple(imports),
         classes=tuple(classes),
         functions=tuple(functions),
+        assigned=frozenset(filter(None, map(_assigned, ast.walk(tree)))),
         called=frozenset(called),
     )
+
+
+def _assigned(node: ast.AST) -> str | None:
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()):
+            return name
+        case ast.arg(arg=name) | ast.keyword(arg=name) | ast.alias(asname=name):
+            return name
+        case ast.ExceptHandler(name=name) | ast.MatchAs(name=name) | ast.MatchStar(name=name):
+            return name
+        case _:
+            return None

@@ -250,11 +250,13 @@ class ClusterExecutor:
         self._shipped = self._client.submit(shipped, files, key=f"flexcell-{self._token}-files", pure=False)
 
     def _forget(self, configuration: Configuration) -> None:
-        """Remove the flag of a configuration from the scheduler."""
-        from distributed import Event
+        """Remove the flag and the result of a configuration from the scheduler."""
+        from distributed import Event, Variable
 
+        name = claim_name(self._token, configuration.number)
         with suppress(OSError, RuntimeError, TimeoutError):
-            Event(claim_name(self._token, configuration.number), client=self._client).clear()
+            Event(name, client=self._client).clear()
+            Variable(name, client=self._client).delete()
 
 
 def _connected(options: ClusterOptions) -> Any:

@@ -22,6 +22,8 @@ from engine.sweep.trial_process import TrialProcess
 from engine.sweep.worker import WorkerAnswer, WorkerTask
 
 _IDLE_S = 60.0
+_KNOWN_S = 1.0
+"""Time in which the scheduler answers that there is no result."""
 
 
 class RemoteTask(msgspec.Struct, frozen=True, kw_only=True):
@@ -36,7 +38,7 @@ class RemoteTask(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RemoteAnswer(msgspec.Struct, frozen=True, kw_only=True):
-    """How a configuration ended on a worker; `answer` is None if it had begun on another worker, which is gone."""
+    """How a configuration ended; `answer` is None if the worker on which it had begun was lost before its end."""
 
     answer: WorkerAnswer | None = None
     worker: str = ""
@@ -58,13 +60,17 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
 
     Arguments and result are JSON or MessagePack: the scheduler handles them without knowing our types.
     """
-    from distributed import Event, get_worker
+    from distributed import Event, Variable, get_worker
 
     asked = msgspec.json.decode(task, type=RemoteTask)
     wanted = msgspec.json.decode(configuration, type=Configuration)
     begun = Event(claim_name(asked.token, wanted.number))
+    ended = Variable(claim_name(asked.token, wanted.number))
     if begun.is_set():
-        return msgspec.json.encode(RemoteAnswer())
+        try:
+            return ended.get(timeout=_KNOWN_S)
+        except TimeoutError:
+            return msgspec.json.encode(RemoteAnswer())
     begun.set()
     worker = get_worker()
     site = _entered(asked, shipment, worker.local_directory)
@@ -72,7 +78,10 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
         answer = site.execute(wanted)
     finally:
         site.leave()
-    return msgspec.json.encode(RemoteAnswer(answer=answer, worker=str(worker.address)))
+    answered = msgspec.json.encode(RemoteAnswer(answer=answer, worker=str(worker.address)))
+    # Results lie on their workers until the driver takes them; this one outlives its worker.
+    ended.set(answered)
+    return answered
 
 
 def local_versions() -> dict[str, str]:

@@ -21,7 +21,10 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> LuckProject:
 
 @pytest.fixture
 def without_processes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(WorkerOptions, "new_executor", lambda options, subject: ReversedPool(subject, options))
+    def new_executor(options: WorkerOptions, subject: SweepSubject) -> ReversedPool:
+        return ReversedPool(subject, options)
+
+    monkeypatch.setattr(WorkerOptions, "new_executor", new_executor)
 
 
 def _execute(sweep: Sweep, file: Path, *, workers: int = 1, stop_after: int | None = None) -> SearchEnd:
