@@ -11,6 +11,7 @@ import tempfile
 import threading
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -65,12 +66,14 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
     asked = msgspec.json.decode(task, type=RemoteTask)
     wanted = msgspec.json.decode(configuration, type=Configuration)
     begun = Event(claim_name(asked.token, wanted.number))
-    ended = Variable(claim_name(asked.token, wanted.number))
+    # Dask has no types.
+    ended: Any = Variable(claim_name(asked.token, wanted.number))
     if begun.is_set():
         try:
-            return ended.get(timeout=_KNOWN_S)
+            result: bytes = ended.get(timeout=_KNOWN_S)
         except TimeoutError:
-            return msgspec.json.encode(RemoteAnswer())
+            result = msgspec.json.encode(RemoteAnswer())
+        return result
     begun.set()
     worker = get_worker()
     site = _entered(asked, shipment, worker.local_directory)
