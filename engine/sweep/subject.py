@@ -35,6 +35,7 @@ from engine.sweep.cell_files import model_files
 from engine.sweep.cell_variation import varied_cell, written_value
 from engine.sweep.distributions import nominal
 from engine.sweep.source_files import SourceFile, with_imports
+from engine.sweep.store_copy import entries_hash
 
 _PACKAGE = "flexcell"
 _HASH = 64
@@ -134,8 +135,7 @@ class SweepSubject:
             versions={
                 "behavior": behavior.meaning,
                 "cell": _hash_of(cell.document) if cell is not None else "",
-                "entries": _file_hash(cell.seed_file) if cell is not None else "",
-                "store": _file_hash(store_file),
+                "entries": entries_hash(cell, store_file) if cell is not None else "",
                 "parameters": _hash_of({**document.parameters, "inputs": document.inputs}),
                 "states": _files_hash(state_sources(plans.values(), importable_folders(project, behavior))),
                 "placement_noise": str(document.placement_noise),

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import resource
-import sqlite3
 import tempfile
 import time
 from collections.abc import Mapping
-from contextlib import closing
 from hashlib import sha256
 from pathlib import Path
 
@@ -27,6 +25,7 @@ from engine.recording import RecordingOptions, collect_documents
 from engine.runtime.history import RunStateChange
 from engine.sweep.cell_variation import varied_cell
 from engine.sweep.configuration import Configuration
+from engine.sweep.store_copy import copied_store
 from engine.sweep.subject import SweepSubject
 from engine.sweep.subject_files import PortableText, subject_root
 from engine.sweep.trial_result import NodeTime, TrialResult, TrialStatus
@@ -92,7 +91,7 @@ class Trials:
         setup = CellSetup(
             cell=cell,
             seed=seed if document.placement_noise else None,
-            store=str(_copied_store(subject.store_file, folder)) if cell is not None and cell.document.store else None,
+            store=str(copied_store(subject.store_file, folder)) if cell is not None and cell.document.store else None,
             recording=RecordingOptions(path=record, documents=documents)
             if record is not None and documents is not None
             else None,
@@ -191,16 +190,6 @@ def _given(values: Mapping[str, object], kind: str) -> dict[str, object]:
     return {
         address.removeprefix(f"{kind}."): value for address, value in values.items() if address.startswith(f"{kind}.")
     }
-
-
-def _copied_store(file: Path | None, folder: Path) -> Path:
-    """Return the file of a store of this run alone: a copy of the store, or a new one for the seed entries."""
-    copy = folder / "store.db"
-    if file is not None:
-        address = f"{file.absolute().as_uri()}?mode=ro"
-        with closing(sqlite3.connect(address, uri=True)) as stored, closing(sqlite3.connect(copy)) as copied:
-            stored.backup(copied)
-    return copy
 
 
 def _cpu_s() -> float:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import shutil
-import sqlite3
 import sys
-from contextlib import closing
 from pathlib import Path
 
 import msgspec
 import pytest
 
+from engine.clock import run_virtual
 from engine.document.sweep import parse_sweep
 from engine.errors import DocumentError
+from engine.skills.entries import EntryRecord
+from engine.store import SqliteStore
 from engine.sweep import SweepSubject, configurations
 from engine.sweep.cluster.shipment import Shipment, pack
 from tests.engine.sweep.luck_project import LuckProject
@@ -35,13 +36,17 @@ def project(tmp_path: Path) -> LuckProject:
     (folder / "cells").mkdir(parents=True)
     (folder / "arms" / "mine").mkdir(parents=True)
     store = tmp_path / "elsewhere.db"
-    with closing(sqlite3.connect(store)) as connection:
-        connection.execute("CREATE TABLE t (x)")
+    run_virtual(_with_an_entry(store))
     (folder / "cells" / "cell.yaml").write_text(CELL.replace("STORE", str(store)), encoding="utf-8")
     (folder / "cells" / "entries.yaml").write_text(ENTRIES, encoding="utf-8")
     (folder / "arms" / "mine" / "robot.yaml").write_text("flexcell: 1\n", encoding="utf-8")
     (folder / "slip.yaml").write_text(FAULTS, encoding="utf-8")
     return LuckProject(folder)
+
+
+async def _with_an_entry(file: Path) -> None:
+    async with SqliteStore.open(file, inline=True) as store:
+        await store.seed([EntryRecord(kind="joints", name="taught", value={"joints": [0.5]}, revision=1)])
 
 
 def _subject(folder: Path, document: str) -> SweepSubject:
