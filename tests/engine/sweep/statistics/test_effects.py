@@ -73,3 +73,9 @@ def test_what_does_not_vary_has_no_correlation(first: list[float], second: list[
 @pytest.mark.parametrize(("share", "value"), [(0.0, 1.0), (0.5, 2.5), (1.0, 4.0), (0.25, 1.75)])
 def test_a_quantile_is_linear_between_values(share: float, value: float) -> None:
     assert quantile([1.0, 2.0, 3.0, 4.0], share) == pytest.approx(value)
+
+
+def test_few_runs_with_a_number_of_their_own_are_levels_of_quarters() -> None:
+    numbers = [0.1, 0.9, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]
+    effect = factor_effect("parameters.a", numbers, [True] * 8, [1.0] * 8, factor=None, confidence=0.95)
+    assert [level.runs for level in effect.levels] == [2, 2, 2, 2]
