@@ -99,12 +99,12 @@ def costs(behavior: Path, runs: int, folder: Path) -> None:
         ("warm", runs, WorkerOptions(workers=2)),
         ("cold", cold_runs, WorkerOptions(workers=2, runs_of_process=1)),
     ):
-        began_s = _cpu_s()
-        ends[name] = swept(behavior, count, options, folder), _cpu_s() - began_s
-    began_s = _cpu_s()
+        started_s = _cpu_s()
+        ends[name] = swept(behavior, count, options, folder), _cpu_s() - started_s
+    started_s = _cpu_s()
     with cluster(2) as (options, _):
         end = swept(behavior, runs, options, folder)
-    ends["Dask"] = end, _cpu_s() - began_s
+    ends["Dask"] = end, _cpu_s() - started_s
     hashes = {tuple(each.events_sha256 for each in end.results[:cold_runs]) for end, _ in ends.values()}
     print(f"\n{behavior.name}, {runs} runs, {cold_runs} cold; events {'equal' if len(hashes) == 1 else 'DIFFERENT'}\n")
     print("| | CPU-s a run | runs per CPU-hour |\n|---|--:|--:|")
@@ -118,15 +118,15 @@ def overhead(folder: Path) -> None:
     trivial.write_text(TRIVIAL, encoding="utf-8")
     print("\n| 1,000 runs that do nothing | ms a run | MB of its process, first and most | MB of Dask's worker |")
     print("|---|--:|--:|--:|")
-    began_s = time.perf_counter()
+    started_s = time.perf_counter()
     end = swept(trivial, 1000, WorkerOptions(workers=1, runs_of_process=2000), folder)
-    print(_overhead_row("warm, one process", end, time.perf_counter() - began_s, ""))
+    print(_overhead_row("warm, one process", end, time.perf_counter() - started_s, ""))
     with cluster(1) as (options, memory_bytes):
         swept(trivial, 1, options, folder)
         first_bytes = memory_bytes()
-        began_s = time.perf_counter()
+        started_s = time.perf_counter()
         end = swept(trivial, 1000, replace(options, runs_of_process=2000), folder)
-        took_s = time.perf_counter() - began_s
+        took_s = time.perf_counter() - started_s
         most = f"{first_bytes / 1e6:.0f}, {memory_bytes() / 1e6:.0f}"
     print(_overhead_row("Dask, one worker", end, took_s, most), end="\n\n")
 

@@ -161,13 +161,13 @@ def _part(
         elif chance is not None and (disturbed.executed - before) in (20, 90):
             _hit_a_worker(driver.pid, chance, disturbed)
     driver.wait()
-    told = driver.stderr.read()
+    output = driver.stderr.read()
     driver.stdout.close()
     driver.stderr.close()
     # A driver that is killed may have saved one more than it could print.
     disturbed.twice += max(disturbed.executed - before - (_rows(results) - saved), 0)
     if full:
-        assert "results cannot be written" in told, told
+        assert "results cannot be written" in output, output
         disturbed.done["full disk"] += 1
 
 

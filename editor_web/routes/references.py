@@ -63,7 +63,7 @@ def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> Mov
     moved = move_with_references(services.documents, document_id, body.id, follow=body.follow)
     opened = moved.opened
     document = document_body(opened, services.documents.examine(opened.id, opened.text))
-    return MoveResultBody(document=document, updated=moved.followed, left=moved.left)
+    return MoveResultBody(document=document, updated=moved.updated, left=moved.left)
 
 
 @router.post("/documents/{document_id:path}/restore", status_code=201)

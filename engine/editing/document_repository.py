@@ -159,10 +159,10 @@ class DocumentRepository:
             DocumentError: the text is not a valid behavior, or leads out of the project.
         """
         file, context = self.file_of(document_id), self.context(document_id)
-        stray = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
-        if stray is not None:
-            where = Position(file=document_id, line=stray.line, column=stray.column)
-            raise DocumentError(stray.message, where=where, hint=stray.hint)
+        dangling = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
+        if dangling is not None:
+            where = Position(file=document_id, line=dangling.line, column=dangling.column)
+            raise DocumentError(dangling.message, where=where, hint=dangling.hint)
         return data_flow(parse_behavior(text, file=file), self.catalogue)
 
     def save(self, document_id: str, text: str, *, base_hash: str) -> StoredDocument:
@@ -279,8 +279,8 @@ class DocumentRepository:
             NoSuchDocument: no version of it is kept.
             DocumentError: a document with its id exists.
         """
-        file, newest = self.file_of(document_id), self.versions(document_id)[0]
-        return self._put(document_id, file, self.version(document_id, newest.hash))
+        file, latest = self.file_of(document_id), self.versions(document_id)[0]
+        return self._put(document_id, file, self.version(document_id, latest.hash))
 
     def stamps(self) -> dict[str, tuple[int, int]]:
         """Return modification time (ns) and size of every document, by id; cheap enough to poll each second."""

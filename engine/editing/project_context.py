@@ -117,9 +117,9 @@ class ProjectContext:
             return None  # the check says what is wrong with it
         if not isinstance(data, dict):
             return None
-        said = cast("Plain", data)
-        outcomes = texts(said.get("outcomes"))
-        return NodeOutcomes(outcomes, texts(said.get("success")) or outcomes)
+        document = cast("Plain", data)
+        outcomes = texts(document.get("outcomes"))
+        return NodeOutcomes(outcomes, texts(document.get("success")) or outcomes)
 
     def _of_concurrency(self, outline: Outline, ref: NodeRef, known: dict[str, NodeOutcomes]) -> NodeOutcomes:
         found = rules(ref)

@@ -27,10 +27,10 @@ class ReferringBehavior:
 
 @dataclass(frozen=True, kw_only=True)
 class MoveResult:
-    """A moved document; `followed` are the documents whose references were updated, `left` those that failed."""
+    """A moved document; `updated` are the documents whose references were updated, `left` those that failed."""
 
     opened: StoredDocument
-    followed: tuple[str, ...] = ()
+    updated: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
 
 
@@ -49,18 +49,18 @@ def move_with_references(documents: DocumentRepository, document_id: str, new_id
     """
     referring = _referring(documents, document_id) if follow else []
     documents.rename(document_id, new_id)
-    followed: list[str] = []
+    updated: list[str] = []
     left: list[str] = []
     for referrer, opened in referring:
         written = _relative(new_id, referrer.id)
         edits = [SetField(path=path, field="behavior", value=written) for path in referrer.paths]
-        (followed if _rewrite(documents, opened, edits) else left).append(referrer.id)
+        (updated if _rewrite(documents, opened, edits) else left).append(referrer.id)
     if follow and PurePosixPath(document_id).parent != PurePosixPath(new_id).parent:
         own = documents.open(new_id)
         edits = list(_own_edits(own.text, document_id, new_id))
         if edits and not _rewrite(documents, own, edits):
             left.append(new_id)
-    return MoveResult(opened=documents.open(new_id), followed=tuple(followed), left=tuple(left))
+    return MoveResult(opened=documents.open(new_id), updated=tuple(updated), left=tuple(left))
 
 
 def _referring(documents: DocumentRepository, document_id: str) -> list[tuple[ReferringBehavior, StoredDocument]]:
@@ -77,12 +77,11 @@ def _referring(documents: DocumentRepository, document_id: str) -> list[tuple[Re
             continue  # not a behavior, or unreadable: the list of behaviors reports the problem
         folder = documents.file_of(other).parent
         written = ((path, ref.data.get("behavior")) for path, ref in Outline(data).refs.items())
-        paths = tuple(path for path, said in written if isinstance(said, str) and _names(folder, said, target))
+        paths = tuple(path for path, file in written if isinstance(file, str) and _names(folder, file, target))
         if paths:
-            said = data.get("name")
-            found.append(
-                (ReferringBehavior(id=other, name=said if isinstance(said, str) else other, paths=paths), opened)
-            )
+            title = data.get("name")
+            referring = ReferringBehavior(id=other, name=title if isinstance(title, str) else other, paths=paths)
+            found.append((referring, opened))
     return found
 
 

@@ -54,13 +54,13 @@ class VersionHistory:
         self._now_s = now_s
 
     def keep(self, document_id: str, text: str, *, by: VersionAuthor = "file") -> DocumentVersion:
-        """Keep a text unless it is kept already; a text that is kept again becomes the newest."""
+        """Keep a text unless it is kept already; a text that is kept again becomes the latest."""
         digest = text_hash(text)
         known = self._files(document_id)
-        newest = known[-1] if known else None
-        if newest is not None and newest.digest == digest:
-            return newest.version()
-        stamp = max(int(self._now_s() * 1000), newest.stamp + 1 if newest is not None else 0)
+        latest = known[-1] if known else None
+        if latest is not None and latest.digest == digest:
+            return latest.version()
+        stamp = max(int(self._now_s() * 1000), latest.stamp + 1 if latest is not None else 0)
         folder = self._folder / document_id
         folder.mkdir(parents=True, exist_ok=True)
         old = next((each for each in known if each.digest == digest), None)

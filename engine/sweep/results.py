@@ -95,9 +95,9 @@ class SweepResults:
         Raises:
             FlexcellError: the file cannot be read or is damaged.
         """
-        wanted = frozenset(keys)
+        asked = frozenset(keys)
         rows = self._read("SELECT key, result FROM results WHERE subject = ?", subject)
-        return {str(key): self._decoded(key, text) for key, text in rows if key in wanted}
+        return {str(key): self._decoded(key, text) for key, text in rows if key in asked}
 
     def all_of(self, subject: str) -> list[TrialResult]:
         """Return all results of a subject.

@@ -119,8 +119,8 @@ def execute_sweep(
     for number in sorted(found):
         count.add(found[number])
     due = [each for each in configurations if each.number not in found and part.has(each)]
-    began_s = time.monotonic()
-    deadline_s = began_s + seconds(document.time) if document.time is not None else None
+    started_s = time.monotonic()
+    deadline_s = started_s + seconds(document.time) if document.time is not None else None
     executed = 0
     ended_by: EndedBy = "runs"
 
@@ -148,7 +148,7 @@ def execute_sweep(
                         count=count,
                         executed=executed,
                         due=len(due) - executed,
-                        elapsed_s=time.monotonic() - began_s,
+                        elapsed_s=time.monotonic() - started_s,
                     )
                 )
         except KeyboardInterrupt:

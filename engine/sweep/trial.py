@@ -52,7 +52,7 @@ class Trials:
             configuration: The configuration.
             record: MCAP file to which the run is recorded.
         """
-        began_s, cpu_began_s = time.perf_counter(), _cpu_s()
+        started_s, cpu_started_s = time.perf_counter(), _cpu_s()
         with tempfile.TemporaryDirectory(prefix="flexcell-sweep-") as folder:
             try:
                 setup, request = self._request(configuration, Path(folder), record)
@@ -65,8 +65,8 @@ class Trials:
             cause=self._texts.of(ended.cause),
             reason=self._texts.of(ended.reason),
             reason_at=self._texts.of(ended.reason_at),
-            wall_s=time.perf_counter() - began_s,
-            cpu_s=_cpu_s() - cpu_began_s,
+            wall_s=time.perf_counter() - started_s,
+            cpu_s=_cpu_s() - cpu_started_s,
             memory_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KIBIBYTE,
         )
 

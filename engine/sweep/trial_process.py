@@ -43,7 +43,7 @@ class TrialProcess:
             self._process = start_child(CODE, [theirs.fileno()], what=_NAME)
             self.connection = Connection(ours.detach())
         self._configuration: Configuration | None = None
-        self._began_s = time.monotonic()
+        self._started_s = time.monotonic()
         self._runs = 0
         self.is_spent = False
         """Whether it executes no further configuration: it has ended, or is to be replaced."""
@@ -57,11 +57,11 @@ class TrialProcess:
     @property
     def left_s(self) -> float:
         """The wall time that its run may still take; negative when it has taken too long."""
-        return self._began_s + self._limits.timeout_s - time.monotonic()
+        return self._started_s + self._limits.timeout_s - time.monotonic()
 
     def give(self, configuration: Configuration) -> None:
         """Let it begin a configuration."""
-        self._configuration, self._began_s = configuration, time.monotonic()
+        self._configuration, self._started_s = configuration, time.monotonic()
         self._send(msgspec.json.encode(configuration))
 
     def answer(self) -> WorkerAnswer:
@@ -72,8 +72,8 @@ class TrialProcess:
             return self._ended("crashed", describe_exit(self._process, what="the process of this run"))
         self._configuration = None
         self._runs += 1
-        grown = answer.result is not None and answer.result.memory_bytes > _MUCH * self._limits.memory_bytes
-        self.is_spent = grown or answer.result is None or self._runs >= self._limits.runs_of_process
+        is_large = answer.result is not None and answer.result.memory_bytes > _MUCH * self._limits.memory_bytes
+        self.is_spent = is_large or answer.result is None or self._runs >= self._limits.runs_of_process
         return answer
 
     def hung(self) -> WorkerAnswer:
@@ -99,7 +99,7 @@ class TrialProcess:
 
     def _ended(self, status: TrialStatus, message: str) -> WorkerAnswer:
         assert self._configuration is not None
-        wall_s = time.monotonic() - self._began_s
+        wall_s = time.monotonic() - self._started_s
         result: TrialResult = ended_process(self._configuration, status, message, wall_s=wall_s)
         self.end()
         return WorkerAnswer(result=result)

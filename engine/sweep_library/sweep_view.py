@@ -15,7 +15,7 @@ from engine.sweep.trial_result import TrialResult
 
 SweepStatus = Literal["idle", "running", "stopping"]
 _APART = frozenset({"sweep", "results"})
-"""What is told otherwise: the document of a sweep as it is, its results by `SweepRuns`."""
+"""What is of_head otherwise: the document of a sweep as it is, its results by `SweepRuns`."""
 
 
 class SweepLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -129,8 +129,8 @@ class FactorChoice(msgspec.Struct, frozen=True, kw_only=True):
 
 def view_of(head: SweepHead, summary: SweepSummary) -> msgspec.Struct:
     """Return a `SweepView`."""
-    told = {name: getattr(head, name) for name in SweepHead.__struct_fields__}
-    return SweepView(**told, **{name: getattr(summary, name) for name in _FIGURES})
+    of_head = {name: getattr(head, name) for name in SweepHead.__struct_fields__}
+    return SweepView(**of_head, **{name: getattr(summary, name) for name in _FIGURES})
 
 
 def live_of(count: SuccessCount) -> SweepLive:

@@ -64,7 +64,7 @@ def test_it_is_seen_who_writes_a_key_who_reads_it_and_on_which_way_it_is_undefin
         panel.get_by_role("button", name=re.compile("count")).click()
         expect(arrows).to_have_count(1)
         expect(page.locator(".flow-link.is-unsure")).to_have_count(1)
-        expect(panel).to_contain_text("undefined on the way choose → show")
+        expect(panel).to_contain_text("undefined on the path choose → show")
         require_accessible(page, f"data flow, {scheme}")
         panel.get_by_role("button", name=re.compile("^set output")).click()
         field = page.locator("input[aria-label='Output value is written to']")

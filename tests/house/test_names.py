@@ -23,8 +23,6 @@ SHARED_FILE_NAMES = {"__init__", "models", "errors", "kernels"}
 """A folder's layers share these by design."""
 TERMS = {"three_way_merge", "hand_rests", "MetaPathFinder"}
 """A term of the field that the glossary has, a key of documents, and a class of Python, with a retired word."""
-NOT_YET = ("engine/editing/", "engine/sweep/")
-"""Where attributes, parameters and locals still have retired words."""
 PROSE = {"bench", "looking", "nearby", "newest", "tell", "told", "trouble"}
 """Words that are plain English in texts too, beside those that are so in names of tests."""
 DOCS = [path for path in sorted((ROOT / "docs").rglob("*.md")) if path != GLOSSARY]
@@ -116,7 +114,6 @@ def test_retired_words_are_in_no_attribute_parameter_or_local(package: str) -> N
     assert [
         f"{place}: {name}"
         for place, path in places
-        if not place.startswith(NOT_YET)
         for name in sorted(source_file(path).assigned - TERMS)
         if _words(name) & retired
     ] == []
@@ -131,7 +128,6 @@ def test_retired_words_that_are_no_plain_english_are_in_no_comment_docstring_or_
     assert [
         f"{path.relative_to(ROOT)}: {found[0]}"
         for path, text in texts
-        if not path.relative_to(ROOT).as_posix().startswith(NOT_YET)
         for found in pattern.finditer(text)
     ] == []
 

@@ -35,7 +35,7 @@ class KeyReader:
     """A node that reads a key.
 
     `by`: as an input of the same name, mapped through `in`, in an expression, or collected by a foreach. `sources` are
-    the paths from which the value may come, `defined` whether there is one; `way` is how it is reached without one.
+    the paths from which the value may come, `defined` whether there is one; `witness` is how it is reached without one.
     """
 
     path: str
@@ -44,7 +44,7 @@ class KeyReader:
     required: bool
     defined: Definedness
     sources: tuple[str, ...]
-    way: str = ""
+    witness: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
     read = tuple(key_reads(subject))
     keys = dict.fromkeys((*(key for key, _ in written), *(each.key for each in read)))
     flow = DataFlow(subject, DefinitionSites(keys))
-    readers = [(each.key, _reader(flow, each, with_way=number < _MOST_ROUTES)) for number, each in enumerate(read)]
+    readers = [(each.key, _reader(flow, each, with_witness=number < _MOST_ROUTES)) for number, each in enumerate(read)]
     return tuple(
         KeyFlow(
             key=key,
@@ -105,18 +105,18 @@ def _written(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[str, K
         yield key, KeyWriter(path=path, origin="output", name=name)
 
 
-def _reader(flow: DataFlow, read: KeyRead, *, with_way: bool) -> KeyReader:
+def _reader(flow: DataFlow, read: KeyRead, *, with_witness: bool) -> KeyReader:
     path, sites = read.placed.path, flow.sites
     fact = flow.fact_at(read)
     defined: Definedness = "unreachable"
     sources: tuple[str, ...] = ()
-    way = ""
+    witness = ""
     if fact is not None:
         undefined, known = fact & sites.undefined_bit(read.key), fact & sites.defined_bits(read.key)
         defined = "always" if not undefined else "maybe" if known else "never"
         sources = tuple(site.path for site in sites.places(read.key, known))
-        if undefined and known and with_way and read.by not in ("collect", "shared", "post"):
-            way = format_witness_path(witness_path(flow, path, sites.undefined_bit(read.key)))
+        if undefined and known and with_witness and read.by not in ("collect", "shared", "post"):
+            witness = format_witness_path(witness_path(flow, path, sites.undefined_bit(read.key)))
     return KeyReader(
-        path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, way=way
+        path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, witness=witness
     )

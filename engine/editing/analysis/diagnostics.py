@@ -53,8 +53,8 @@ def analyze_unreadable_text(
 ) -> DocumentAnalysis:
     """Return the findings of a text without graph: at least this error."""
     found = findings_of(text, file=file, context=context)
-    told = found if any(each.severity == "error" for each in found) else (_invalid(error), *found)
-    return DocumentAnalysis(hash=text_hash(text), graph=None, document=None, findings=told, checked=True)
+    shown = found if any(each.severity == "error" for each in found) else (_invalid(error), *found)
+    return DocumentAnalysis(hash=text_hash(text), graph=None, document=None, findings=shown, checked=True)
 
 
 def draw_document(

@@ -163,7 +163,7 @@ class _Drawing:
         self.known: dict[int, _KnownNode] = {}
         self._before = before
         self._draft = draft
-        self._knowledge = context
+        self._context = context
         self._outline = outline
         self._view = _mapping(draft.data.get("view"))
         self._notes = _mapping(draft.data.get("notes"))
@@ -236,7 +236,7 @@ class _Drawing:
     def _new(self, ref: NodeRef) -> DocumentNode:
         """Draw a node by itself."""
         data, body = ref.data, ref.body
-        ends = self._knowledge.ends(self._outline, ref, known=self._ends)
+        ends = self._context.ends(self._outline, ref, known=self._ends)
         targets = _names(data.get("transitions"))
         wired = ref.parent is not None and ref.parent.kind in MACHINES
         reference = data.get("behavior")
@@ -289,8 +289,8 @@ class _Drawing:
         return tuple(dict.fromkeys((*declared, *own)))
 
     def _document(self, reference: object) -> str | None:
-        file = self._knowledge.file_of(reference) if isinstance(reference, str) else None
-        return file.relative_to(self._knowledge.project.resolve()).as_posix() if file is not None else None
+        file = self._context.file_of(reference) if isinstance(reference, str) else None
+        return file.relative_to(self._context.project.resolve()).as_posix() if file is not None else None
 
     def _lines(self, source: Collection | None) -> Lines:
         if source is None:
@@ -305,12 +305,14 @@ class _Drawing:
 def _arrows(ref: NodeRef) -> tuple[GraphTransition, ...]:
     if ref.parent is None or ref.parent.kind not in MACHINES:
         return ()
-    ways = _names(ref.data.get("transitions"))
+    targets = _names(ref.data.get("transitions"))
     guard, timeout = _mapping(ref.data.get("guard")), _mapping(ref.data.get("timeout"))
-    ways |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
-    ways |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
-    ways |= {"error": str(ref.data["on_error"])} if ref.data.get("on_error") else {}
-    return tuple(GraphTransition(source=ref.name, outcome=way, target=target) for way, target in ways.items())
+    targets |= {f"unless {guard.get('when')}": str(guard["to"])} if guard.get("to") else {}
+    targets |= {f"after {timeout.get('after')}": str(timeout["to"])} if timeout.get("to") else {}
+    targets |= {"error": str(ref.data["on_error"])} if ref.data.get("on_error") else {}
+    return tuple(
+        GraphTransition(source=ref.name, outcome=outcome, target=target) for outcome, target in targets.items()
+    )
 
 
 def _rules(ref: NodeRef) -> list[ConcurrencyCondition]:
@@ -318,9 +320,9 @@ def _rules(ref: NodeRef) -> list[ConcurrencyCondition]:
 
 
 def _in_words(ref: NodeRef) -> tuple[str, ...]:
-    said = [f"{rule.consequence}: {rule}" for rule in _rules(ref)]
+    texts = [f"{rule.consequence}: {rule}" for rule in _rules(ref)]
     otherwise = ref.body.get("otherwise") if ref.kind == "concurrency" else None
-    return (*said, *([f"{otherwise}: otherwise"] if otherwise else []))
+    return (*texts, *([f"{otherwise}: otherwise"] if otherwise else []))
 
 
 def _mapping(value: object) -> Plain:

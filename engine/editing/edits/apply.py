@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine.editing.edits import edit, grouping, ungrouping
+from engine.editing.edits import edit, grouping, transition_edits, ungrouping
 from engine.editing.edits import field_edits as fields
 from engine.editing.edits import node_edits as nodes
 from engine.editing.edits import node_insertion as adding
-from engine.editing.edits import transition_edits as wiring
 from engine.editing.edits.edit_session import EditSession
 from engine.editing.project_context import ProjectContext
 from engine.editing.text.draft import Draft, EditRefused
@@ -23,9 +22,9 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
     edit.RemoveNodes: nodes.remove_nodes,
     edit.RenameNode: nodes.rename_node,
     edit.MoveNodes: nodes.move_nodes,
-    edit.SetTransition: wiring.set_transition,
-    edit.ClearTransition: wiring.clear_transition,
-    edit.SetInitial: wiring.set_initial,
+    edit.SetTransition: transition_edits.set_transition,
+    edit.ClearTransition: transition_edits.clear_transition,
+    edit.SetInitial: transition_edits.set_initial,
     edit.SetParameter: fields.set_parameter,
     edit.ClearParameter: fields.clear_parameter,
     edit.SetField: fields.set_field,
@@ -35,7 +34,7 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
     edit.DuplicateNodes: adding.duplicate,
     edit.PasteNodes: adding.paste,
     edit.SetDocument: fields.set_document,
-    edit.AutoConnect: wiring.auto_connect,
+    edit.AutoConnect: transition_edits.auto_connect,
 }
 
 

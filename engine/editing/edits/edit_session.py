@@ -55,9 +55,9 @@ class EditSession:
         paths = {id(ref.data): path for path, ref in self.outline.refs.items()}
         return tuple(paths[known] for known in self._changed if known in paths)
 
-    def free_name(self, container: NodeRef, wanted: str, taken: Iterable[str] = ()) -> str:
-        """Return a free name for a new child: the wanted one, or with a number; never an outcome of the container."""
-        base = re.sub(r"[^A-Za-z0-9_-]+", "_", wanted).lstrip("-")[:56] or "node"
+    def free_name(self, container: NodeRef, name: str, taken: Iterable[str] = ()) -> str:
+        """Return a free name for a new child: this one, or with a number; never an outcome of the container."""
+        base = re.sub(r"[^A-Za-z0-9_-]+", "_", name).lstrip("-")[:56] or "node"
         used = {*(child.name for child in self.outline.children(container)), *taken}
         if container.kind in MACHINES:
             used |= set(self.outcomes_inside(container))
@@ -76,8 +76,8 @@ class EditSession:
     def _meant_outcomes(self, container: NodeRef) -> tuple[str, ...]:
         """Return the declared outcomes, whether or not anything inside leads to them yet."""
         if container.parent is not None:
-            followed = container.data.get("transitions")
-            return tuple(map(str, cast("Plain", followed))) if isinstance(followed, dict) else ()
+            transitions = container.data.get("transitions")
+            return tuple(map(str, cast("Plain", transitions))) if isinstance(transitions, dict) else ()
         listed = self.draft.data.get("outcomes")
         return tuple(map(str, cast("list[object]", listed))) if isinstance(listed, list) else ()
 
@@ -137,12 +137,12 @@ class ReferenceUpdate:
     def __post_init__(self) -> None:
         self._refs = list(self.session.outline.refs.values())
 
-    def finish(self, *, instead: dict[int, str] | None = None, stray: DanglingTarget | None = None) -> None:
+    def finish(self, *, instead: dict[int, str] | None = None, dangling: DanglingTarget | None = None) -> None:
         """Update all references.
 
         Args:
             instead: New target name for nodes that left a container, by the id of their data.
-            stray: Returns the new target of transitions whose target is no sibling any more; without it they are
+            dangling: Returns the new target of transitions whose target is no sibling any more; without it they are
                 removed.
         """
         self.session.stale()
@@ -168,7 +168,7 @@ class ReferenceUpdate:
             # What stays where it is follows only what moved.
             gone = moved[around.path]
             if ref.name in gone or not gone.isdisjoint(targets_of(now.data)):
-                self._follow_leads(now, around, inside[around.path], after, instead or {}, stray)
+                self._follow_leads(now, around, inside[around.path], after, instead or {}, dangling)
         for key in ("view", "notes"):
             self._follow_paths(key, before, after)
 
@@ -179,7 +179,7 @@ class ReferenceUpdate:
         beside: dict[str, NodeRef],
         after: dict[int, NodeRef],
         instead: dict[int, str],
-        stray: DanglingTarget | None,
+        dangling: DanglingTarget | None,
     ) -> None:
         for mapping, key, target in list(transition_entries(now.data)):
             meant = beside.get(target)
@@ -191,8 +191,8 @@ class ReferenceUpdate:
             if meant is None and stays:
                 continue
             to = instead.get(id(meant.data)) if meant is not None and stays else None
-            if to is None and stray is not None:
-                to = stray(now.data, target)
+            if to is None and dangling is not None:
+                to = dangling(now.data, target)
             self._lead(now.data, mapping, key, to)
 
     def _lead(self, node: Plain, mapping: Plain, key: str, target: str | None) -> None:

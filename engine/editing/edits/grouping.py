@@ -79,7 +79,7 @@ def _replace_in_named(session: EditSession, edit: GroupNodes, home: NodeRef, ref
                 ref.data["on_error"] = "failure"
             set_tree_node_name(ref.data, ref.name)
     insert_key(named_children(home), name, made, place)
-    follow.finish(instead={id(ref.data): name for ref in refs}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): name for ref in refs}, dangling=lambda _, target: target)
     if points:
         corner = [min(point[axis] for point in points.values()) - _MARGIN_PX[axis] for axis in (0, 1)]
         positions: dict[str, CanvasPoint | None] = {session.outline.path_of(made): (corner[0], corner[1])}
@@ -144,7 +144,7 @@ def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> 
     onward = "success" if kind == "sequence" else "failure"
     order: list[NodeRef] = []
     due: str | None = entry
-    ways: dict[str, dict[str, None]] = {"success": {}, "failure": {}}
+    targets_of: dict[str, dict[str, None]] = {"success": {}, "failure": {}}
     while due is not None and kind != "parallel":
         ref = by_name[due]
         if ref in order:
@@ -159,8 +159,8 @@ def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> 
         if len(set(inside)) > 1 or back or (inside and len(set(split[onward])) > 1):
             raise EditRefused(f"`{due}` has more than one next node", hint=f"only a plain chain can become a {kind}")
         due = inside[0] if inside else None
-        for status in ways:
-            ways[status] |= {to: None for to in split[status] if to not in by_name}
+        for status in targets_of:
+            targets_of[status] |= {to: None for to in split[status] if to not in by_name}
     for ref in refs if kind == "parallel" else ():
         order.append(ref)
         split = _split(session, ref)
@@ -168,21 +168,21 @@ def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> 
             raise EditRefused(
                 f"`{ref.name}` leads to another selected node", hint="concurrent nodes cannot lead to one another"
             )
-        for status in ways:
-            ways[status] |= dict.fromkeys(split[status])
+        for status in targets_of:
+            targets_of[status] |= dict.fromkeys(split[status])
     if len(order) < len(refs):
         left = next(ref.name for ref in refs if ref not in order)
         raise EditRefused(
             f"`{left}` is not reachable from `{entry}`", hint=f"select nodes that follow one another as a {kind}"
         )
-    for status, targets in ways.items():
+    for status, targets in targets_of.items():
         if len(targets) > 1:
             listed = ", ".join(f"`{to}`" for to in targets)
             raise EditRefused(
                 f"their {status} leads to {listed}, but a {kind} has one target per status",
                 hint="group them as a machine",
             )
-    return order, {status: next(iter(targets)) for status, targets in ways.items() if targets}
+    return order, {status: next(iter(targets)) for status, targets in targets_of.items() if targets}
 
 
 def _split(session: EditSession, ref: NodeRef) -> dict[str, list[str]]:
@@ -243,7 +243,7 @@ def _around_one(session: EditSession, edit: GroupNodes, home: NodeRef, refs: lis
         states.update(kept)
     else:
         home.body["child"] = made
-    follow.finish(instead={id(ref.data): name}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): name}, dangling=lambda _, target: target)
     ref.data["transitions"] = {outcome: outcome for outcome in outcomes}
     session.mark(made)
 

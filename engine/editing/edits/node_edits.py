@@ -86,7 +86,7 @@ def move_nodes(session: EditSession, edit: MoveNodes) -> None:
         # What `insert_nodes` has renamed among them is found by identity below.
         _restore(ref.data, leading[id(ref.data)])
         session.mark(ref.data)
-    follow.finish(stray=lambda _, target: target if target in known else None)
+    follow.finish(dangling=lambda _, target: target if target in known else None)
 
 
 def detach_node(ref: NodeRef) -> None:

@@ -42,7 +42,7 @@ def ungroup(session: EditSession, edit: UngroupNode) -> None:
 
 
 def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
-    leaving = cast("Plain", ref.data.get("transitions") or {})
+    transitions = cast("Plain", ref.data.get("transitions") or {})
     initial = ref.body.get("initial")
     entry = next((child for child in children if child.name == initial), children[0])
     corner = _point(session, ref)
@@ -51,7 +51,7 @@ def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, child
     names = _put_in_place(session, home, ref, children)
     follow.finish(
         instead={id(ref.data): names[id(entry.data)]},
-        stray=lambda _, target: cast("str | None", leaving.get(target)),
+        dangling=lambda _, target: cast("str | None", transitions.get(target)),
     )
     _place(session, children, points, corner)
     for child in children:
@@ -98,7 +98,7 @@ def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
         raise EditRefused(
             f"a step of `{ref.path}` may be skipped, which a machine does not support", hint="change its guard"
         )
-    leaving = cast("Plain", ref.data.get("transitions") or {})
+    transitions = cast("Plain", ref.data.get("transitions") or {})
     ends = {id(step.data): session.ends(step) for step in steps}
     follow = ReferenceUpdate(session)
     taken = {child.name for child in session.outline.children(home)} - {ref.name} | set(session.outcomes_inside(home))
@@ -116,10 +116,10 @@ def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
         wired: Plain = {}
         for outcome in ends[id(step.data)].outcomes:
             status = "success" if outcome in good else "failure"
-            onto = names[number + 1] if status == onward and number + 1 < len(steps) else leaving.get(status)
+            onto = names[number + 1] if status == onward and number + 1 < len(steps) else transitions.get(status)
             if onto is not None:
                 wired[outcome] = onto
-        _divert(step.data, leaving)
+        _divert(step.data, transitions)
         if wired:
             step.data["transitions"] = wired
     states = named_children(home)
@@ -128,7 +128,7 @@ def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
         kept |= dict(zip(names, [s.data for s in steps], strict=True)) if key == ref.name else {key: each}
     states.clear()
     states.update(kept)
-    follow.finish(instead={id(ref.data): names[0]}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): names[0]}, dangling=lambda _, target: target)
     for step in steps:
         session.mark(step.data)
 
@@ -138,15 +138,15 @@ def _guard(ref: NodeRef) -> Plain:
     return cast("Plain", guard) if isinstance(guard, dict) else {}
 
 
-def _divert(node: Plain, leaving: Plain) -> None:
+def _divert(node: Plain, transitions: Plain) -> None:
     """Connect timeout, guard and on_error of a former tree leaf to the targets of its status."""
     for key in ("timeout", "guard"):
         measure = node.get(key)
         if isinstance(measure, dict) and isinstance(cast("Plain", measure).get("to"), str):
             found = cast("Plain", measure)
-            found["to"] = leaving.get(str(found["to"]), found["to"])
+            found["to"] = transitions.get(str(found["to"]), found["to"])
     if isinstance(node.get("on_error"), str):
-        node["on_error"] = leaving.get(str(node["on_error"]), node["on_error"])
+        node["on_error"] = transitions.get(str(node["on_error"]), node["on_error"])
 
 
 def _in_tree(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
@@ -185,7 +185,7 @@ def _only_one(session: EditSession, home: NodeRef, ref: NodeRef, child: NodeRef)
     else:
         home.body["child"] = child.data
         name = "child"
-    follow.finish(instead={id(ref.data): name}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): name}, dangling=lambda _, target: target)
     child.data.pop("transitions", None)
     session.mark(child.data)
 

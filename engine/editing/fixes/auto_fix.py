@@ -55,7 +55,7 @@ class _Work:
         self.text: str = text
         self.fixed: list[AppliedFix] = []
         self._file = file
-        self._knowledge = context
+        self._context = context
         self._likely = likely
         self._tried: set[tuple[_Key, str]] = set()
         self._rounds = 0
@@ -74,7 +74,7 @@ class _Work:
 
     def offered(self) -> tuple[tuple[Fix, ...], ...]:
         """Return the fixes that the editor offers for each finding."""
-        return fixes_of(self.text, self.findings, file=str(self._file), context=self._knowledge)
+        return fixes_of(self.text, self.findings, file=str(self._file), context=self._context)
 
     def _due(self) -> list[AppliedFix]:
         chosen = zip(self.findings, map(self._chosen, self.offered()), strict=True)
@@ -112,7 +112,7 @@ class _Work:
         if self._rounds >= MAX_ROUNDS:
             return False
         edits = [edit for _, fix in due for edit in fix.edits]
-        done = apply_edits(self.text, edits, file=str(self._file), context=self._knowledge)
+        done = apply_edits(self.text, edits, file=str(self._file), context=self._context)
         if done.refused is not None or done.text == self.text:
             return False
         self.text, self.findings = done.text, self._check(done.text)
@@ -123,7 +123,7 @@ class _Work:
 
     def _check(self, text: str) -> tuple[FindingView, ...]:
         self._rounds += 1
-        return findings_of(text, file=self._file, context=self._knowledge)
+        return findings_of(text, file=self._file, context=self._context)
 
 
 def _key(finding: FindingView) -> _Key:

@@ -9,7 +9,7 @@ from engine.editing.edits.edit_session import EditSession
 from engine.editing.fixes import declaration_fixes as declarations
 from engine.editing.fixes import parameter_fixes as parameters
 from engine.editing.fixes import policy_fixes as conduct
-from engine.editing.fixes import transition_fixes as wiring
+from engine.editing.fixes import transition_fixes
 from engine.editing.fixes import userdata_fixes as keys
 from engine.editing.fixes.fix import MAX_FIXES, Fix, FixContext, quoted_names
 from engine.editing.project_context import ProjectContext
@@ -21,16 +21,16 @@ FixMaker = Callable[[FixContext], Iterator[Fix]]
 _ELSEWHERE = re.compile(r"^[^`:]+\.(?:ya?ml|json):\d+: ")
 _NAMELESS = ("uncovered-combination", "constant-guard", "idle-retry")
 _MAKERS: Mapping[str, FixMaker] = {
-    "unconnected-outcome": wiring.unconnected,
-    "unknown-outcome": wiring.unknown_outcome,
-    "unused-outcome": wiring.unused_outcome,
-    "unknown-target": wiring.unknown_target,
-    "missing-initial": wiring.missing_initial,
-    "unreachable-node": wiring.unreachable,
-    "ambiguous-target": wiring.ambiguous,
-    "unknown-child": wiring.unknown_child,
-    "preempts-itself": wiring.preempts_itself,
-    "uncovered-combination": wiring.uncovered,
+    "unconnected-outcome": transition_fixes.unconnected,
+    "unknown-outcome": transition_fixes.unknown_outcome,
+    "unused-outcome": transition_fixes.unused_outcome,
+    "unknown-target": transition_fixes.unknown_target,
+    "missing-initial": transition_fixes.missing_initial,
+    "unreachable-node": transition_fixes.unreachable,
+    "ambiguous-target": transition_fixes.ambiguous,
+    "unknown-child": transition_fixes.unknown_child,
+    "preempts-itself": transition_fixes.preempts_itself,
+    "uncovered-combination": transition_fixes.uncovered,
     "unknown-state": parameters.unknown_state,
     "unknown-parameter": parameters.unknown,
     "missing-parameter": parameters.missing,

@@ -130,10 +130,10 @@ def schemas_of(place: FixContext) -> dict[str, Mapping[str, object]]:
         }
     file = context.file_of(str(data["behavior"])) if isinstance(data.get("behavior"), str) else None
     try:
-        said = mapping(load_source(file).data) if file is not None else {}
+        document = mapping(load_source(file).data) if file is not None else {}
     except DocumentError:
         return {}
-    return {name: _of_declared(mapping(each)) for name, each in mapping(said.get("parameters")).items()}
+    return {name: _of_declared(mapping(each)) for name, each in mapping(document.get("parameters")).items()}
 
 
 def _of_declared(parameter: Plain) -> Mapping[str, object]:

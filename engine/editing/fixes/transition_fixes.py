@@ -140,9 +140,9 @@ def unknown_target(place: FixContext) -> Iterator[Fix]:
     target = place.names[0]
     others = [name for name in place.machine_outcomes if name != target]
     known = (*place.siblings, place.ref.name, *others)
-    ways = [outcome for outcome, to in place.section("transitions").items() if to == target]
+    outcomes = [outcome for outcome, to in place.section("transitions").items() if to == target]
     for right in dict.fromkeys((*similar_names(target, known), *others[:2])):
-        edits: list[AnyEdit] = [_lead(place, outcome, right) for outcome in ways]
+        edits: list[AnyEdit] = [_lead(place, outcome, right) for outcome in outcomes]
         for key in ("timeout", "guard"):
             measure = place.section(key)
             if measure.get("to") == target:

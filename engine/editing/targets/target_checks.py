@@ -38,7 +38,7 @@ class TargetChecks:
         self._project = project.resolve()
         self.limit_s = limit_s
         self._start = start
-        self._newest: dict[str, int] = {}
+        self._latest: dict[str, int] = {}
         self._turn = asyncio.Lock()
         self._numbers = 0
         self._process: subprocess.Popen[bytes] | None = None
@@ -60,13 +60,13 @@ class TargetChecks:
             text: A behavior document.
         """
         self._numbers += 1
-        number = self._newest[asker] = self._numbers
+        number = self._latest[asker] = self._numbers
         try:
             async with self._turn:
-                return await self._asked(file, text) if self._newest[asker] == number else None
+                return await self._asked(file, text) if self._latest[asker] == number else None
         finally:
-            if self._newest.get(asker) == number:
-                del self._newest[asker]
+            if self._latest.get(asker) == number:
+                del self._latest[asker]
 
     def close(self) -> None:
         """End the process."""

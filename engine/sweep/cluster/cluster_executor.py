@@ -144,8 +144,8 @@ class ClusterExecutor:
                 return
             with suppress(Empty):
                 future = self._ended.get(timeout=_LOOK_S)
-                _, configuration, began_s = self._begun[future.key]
-                result = self._result(future, configuration, began_s)
+                _, configuration, started_s = self._begun[future.key]
+                result = self._result(future, configuration, started_s)
                 del self._begun[future.key]
                 self._forget(configuration)
                 yield result
@@ -169,26 +169,26 @@ class ClusterExecutor:
         self._begun[future.key] = future, configuration, time.monotonic()
         future.add_done_callback(self._ended.put)
 
-    def _result(self, future: Any, configuration: Configuration, began_s: float) -> TrialResult:
+    def _result(self, future: Any, configuration: Configuration, started_s: float) -> TrialResult:
         """Return how a configuration ended, from its task."""
         from distributed.scheduler import KilledWorker
 
         try:
             answered = msgspec.json.decode(future.result(), type=RemoteAnswer)
         except KilledWorker as error:
-            return self._lost(configuration, f"{error.last_worker.address}, the last of several,", began_s)
+            return self._lost(configuration, f"{error.last_worker.address}, the last of several,", started_s)
         except Exception as error:
             # Dask passes on whatever a task has raised, and errors of its own when it has lost the scheduler.
             raise self._failure(error) from error
         if answered.answer is None:
-            return self._lost(configuration, "it", began_s)
+            return self._lost(configuration, "it", started_s)
         if answered.answer.result is None:
             raise FlexcellError(answered.answer.failure, where=answered.worker, hint=_SAME)
         return answered.answer.result
 
-    def _lost(self, configuration: Configuration, worker: str, began_s: float) -> TrialResult:
+    def _lost(self, configuration: Configuration, worker: str, started_s: float) -> TrialResult:
         message = f"the worker of the cluster was lost while {worker} had this run, or before its result had arrived"
-        return ended_process(configuration, "crashed", message, wall_s=time.monotonic() - began_s)
+        return ended_process(configuration, "crashed", message, wall_s=time.monotonic() - started_s)
 
     def _failure(self, error: Exception) -> FlexcellError:
         if self._client.status != "running":
@@ -196,9 +196,9 @@ class ClusterExecutor:
         if isinstance(error, ImportError):
             return FlexcellError(f"a worker cannot load flexcell: {error}", where=self._options.scheduler, hint=_SAME)
         # The scheduler unpacks tasks, and tells with several lines that it cannot.
-        told = " ".join(str(error).split())
-        hint = _SAME if "deserialization" in told else _SAVED
-        return FlexcellError(f"the cluster cannot execute a run: {told}", where=self._options.scheduler, hint=hint)
+        text = " ".join(str(error).split())
+        hint = _SAME if "deserialization" in text else _SAVED
+        return FlexcellError(f"the cluster cannot execute a run: {text}", where=self._options.scheduler, hint=hint)
 
     def _look(self) -> None:
         """Count the workers from time to time: as many runs are on the way as they have threads, and one more each."""

@@ -64,10 +64,10 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
     from distributed import Event, Variable, get_worker
 
     asked = msgspec.json.decode(task, type=RemoteTask)
-    wanted = msgspec.json.decode(configuration, type=Configuration)
-    begun = Event(claim_name(asked.token, wanted.number))
+    decoded = msgspec.json.decode(configuration, type=Configuration)
+    begun = Event(claim_name(asked.token, decoded.number))
     # Dask has no types.
-    ended: Any = Variable(claim_name(asked.token, wanted.number))
+    ended: Any = Variable(claim_name(asked.token, decoded.number))
     if begun.is_set():
         try:
             result: bytes = ended.get(timeout=_KNOWN_S)
@@ -78,7 +78,7 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
     worker = get_worker()
     site = _entered(asked, shipment, worker.local_directory)
     try:
-        answer = site.execute(wanted)
+        answer = site.execute(decoded)
     finally:
         site.leave()
     answered = msgspec.json.encode(RemoteAnswer(answer=answer, worker=str(worker.address)))

@@ -95,8 +95,8 @@ def execute_search(
     plan = SearchPlan(subject.sweep)
     results.describe(subject.hash, subject.versions)
     document = subject.sweep.document
-    began_s = time.monotonic()
-    deadline_s = began_s + seconds(document.time) if document.time is not None else None
+    started_s = time.monotonic()
+    deadline_s = started_s + seconds(document.time) if document.time is not None else None
     executed = 0
     ended_by: SearchEndedBy = "runs"
     with options.new_executor(subject) as executor:
@@ -113,12 +113,12 @@ def execute_search(
                 return None if _would_satisfy(plan, _without_gap(batch, found)) else next(waiting, None)  # noqa: B023
 
             try:
-                show(_progress(plan, batch, found, executed, began_s))
+                show(_progress(plan, batch, found, executed, started_s))
                 for result in executor.results(iter(due, None)):
                     results.save(result.configuration.key(subject.hash), subject.hash, result, replace=again)
                     found[result.configuration.number] = result
                     executed += 1
-                    show(_progress(plan, batch, found, executed, began_s))
+                    show(_progress(plan, batch, found, executed, started_s))
             except KeyboardInterrupt:
                 ended_by = "interrupted"
             plan.take(_without_gap(batch, found))
@@ -130,8 +130,8 @@ def execute_search(
 
 
 def _would_satisfy(plan: SearchPlan, results: Sequence[TrialResult]) -> bool:
-    wanted = plan.spec.stop_after
-    return wanted is not None and plan.failures + sum(map(is_failure, results)) >= wanted
+    limit = plan.spec.stop_after
+    return limit is not None and plan.failures + sum(map(is_failure, results)) >= limit
 
 
 def _without_gap(batch: Sequence[SearchPoint], found: dict[int, TrialResult]) -> list[TrialResult]:
@@ -158,7 +158,7 @@ def _saved(
 
 
 def _progress(
-    plan: SearchPlan, batch: Sequence[SearchPoint], found: dict[int, TrialResult], executed: int, began_s: float
+    plan: SearchPlan, batch: Sequence[SearchPoint], found: dict[int, TrialResult], executed: int, started_s: float
 ) -> SearchProgress:
     ended = [*(step.result for step in plan.steps), *found.values()]
     passed = [each for each in ended if each.success]
@@ -170,7 +170,7 @@ def _progress(
         failures=sum(map(is_failure, ended)),
         nearest=min(passed, key=plan.target.score) if passed else None,
         target=plan.target,
-        elapsed_s=time.monotonic() - began_s,
+        elapsed_s=time.monotonic() - started_s,
     )
 
 

@@ -116,8 +116,8 @@ def _clusters(
         alike.setdefault(result.cause_key, []).append(result)
     clusters: list[FailureCluster] = []
     for group in sorted(alike.values(), key=lambda each: -len(each)):
-        told = factors if len(group) >= _LEAST_OF_REGION else dict[str, Factor]()
-        regions = [_region(name, factor, group, results) for name, factor in told.items() if name != "seed"]
+        shown = factors if len(group) >= _LEAST_OF_REGION else dict[str, Factor]()
+        regions = [_region(name, factor, group, results) for name, factor in shown.items() if name != "seed"]
         # The narrower a range for its likelihood, and the fewer runs succeed in it, the more it tells.
         regions.sort(key=lambda each: (each.share, each.passed_inside))
         clusters.extend(FailureCluster(cause=cause, regions=regions) for cause in cause_groups(group))

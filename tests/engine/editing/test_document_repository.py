@@ -190,7 +190,7 @@ root:
     assert [(each.path, each.origin) for each in flow["count"].writers] == [("", "userdata"), ("root/read", "output")]
     (reader,) = flow["key"].readers
     assert (reader.path, reader.defined, reader.sources) == ("root/read", "maybe", ("root/write",))
-    assert reader.way == "decide → read"
+    assert reader.witness == "decide → read"
     assert {each.path: each.defined for each in flow["count"].readers} == {
         "root/decide": "always",
         "root/write": "always",

@@ -59,7 +59,7 @@ def test_references_follow_a_document_that_moves_and_nothing_else_changes(
     documents: DocumentRepository, tmp_path: Path
 ) -> None:
     moved = move_with_references(documents, INNER_ID, "behaviors/more/grasp.yaml", follow=True)
-    assert (moved.opened.id, moved.followed, moved.left) == ("behaviors/more/grasp.yaml", (OUTER_ID,), ())
+    assert (moved.opened.id, moved.updated, moved.left) == ("behaviors/more/grasp.yaml", (OUTER_ID,), ())
     text = (tmp_path / OUTER_ID).read_text()
     assert text == OUTER.replace("./parts/inner.yaml", "more/grasp.yaml").replace("parts/inner.yaml", "more/grasp.yaml")
     assert documents.examine(OUTER_ID, text).findings == ()
@@ -75,7 +75,7 @@ def test_what_a_document_refers_to_is_found_from_its_new_folder(documents: Docum
 
 def test_without_following_the_references_stay(documents: DocumentRepository, tmp_path: Path) -> None:
     moved = move_with_references(documents, INNER_ID, "behaviors/parts/grasp.yaml", follow=False)
-    assert (moved.followed, (tmp_path / OUTER_ID).read_text()) == ((), OUTER)
+    assert (moved.updated, (tmp_path / OUTER_ID).read_text()) == ((), OUTER)
 
 
 def test_a_name_that_is_taken_changes_no_file(documents: DocumentRepository, tmp_path: Path) -> None:

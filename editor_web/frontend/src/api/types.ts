@@ -1025,7 +1025,7 @@ export interface KeyFlow {
   readonly readers: readonly KeyReader[]
 }
 
-/** A node that reads a key. `by`: as an input of the same name, mapped through `in`, in an expression, or collected by a foreach. `sources` are the paths from which the value may come, `defined` whether there is one; `way` is how it is reached without one. */
+/** A node that reads a key. `by`: as an input of the same name, mapped through `in`, in an expression, or collected by a foreach. `sources` are the paths from which the value may come, `defined` whether there is one; `witness` is how it is reached without one. */
 export interface KeyReader {
   readonly path: string
   readonly by: string
@@ -1033,7 +1033,7 @@ export interface KeyReader {
   readonly required: boolean
   readonly defined: "always" | "maybe" | "never" | "unreachable"
   readonly sources: readonly string[]
-  readonly way: string
+  readonly witness: string
 }
 
 /** A parameter or userdata key, with its JSON Schema and its default as plain data. */

@@ -9,7 +9,7 @@ const reader = (path: string, sources: readonly string[], defined: KeyReader['de
   required: true,
   defined,
   sources,
-  way: '',
+  witness: '',
 })
 const COUNT: KeyFlow = {
   key: 'count',

@@ -133,7 +133,7 @@ export function Definedness({ reader }: { reader: KeyReader }) {
     case 'maybe':
       return (
         <span className="is-maybe">
-          undefined on the way {reader.way || 'that does not pass a writer'}; else from {sourceWords(reader)}
+          undefined on the path {reader.witness || 'that does not pass a writer'}; else from {sourceWords(reader)}
         </span>
       )
     case 'never':
