@@ -44,7 +44,7 @@ class ContactMotions:
         trajectory = await runner.planned(
             handle, lambda joints: runner.planner.along_line(joints, end, duration_s=duration_s)
         )
-        measured = runner.measured_tool()
+        before = runner.measured_tool()
         ended = await runner.carry_out(
             lambda: self._follow(trajectory, goal.force_n, direction),
             handle,
@@ -54,7 +54,7 @@ class ContactMotions:
         return ContactResult(
             contact=ended.report.contact,
             pose=measured.to_pose(WORLD),
-            travelled_m=float((measured.xyz - measured.xyz) @ direction),
+            travelled_m=float((measured.xyz - before.xyz) @ direction),
             force_n=float(-wrench[:3] @ direction),
             wrench=to_wrench(wrench),
             duration_s=ended.duration_s,

@@ -38,12 +38,12 @@ def margin_trace(summary: SearchSummary) -> str:
         elif value is not None:
             marks.append(f'<circle class="good" cx="{x:.1f}" cy="{height(value):.1f}" r="3">{title}</circle>')
     line: list[str] = []
-    first = 0
+    done = 0
     for batch in summary.batches:
         if batch.nearest is not None:
-            line += [f"{place_x(each / total):.1f},{height(batch.nearest):.1f}" for each in (first, first + batch.runs)]
-        first += batch.runs
-        x = place_x(first / total)
+            line += [f"{place_x(each / total):.1f},{height(batch.nearest):.1f}" for each in (done, done + batch.runs)]
+        done += batch.runs
+        x = place_x(done / total)
         marks.append(f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}"/>')
     first = "nearest" if target.guides else "longest"
     caption = f"{escape(target.name)} of each run; the line is the {first} of a batch"
