@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import msgspec
 
@@ -143,7 +144,7 @@ def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[Analyze
     return tuple(_make(current, catalogue, bases, made) for current in order)
 
 
-class _OwnFacts(msgspec.Struct, frozen=True, gc=False):
+class _OwnFacts(NamedTuple):
     """What the checks need to know of a node and follows from it alone."""
 
     targets: dict[tuple[str, ...], str]
