@@ -153,7 +153,7 @@ def test_a_watched_cell_survives_the_death_of_its_camera_process(tmp_path: Path)
             before, pid = cameras.latest, cameras.pid
             # One that hangs makes the map old; images that it missed are not made up for.
             os.kill(pid, signal.SIGSTOP)
-            await until("the newest image is .* old")
+            await until("the latest image is .* old")
             os.kill(pid, signal.SIGCONT)
             await until("")
             assert cameras.pid == pid

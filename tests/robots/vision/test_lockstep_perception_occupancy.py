@@ -184,7 +184,7 @@ def test_the_map_is_stale_before_the_first_image_and_long_after_the_last(tmp_pat
 
     first, seeing, later, again = run_virtual(main())
     assert first == "no camera image yet"
-    assert later.startswith("the newest image is 3")
+    assert later.startswith("the latest image is 3")
     assert (seeing, again) == ("", "")
 
 
