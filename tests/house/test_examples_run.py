@@ -27,6 +27,7 @@ from engine.runtime.control import load_breakpoints
 from engine.runtime.control.breakpoint import breakpoints_file
 from engine.skills.entries import WriteEntry
 from engine.sweep import SweepSubject, configurations
+from engine.sweep.search.search_plan import SearchPlan
 from engine.teaching import load_triggers
 from engine.testing.behavior_run import run_behavior
 from robots.scene.scene_builder import build_scene
@@ -34,7 +35,8 @@ from robots.scene.scene_builder import build_scene
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "how-to" / "examples"
 PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]
-CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
+BEHAVIORS = ROOT / "behaviors"
+CELL = BEHAVIORS / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
 SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
@@ -154,14 +156,25 @@ def test_entries_are_taken_with_their_tags(tmp_path: Path, text: str) -> None:
 def test_sweeps_are_taken_and_vary_what_there_is(tmp_path: Path, text: str) -> None:
     """The behavior and its cell are those of the repository; a document of faults is written beside."""
     (tmp_path / "slip.yaml").write_text("flexcell: 1\nfaults: [{error: it slips}]\n", encoding="utf-8")
-    sweep = parse_sweep(text.replace("../reconcycle", str(ROOT / "behaviors" / "reconcycle")), file=tmp_path / "s.yaml")
+    sweep = parse_sweep(text.replace("../reconcycle", str(BEHAVIORS / "reconcycle")), file=tmp_path / "s.yaml")
     assert len(configurations(sweep)) == sweep.document.runs
     assert set(SweepSubject.load(sweep).nominal) == set(sweep.document.factors)
+
+
+@shown("search:")
+def test_searches_are_taken_and_know_their_number(tmp_path: Path, text: str) -> None:
+    """Of the factors that stand before it on the page."""
+    factors = "factors: {parameters.speed: {uniform: [0.3, 1.0]}}\n"
+    behavior = BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml"
+    sweep = parse_sweep(f"flexcell: 1\nbehavior: {behavior}\n{factors}{text}", file=tmp_path / "s.yaml")
+    assert sweep.document.search is not None
+    batch = SearchPlan(SweepSubject.load(sweep).sweep).due()
+    assert len(batch) == sweep.document.search.batch
 
 
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
     kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS)
-    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
+    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:")
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

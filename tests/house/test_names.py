@@ -125,11 +125,7 @@ def test_retired_words_that_are_no_plain_english_are_in_no_comment_docstring_or_
     words = "|".join(sorted(retired - plain - PROSE))
     pattern = re.compile(rf"(?<![\w`-])(?:{words})s?(?![\w`-])", re.IGNORECASE)
     texts = [(path, _text_of(path)) for path in [*SOURCES, *DOCS]]
-    assert [
-        f"{path.relative_to(ROOT)}: {found[0]}"
-        for path, text in texts
-        for found in pattern.finditer(text)
-    ] == []
+    assert [f"{path.relative_to(ROOT)}: {found[0]}" for path, text in texts for found in pattern.finditer(text)] == []
 
 
 def _text_of(path: Path) -> str:
