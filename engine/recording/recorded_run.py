@@ -101,7 +101,7 @@ def read_run(place: Path | str, run_id: str) -> RecordedRun:
         record, origin = journal.run(run_id), journal.origin(run_id)
         if origin is None:
             raise JournalError(
-                f"the journal does not contain how run {run_id} was started",
+                f"the journal does not record how run {run_id} was started",
                 where=path,
                 hint="start it again from its file",
             )

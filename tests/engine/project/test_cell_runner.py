@@ -132,7 +132,7 @@ async def test_a_run_without_origin_cannot_be_resumed_and_says_so(outer: Path) -
         async with OpenCell(None) as cell:
             prepared = await CellRunner(cell, journal).start(RunRequest(plan=plan, parameters={"after": 0.0}))
             await prepared.execute()
-    with pytest.raises(JournalError, match=r"does not tell how run outer-.* was started"):
+    with pytest.raises(JournalError, match=r"does not record how run outer-.* was started"):
         read_run(outer.parent, prepared.run.id)
 
 

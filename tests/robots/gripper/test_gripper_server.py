@@ -122,7 +122,7 @@ async def test_fingers_that_cannot_open_fail_and_report_where_they_stopped() -> 
         end = await bus.send_goal(GripperOpen(), to=HAND).result()
     assert end.status is GoalStatus.ABORTED
     assert end.cause is not None
-    assert end.cause.message.startswith("the fingers stopped at 50.0 mm, wanted 80.0 mm")
+    assert end.cause.message.startswith("the fingers stopped at 50.0 mm, instead of 80.0 mm")
 
 
 @pytest.mark.virtual
