@@ -48,8 +48,13 @@ def sweep_file(project: Path, sweep_id: str) -> Path:
         NoSuchSweep: it leads out of the project, or there is no such document.
     """
     file = project.resolve() / sweep_id
-    inside = "\0" not in sweep_id and file.resolve().is_relative_to(project.resolve())
-    if not inside or file.suffix not in _SUFFIXES or not file.is_file() or not _is_sweep(file):
+    try:
+        inside = "\0" not in sweep_id and file.resolve().is_relative_to(project.resolve())
+        known = inside and file.suffix in _SUFFIXES and file.is_file() and _is_sweep(file)
+    except OSError:
+        # A name that is too long for this file system.
+        known = False
+    if not known:
         raise NoSuchSweep(f"there is no sweep {sweep_id[:120]!r}", hint="see the list of sweeps of this project")
     return file
 

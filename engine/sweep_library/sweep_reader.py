@@ -130,7 +130,7 @@ class SweepReader:
             DocumentError: the behavior or its cell cannot be read.
         """
         file = self.project / behavior_id
-        if not file.resolve().is_relative_to(self.project):
+        if "\0" in behavior_id or not file.resolve().is_relative_to(self.project):
             raise DocumentError("this behavior is not in the project", where=behavior_id)
         behavior = load_behavior(file)
         cell = load_cell(behavior.cell_file) if behavior.cell_file is not None else None

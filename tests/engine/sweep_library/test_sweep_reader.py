@@ -134,10 +134,13 @@ def test_a_run_without_a_result_is_no_run(project: LuckProject) -> None:
     assert refused(project, ReadTrial(sweep=ID, number=300)).kind == "missing"
 
 
-@pytest.mark.parametrize("name", ["gone.yaml", "../sweep.yaml", "luck.yaml", "/etc/passwd", "flexcell.yaml", "\0"])
+@pytest.mark.parametrize(
+    "name", ["gone.yaml", "../sweep.yaml", "luck.yaml", "/etc/passwd", "flexcell.yaml", "\0", f"{'a' * 300}.yaml"]
+)
 def test_only_sweeps_of_the_project_are_read(project: LuckProject, name: str) -> None:
     (project.path.parent / "sweep.yaml").write_bytes(project.text())
     assert refused(project, ReadSweep(sweep=name)).kind == "missing"
+    assert refused(project, OfferFactors(behavior=f"../{name}")).kind == "invalid"
 
 
 def test_a_run_is_recorded_again_and_compared(project: LuckProject) -> None:
