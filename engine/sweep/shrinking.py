@@ -220,6 +220,8 @@ class _Shrinker:
             for value in itertools.islice(shorter, _ROUNDINGS):
                 if self._fails({name: value}):
                     break
+        # A number that was moved away by rounding may have taken the place of another factor.
+        self._set_back_one_by_one()
 
     def found(self) -> Shrunk:
         """Return the smallest failing configuration."""

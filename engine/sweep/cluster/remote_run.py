@@ -77,6 +77,8 @@ def execute_remotely(shipment: bytes, task: bytes, configuration: bytes) -> byte
     begun.set()
     worker = get_worker()
     site = _entered(asked, shipment, worker.local_directory)
+    if site is None:
+        return msgspec.json.encode(RemoteAnswer())
     try:
         answer = site.execute(decoded)
     finally:
@@ -93,8 +95,9 @@ def local_versions() -> dict[str, str]:
 
 
 def release(token: str) -> None:
-    """End what this worker still executes of a sweep, and remove its files."""
+    """End what this worker still executes of a sweep, and remove its files; nothing of it begins any more."""
     with _lock:
+        _released.add(token)
         site = _sites.pop(token, None)
     if site is not None:
         site.end()
@@ -152,6 +155,10 @@ class _Site:
             process = TrialProcess(self._task, self._limits)
             with _lock:
                 self._processes[thread] = process
+                ended = self._ended
+            if ended:
+                # The sweep was released while the process started.
+                process.kill()
         answer = process.execute(configuration)
         if process.is_spent:
             with _lock:
@@ -179,9 +186,14 @@ class _Site:
         self.end()
 
 
-def _entered(task: RemoteTask, shipment: bytes, local_directory: str) -> _Site:
-    """Return the files and processes of a sweep on this worker, kept until `leave`; the first caller unpacks them."""
+def _entered(task: RemoteTask, shipment: bytes, local_directory: str) -> _Site | None:
+    """Return the files and processes of a sweep on this worker, kept until `leave`; the first caller unpacks them.
+
+    None for a sweep that was released: a configuration whose cancellation comes after that does not begin.
+    """
     with _lock:
+        if task.token in _released:
+            return None
         site = _sites.get(task.token)
         if site is None:
             folder = Path(tempfile.mkdtemp(prefix="flexcell-sweep-", dir=local_directory))
@@ -192,3 +204,4 @@ def _entered(task: RemoteTask, shipment: bytes, local_directory: str) -> _Site:
 
 _lock = threading.Lock()
 _sites: dict[str, _Site] = {}
+_released: set[str] = set()
