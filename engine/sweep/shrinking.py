@@ -213,6 +213,7 @@ class _Shrinker:
     def round_off(self) -> None:
         """Write numbers with as few decimals as fail, hardly further from nominal."""
         self._step = "round"
+        before = self._best
         for name, good, bad in list(self._numbers()):
             if isinstance(bad, int):
                 continue
@@ -220,8 +221,11 @@ class _Shrinker:
             for value in itertools.islice(shorter, _ROUNDINGS):
                 if self._fails({name: value}):
                     break
-        # A number that was moved away by rounding may have taken the place of another factor.
-        self._set_back_one_by_one()
+        if self._best is not before:
+            # A number that was moved away by rounding may have taken the place of another factor.
+            nearest = dict(self._passes)
+            self._set_back_one_by_one()
+            self._passes.update(nearest)
 
     def found(self) -> Shrunk:
         """Return the smallest failing configuration."""
