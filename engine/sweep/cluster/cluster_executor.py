@@ -201,7 +201,10 @@ class ClusterExecutor:
         return FlexcellError(f"the cluster cannot execute a run: {text}", where=self._options.scheduler, hint=hint)
 
     def _look(self) -> None:
-        """Count the workers from time to time: as many runs are on the way as they have threads, and one more each."""
+        """Count the workers from time to time: as many runs are on the way as they have threads.
+
+        One more would wait on a worker, perhaps behind a run that hangs, while others are idle.
+        """
         now_s = time.monotonic()
         if now_s < self._looked_s + _LOOK_S:
             return
@@ -210,7 +213,7 @@ class ClusterExecutor:
         except (OSError, ValueError, RuntimeError, TimeoutError) as error:
             raise self._failure(error) from error
         self._looked_s = now_s
-        self._room = max(sum(threads.values()) + len(threads), 1)
+        self._room = max(sum(threads.values()), 1)
         if threads or not self._without_s:
             self._without_s = now_s
         elif now_s - self._without_s > self._options.workers_s:
