@@ -87,8 +87,9 @@ class TrialProcess:
         return self.answer() if self.connection.poll(self._limits.timeout_s) else self.hung()
 
     def kill(self) -> None:
-        """Kill the process from any thread; the thread that waits for it reads that it has crashed."""
+        """Kill the process from any thread and wait for its end; who waits for its answer reads that it has crashed."""
         self._process.kill()
+        self._process.wait()
 
     def end(self) -> None:
         """Kill the process, and wait until it has ended."""

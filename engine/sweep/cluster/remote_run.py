@@ -157,8 +157,9 @@ class _Site:
                 self._processes[thread] = process
                 ended = self._ended
             if ended:
-                # The sweep was released while the process started.
+                # The sweep was released while the process started; it may have written byte code since.
                 process.kill()
+                shutil.rmtree(self._folder, ignore_errors=True)
         answer = process.execute(configuration)
         if process.is_spent:
             with _lock:
