@@ -15,6 +15,7 @@ import msgspec
 from engine.errors import FlexcellError
 from engine.host.sqlite_file import advice, open_sqlite
 from engine.host.sqlite_migrations import SqliteMigrations
+from engine.sweep.configuration import Configuration
 from engine.sweep.trial_result import TrialResult
 
 _SCHEMA = SqliteMigrations(
@@ -98,6 +99,18 @@ class SweepResults:
         asked = frozenset(keys)
         rows = self._read("SELECT key, result FROM results WHERE subject = ?", subject)
         return {str(key): self._decoded(key, text) for key, text in rows if key in asked}
+
+    def of_design(self, subject: str, configurations: Iterable[Configuration]) -> dict[int, TrialResult]:
+        """Return the saved results of configurations by the number that each has in its design.
+
+        Raises:
+            FlexcellError: the file cannot be read or is damaged.
+        """
+        keys = {each.key(subject): each for each in configurations}
+        return {
+            keys[key].number: msgspec.structs.replace(result, configuration=keys[key])
+            for key, result in self.of(subject, keys).items()
+        }
 
     def all_of(self, subject: str) -> list[TrialResult]:
         """Return all results of a subject.

@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import msgspec
-
 from engine.document.duration import seconds
 from engine.sweep.configuration import Configuration
 from engine.sweep.results import SweepResults
@@ -69,7 +67,7 @@ class SweepEnd:
 
 def saved_sweep(subject: SweepSubject, configurations: Sequence[Configuration], results: SweepResults) -> SweepEnd:
     """Return what is saved of a sweep, without executing anything."""
-    found = _saved(subject, configurations, results)
+    found = results.of_design(subject.hash, configurations)
     count = SuccessCount(subject.sweep.document, len(configurations))
     for number in sorted(found):
         count.add(found[number])
@@ -112,7 +110,7 @@ def execute_sweep(
     results.describe(subject.hash, subject.versions)
     found = {
         number: result
-        for number, result in _saved(subject, configurations, results).items()
+        for number, result in results.of_design(subject.hash, configurations).items()
         if not (again and result.broken)
     }
     count = SuccessCount(document, len(configurations))
@@ -161,12 +159,3 @@ def execute_sweep(
         ended_by=ended_by,
         executed=executed,
     )
-
-
-def _saved(
-    subject: SweepSubject, configurations: Sequence[Configuration], results: SweepResults
-) -> dict[int, TrialResult]:
-    """Return the saved results by the number that their configuration has in this design."""
-    keys = {each.key(subject.hash): each for each in configurations}
-    saved = results.of(subject.hash, keys)
-    return {keys[key].number: msgspec.structs.replace(result, configuration=keys[key]) for key, result in saved.items()}

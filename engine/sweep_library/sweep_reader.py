@@ -116,11 +116,10 @@ class SweepReader:
         """
         loaded = self._load(sweep_id)
         if number < len(loaded.configurations):
-            key = loaded.configurations[number].key(loaded.subject.hash)
             with SweepResults.open(self.results) as results:
-                found = results.of(loaded.subject.hash, [key]).get(key)
-            if found is not None:
-                return msgspec.structs.replace(found, configuration=loaded.configurations[number])
+                found = results.of_design(loaded.subject.hash, [loaded.configurations[number]])
+            if number in found:
+                return found[number]
         raise NoSuchSweep(f"run {number} has no result", where=sweep_id, hint="its documents may have changed since")
 
     def factors(self, behavior_id: str) -> list[FactorChoice]:

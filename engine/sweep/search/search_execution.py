@@ -10,8 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import msgspec
-
 from engine.document.duration import seconds
 from engine.document.sweep import SearchSpec
 from engine.sweep.configuration import Configuration
@@ -148,13 +146,8 @@ def _saved(
     subject: SweepSubject, batch: Sequence[SearchPoint], results: SweepResults, *, again: bool = False
 ) -> dict[int, TrialResult]:
     """Return the saved results of a batch by number; a random design may have executed some of them."""
-    keys = {point.configuration.key(subject.hash): point.configuration for point in batch}
-    saved = results.of(subject.hash, keys)
-    return {
-        keys[key].number: msgspec.structs.replace(result, configuration=keys[key])
-        for key, result in saved.items()
-        if not (again and result.broken)
-    }
+    saved = results.of_design(subject.hash, [point.configuration for point in batch])
+    return {number: result for number, result in saved.items() if not (again and result.broken)}
 
 
 def _progress(

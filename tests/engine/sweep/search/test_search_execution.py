@@ -48,7 +48,6 @@ def test_the_number_of_workers_and_the_order_of_results_change_nothing(project: 
 @pytest.mark.usefixtures("without_processes")
 @pytest.mark.parametrize("method", ["cross_entropy", "optuna"])
 def test_an_interrupted_search_goes_on_where_it_was(project: LuckProject, tmp_path: Path, method: str) -> None:
-    pytest.importorskip(method if method == "optuna" else "scipy")
     sweep = luck_search(project, method=method)
     file = tmp_path / "r.db"
     first = _execute(sweep, file, workers=3, stop_after=24)

@@ -26,14 +26,12 @@ def test_the_last_batch_is_as_long_as_runs_are_left() -> None:
 
 @pytest.mark.parametrize("method", ["cross_entropy", "optuna"])
 def test_a_number_that_no_run_has_ends_it_after_the_first_batch(method: str) -> None:
-    pytest.importorskip("optuna" if method == "optuna" else "scipy")
     with pytest.raises(FlexcellError, match="no run has a number `distanze`") as caught:
         searched(CORNER, CORNER.sweep(1, towards="least distanze", method=method))
     assert "distance" in str(caught.value.hint)
 
 
 def test_optuna_finds_planted_failures_with_the_same_runs_each_time() -> None:
-    pytest.importorskip("optuna")
     ball = CASES[0]
     plans = [searched(ball, ball.sweep(3, runs=120, batch=10, method="optuna")) for _ in range(2)]
     assert plans[0].steps == plans[1].steps
@@ -44,7 +42,6 @@ def test_optuna_finds_planted_failures_with_the_same_runs_each_time() -> None:
 
 
 def test_optuna_searches_lists_too() -> None:
-    pytest.importorskip("optuna")
     case = CASES[3]
     assert searched(case, case.sweep(1, runs=120, method="optuna")).failures > 0
 

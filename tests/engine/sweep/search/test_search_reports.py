@@ -78,7 +78,6 @@ def test_no_report_has_a_success_rate_and_all_say_why(summary: SearchSummary) ->
 
 
 def test_optuna_says_that_it_has_no_estimate(tmp_path: Path) -> None:
-    pytest.importorskip("optuna")
     found = _summary(tmp_path, method="optuna", runs=20)
     assert found.probability is None
     assert "no success rate and no interval of it" in search_report(found, Path("s.md")).decode()
