@@ -40,7 +40,7 @@ def transitions(behavior: Behavior, name: str) -> dict[str, str]:
 
 def on_edge(page: Page, arrow: str, share: float) -> tuple[float, float]:
     """A point on an arrow, on the screen."""
-    line = page.locator(f".react-flow__edge[data-id='{arrow}'] .way-line")
+    line = page.locator(f".react-flow__edge[data-id='{arrow}'] .transition-line")
     expect(line).to_have_count(1)
     idle(page)
     at = line.evaluate(

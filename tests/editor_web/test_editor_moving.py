@@ -38,7 +38,7 @@ def corner(part: Locator) -> tuple[float, float]:
 
 def line(page: Page, arrow: str) -> Locator:
     """An arrow."""
-    return page.locator(f".react-flow__edge[data-id='{arrow}'] .way-line")
+    return page.locator(f".react-flow__edge[data-id='{arrow}'] .transition-line")
 
 
 def test_what_is_in_a_dragged_container_comes_along_and_its_arrows_keep_their_course(

@@ -78,7 +78,7 @@ def test_the_whole_tour_by_mouse(browser: Browser, shop: Workshop) -> None:
         page.get_by_role("combobox", name="message").press("Tab")
         at_step(page, "Lead the outcomes on")
         # Beside what the step is about, the card is not on what is dragged.
-        require_ring_around(page, page.locator(".edit-canvas .way.is-loose"))
+        require_ring_around(page, page.locator(".edit-canvas .transition-row.is-loose"))
         drag(page, port(page, "root/log", "done"), pill(page, "root", "finished"))
         at_step(page, "Check, save, and go to the run page")
         page.get_by_role("button", name="Run", exact=True).click()

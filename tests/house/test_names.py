@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.house.retired_words import GLOSSARY, PROSE, retired_words, words_of
 from tests.house.source_file import source_file
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,13 +19,10 @@ PACKAGES = ("engine", "states", "robots", "editor_web")
 SOURCES = [
     path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts
 ]
-GLOSSARY = ROOT / "docs" / "reference" / "glossary.md"
 SHARED_FILE_NAMES = {"__init__", "models", "errors", "kernels"}
 """A folder's layers share these by design."""
 TERMS = {"three_way_merge", "hand_rests", "MetaPathFinder"}
 """A term of the field that the glossary has, a key of documents, and a class of Python, with a retired word."""
-PROSE = {"bench", "looking", "nearby", "newest", "tell", "told", "trouble"}
-"""Words that are plain English in texts too, beside those that are so in names of tests."""
 DOCS = [path for path in sorted((ROOT / "docs").rglob("*.md")) if path != GLOSSARY]
 
 
@@ -32,23 +30,6 @@ def _public_classes() -> Iterator[tuple[str, Path]]:
     for path in SOURCES:
         for name in source_file(path).classes:
             yield name, path
-
-
-def _words(name: str) -> set[str]:
-    """Split `WayFinder` or `way_finder` into its words, in lower case."""
-    return {word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+", name)}
-
-
-def _retired() -> tuple[set[str], set[str]]:
-    """Return the words that the glossary lists as retired, and those that stand as plain English in names of tests."""
-    _, _, part = GLOSSARY.read_text(encoding="utf-8").partition("## Retired words")
-    introduction, table, rows = part.partition("\n| word |")
-    assert table, "the glossary has the section"
-    retired = set(re.findall(r"^\| `(\w+)` \|", rows, re.MULTILINE))
-    plain = set(re.findall(r"`(\w+)`", introduction))
-    assert len(retired) > 20
-    assert plain < retired
-    return retired, plain
 
 
 def _family(path: Path) -> str:
@@ -91,7 +72,7 @@ def test_a_file_name_occurs_once_in_a_package(package: str) -> None:
 @pytest.mark.parametrize("package", [*PACKAGES, "tests", "benchmarks"])
 def test_retired_words_are_in_no_name_of_a_file_class_or_function(package: str) -> None:
     """The field's word is beside each in the glossary; tests are named by sentences in plain English."""
-    retired, plain = _retired()
+    retired, plain = retired_words()
     files = [path for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts]
     assert files
     sources = [(source_file(path), path) for path in files]
@@ -99,14 +80,14 @@ def test_retired_words_are_in_no_name_of_a_file_class_or_function(package: str) 
     assert [
         f"{path.relative_to(ROOT)}: {name}"
         for name, path in used
-        if name not in TERMS and _words(name) & (retired - plain if name.startswith("test_") else retired)
+        if name not in TERMS and words_of(name) & (retired - plain if name.startswith("test_") else retired)
     ] == []
 
 
 @pytest.mark.parametrize("package", [*PACKAGES, "benchmarks", "docs"])
 def test_retired_words_are_in_no_attribute_parameter_or_local(package: str) -> None:
     """Nor in what is passed by a name; in tests they stand as plain English."""
-    retired, _ = _retired()
+    retired, _ = retired_words()
     retired |= {f"{word}s" for word in retired}
     files = [path for path in sorted((ROOT / package).rglob("*.py")) if "node_modules" not in path.parts]
     places = [(path.relative_to(ROOT).as_posix(), path) for path in files]
@@ -115,13 +96,13 @@ def test_retired_words_are_in_no_attribute_parameter_or_local(package: str) -> N
         f"{place}: {name}"
         for place, path in places
         for name in sorted(source_file(path).assigned - TERMS)
-        if _words(name) & retired
+        if words_of(name) & retired
     ] == []
 
 
 def test_retired_words_that_are_no_plain_english_are_in_no_comment_docstring_or_page() -> None:
     """A word that a reader would take for a term of flexcell is one; `newest first` and the like are English."""
-    retired, plain = _retired()
+    retired, plain = retired_words()
     words = "|".join(sorted(retired - plain - PROSE))
     pattern = re.compile(rf"(?<![\w`-])(?:{words})s?(?![\w`-])", re.IGNORECASE)
     texts = [(path, _text_of(path)) for path in [*SOURCES, *DOCS]]

@@ -30,7 +30,7 @@ export interface ElkArrow {
   sections?: { startPoint: Point; endPoint: Point; bendPoints?: Point[] }[]
 }
 
-/** A way out of a machine that is written on the node instead of drawn as an arrow. */
+/** An outcome of a machine that is written on the node instead of drawn as an arrow. */
 export interface Exit {
   readonly outcome: string
   readonly target: string
@@ -107,7 +107,7 @@ function drawnTransitions(machine: GraphNode): readonly GraphTransition[] {
   return machine.transitions.filter((t) => drawn.has(t.target))
 }
 
-/** The ways out of `parent` that are written on its child `name`. */
+/** The outcomes of `parent` that are written on its child `name`. */
 export function exitsOf(parent: GraphNode | undefined, name: string): readonly Exit[] {
   if (!parent || parent.kind !== 'machine') return []
   const drawn = new Set([...drawnOutcomes(parent), ...parent.children.map((child) => child.name)])

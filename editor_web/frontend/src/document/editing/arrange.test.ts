@@ -76,7 +76,7 @@ it('stacks what runs side by side, and shows the rules below', async () => {
   expect(boxes.get(rulesId('root'))?.y).toBeGreaterThan(boxes.get('root/right')?.y ?? 0)
 })
 
-it('knows names, ways out, holders and what belongs to another document', () => {
+it('knows names, outcomes, holders and what belongs to another document', () => {
   expect(freeName(chain, 'a')).toBe('a_2')
   expect(freeName(chain, 'new one!')).toBe('new_one_')
   expect(nameFor('motion.MoveJoints')).toBe('move_joints')

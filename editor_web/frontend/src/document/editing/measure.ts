@@ -59,12 +59,12 @@ export function tableHeight(node: EditNode): number {
     : 0
 }
 
-/** Where the port of the `index`-th way out is, from the top of a node of this height with `count` ways. */
+/** Where the port of the `index`-th outcome is, from the top of a node of this height with `count` of them. */
 export function portY(height: number, count: number, index: number): number {
   return height - rowsHeight(count) + ROWS_TOP + index * ROW_HEIGHT + ROW_HEIGHT / 2
 }
 
-/** Where arrows come in, from the top of a node: at the height of its first way out, so that what follows one another is one line. */
+/** Where arrows come in, from the top of a node: at the height of its first outcome, so that what follows one another is one line. */
 export function entryY(height: number, outgoing: number): number {
   return outgoing > 0 ? portY(height, outgoing, 0) : Math.min(height / 2, HEAD_HEIGHT / 2)
 }

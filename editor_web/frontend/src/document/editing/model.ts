@@ -138,7 +138,7 @@ export function nameProblem(parent: EditNode | undefined, name: string, present 
   return undefined
 }
 
-/** A way out of a node, and where it leads; undefined where nothing is connected. */
+/** An outcome of a node, and where it leads; undefined where nothing is connected. */
 export interface OutgoingTransition {
   readonly outcome: string
   readonly target: string | undefined
@@ -146,7 +146,7 @@ export interface OutgoingTransition {
   readonly isOutcome: boolean
 }
 
-/** The ways out of a child of a machine, its own outcomes first; none elsewhere. */
+/** The outcomes of a child of a machine, its own outcomes first; none elsewhere. */
 export function outgoingTransitions(parent: EditNode | undefined, node: EditNode): readonly OutgoingTransition[] {
   if (!parent || !isMachine(parent.kind)) return []
   const own = parent.transitions.filter((t) => t.source === node.name)

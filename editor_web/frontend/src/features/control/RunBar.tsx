@@ -97,7 +97,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
       </div>
       {run && isActive(run) && control && (
         <div className="run-state">
-          <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'} className={`run-standing${control.paused ? ' is-paused' : ''}`}>
+          <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'} className={`run-status${control.paused ? ' is-paused' : ''}`}>
             {runStatusText(run, control)}
           </span>
           <span className="quiet run-autonomy">

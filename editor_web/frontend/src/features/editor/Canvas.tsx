@@ -1,4 +1,4 @@
-/** The canvas: what is drawn, what dragging, dropping and wiring on it mean. */
+/** The canvas: what is drawn, what dragging, dropping and connecting on it mean. */
 import '@xyflow/react/dist/style.css'
 import { useCallbackRef, useElementSize } from '@mantine/hooks'
 import {
@@ -322,7 +322,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   return (
     <ReactFlow<CanvasNode, CanvasEdge>
       ref={element}
-      className={`${isInPlace ? 'is-in-place' : ''}${isConnecting ? ' is-wiring' : ''}${isStale ? ' is-stale' : ''}`}
+      className={`${isInPlace ? 'is-in-place' : ''}${isConnecting ? ' is-connecting' : ''}${isStale ? ' is-stale' : ''}`}
       nodes={nodes}
       edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
       onlyRenderVisibleElements={hasMany && !isFar}

@@ -84,7 +84,7 @@ function Path() {
   const id = useEditor((s) => s.id)
   const from = useMemo(() => referrerOf(id), [id])
   return (
-    <nav aria-label="Shown container" className="breadcrumb edit-way">
+    <nav aria-label="Shown container" className="breadcrumb edit-breadcrumb">
       <ol>
         {from && (
           <li>

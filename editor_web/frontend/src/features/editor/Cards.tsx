@@ -34,7 +34,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
         <Extras data={data} />
         <MarkIcon path={id} inside={node.children.length > 0} />
       </div>
-      <Ways path={id} data={data} />
+      <Transitions path={id} data={data} />
     </div>
   )
 })
@@ -61,7 +61,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       {node.children.length === 0 && <div className="frame-empty">Empty: add a state, or drop one here</div>}
       <span className="spacer" />
       {node.kind === 'concurrency' && <RuleTable node={node} />}
-      <Ways path={id} data={data} />
+      <Transitions path={id} data={data} />
     </div>
   )
 })
@@ -86,7 +86,7 @@ function stateClasses(data: CardData, selected: boolean): string {
   return `${selected ? ' is-selected' : ''}${data.isForeign ? ' is-foreign' : ''}`
 }
 
-/** Above in a tree; in a machine at the left, at the height of the first way out. */
+/** Above in a tree; in a machine at the left, at the height of the first outcome. */
 function Entry({ data }: { data: CardData }) {
   return data.isInTree ? (
     <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
@@ -139,11 +139,11 @@ function MarkIcon({ path, inside }: { path: string; inside: boolean }) {
   )
 }
 
-/** A row with a port for each way out. */
-function Ways({ path, data }: { path: string; data: CardData }) {
+/** A row with a port for each outcome. */
+function Transitions({ path, data }: { path: string; data: CardData }) {
   if (data.transitions.length === 0) return null
   return (
-    <div className="ways">
+    <div className="transition-rows">
       {data.transitions.map((transition) => (
         <TransitionRow
           key={transition.outcome}
@@ -162,10 +162,10 @@ function TransitionRow({ path, transition, isDrawn, isForeign }: { path: string;
   const isLoose = transition.target === undefined
   const classes = `${isLoose ? ' is-loose' : ''}${isFailure(transition.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`
   return (
-    <div className={`way${classes}`} title={findings.map((finding) => finding.message).join('\n') || undefined}>
-      <span className="way-name">{transition.outcome}</span>
-      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className="way-target">→ {transition.target}</span>}
-      {!isDrawn && transition.target === transition.outcome && <span className="way-target">↦</span>}
+    <div className={`transition-row${classes}`} title={findings.map((finding) => finding.message).join('\n') || undefined}>
+      <span className="transition-outcome">{transition.outcome}</span>
+      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className="transition-target">→ {transition.target}</span>}
+      {!isDrawn && transition.target === transition.outcome && <span className="transition-target">↦</span>}
       <Handle
         type="source"
         id={transition.outcome}

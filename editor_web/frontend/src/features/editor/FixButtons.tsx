@@ -1,4 +1,4 @@
-/** What would mend a problem, each to be chosen; and the problems of one node in its form. */
+/** What would fix a problem, each to be chosen; and the problems of one node in its form. */
 import { IconBulb } from '@tabler/icons-react'
 import type { Fix } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'

@@ -24,7 +24,7 @@ export const TransitionLine = memo(function TransitionPath(props: EdgeProps<Tran
       {!data?.isQuiet && (
         <path d={path} className="react-flow__edge-interaction" fill="none" strokeOpacity={0} strokeWidth={18} />
       )}
-      <path d={path} className={`way-line${classes}`} markerEnd={`url(#edit-arrow${selected ? '-selected' : ''})`}>
+      <path d={path} className={`transition-line${classes}`} markerEnd={`url(#edit-arrow${selected ? '-selected' : ''})`}>
         {findings.length > 0 && <title>{findings.map((finding) => finding.message).join('\n')}</title>}
       </path>
       {!data?.isQuiet && (

@@ -1,4 +1,4 @@
-/** The palettes: what to add, where a way out leads, and every command by its name. */
+/** The palettes: what to add, where an outcome leads, and every command by its name. */
 import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
 import {
@@ -88,7 +88,7 @@ interface From {
   readonly outcome: string
 }
 
-/** The nodes and outcomes that a way out can lead to. */
+/** The nodes and outcomes that an outcome can lead to. */
 function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly string[], from: From): readonly Choice[] {
   if (!isMachine(parent.kind)) return []
   const inside = new Set(parent.children.map((child) => child.name))

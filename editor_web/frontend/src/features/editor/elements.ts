@@ -44,7 +44,7 @@ export type BranchEdge = Edge<Record<string, unknown>, 'branch'>
 export type CanvasEdge = TransitionEdge | BranchEdge
 
 export const IN = 'in'
-/** Width and height of the port of a way out. */
+/** Width and height of the port of an outcome. */
 const PORT = 11
 
 export interface DrawnInput {

@@ -49,7 +49,7 @@ function placedOf(findings: readonly FindingView[]): Placed {
   return { at, around }
 }
 
-/** The findings that name a way out: they are shown at its arrow or port. */
+/** The findings that name an outcome: they are shown at its arrow or port. */
 function findingsOfTransition(findings: readonly FindingView[], path: string, outcome: string): readonly FindingView[] {
   return findings.filter((finding) => finding.path === path && finding.message.includes(`\`${outcome}\``))
 }

@@ -64,7 +64,7 @@ export function openPortPalette(path: string, outcome: string, screen?: Point, a
   })
 }
 
-/** Ask which way out of the chosen node to connect. */
+/** Ask which outcome of the chosen node to connect. */
 export function openConnectPalette(): void {
   const root = rootOf(editor())
   const chosen = chosenOf(editor())

@@ -12,7 +12,7 @@ import type { Point } from '../../document/geometry'
 export interface AddRequest {
   /** The container it goes into. */
   readonly parent: string
-  /** Connect this way out with it: from a port, or on an arrow that it is put on. */
+  /** Connect this outcome with it: from a port, or on an arrow that it is put on. */
   readonly from?: { readonly path: string; readonly outcome: string; readonly isInsert?: boolean }
   /** Where on the container's canvas it goes; laid out by itself without. */
   readonly at?: Point

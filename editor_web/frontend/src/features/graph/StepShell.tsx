@@ -80,7 +80,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
   )
 })
 
-/** The ways out that are written here instead of drawn; the one that was taken is lit. */
+/** The outcomes that are written here instead of drawn; the one that was taken is lit. */
 function Exits({ data }: { data: StepNode['data'] }) {
   const lastTransition = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.last_transition : undefined))
   if (data.exits.length === 0) return null

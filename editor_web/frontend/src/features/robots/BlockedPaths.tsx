@@ -12,7 +12,7 @@ export function BlockedPaths() {
       {blocked.length > 0 && (
         <ul className="plain-list" aria-label="Arms with a blocked path">
           {blocked.map(({ robot, path }) => (
-            <li key={robot} className="blocked-way">
+            <li key={robot} className="blocked-path">
               <IconBarrierBlock size={18} aria-hidden />
               <span>
                 <strong>{robot}</strong> waits: {path.reason || 'its path is blocked'}, since <Since sinceS={path.since_s} />

@@ -53,7 +53,7 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
           onChange={(event) => onChoose(event.currentTarget.checked)}
         />
       </header>
-      <p className={`run-standing${run.waits ? ' is-paused' : ''}`} role="status" aria-label={`State of ${name}`}>
+      <p className={`run-status${run.waits ? ' is-paused' : ''}`} role="status" aria-label={`State of ${name}`}>
         {runStatusText(run, control) || 'Connecting'}
       </p>
       {root && <RunStrip root={root} />}

@@ -77,7 +77,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
         )}
       </div>
       {hand?.said && (
-        <p className="teach-said" role="status" aria-label="Messages of the Helping Hand">
+        <p className="teach-message" role="status" aria-label="Messages of the Helping Hand">
           {hand.said}
         </p>
       )}

@@ -121,7 +121,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         disabled={off !== undefined}
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
-      <p className="teach-said" role="status" aria-label="State of jogging">
+      <p className="teach-message" role="status" aria-label="State of jogging">
         {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It moves while this is held' : '')}
       </p>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />

@@ -11,7 +11,7 @@ import { HoldButton } from './HoldButton'
 
 const PUSH_S = 0.3
 const REPEAT_MS = 200
-const WAYS = [
+const PUSHES = [
   { name: 'forward', force: [1, 0, 0], Icon: IconArrowUp, area: 'up' },
   { name: 'back', force: [-1, 0, 0], Icon: IconArrowDown, area: 'down' },
   { name: 'left', force: [0, 1, 0], Icon: IconArrowLeft, area: 'left' },
@@ -90,7 +90,7 @@ function PushPad({ arm, obstacle, onProblem }: { readonly arm: string; readonly 
   return (
     <div className="push">
       <div className="push-pad" role="group" aria-label="Push at the tool">
-        {WAYS.map(({ name, force, Icon, area }) => (
+        {PUSHES.map(({ name, force, Icon, area }) => (
           <span key={name} style={{ gridArea: area }}>
             <HoldButton label={`Push ${name}`} isHeld={held === name} obstacle={obstacle} onHold={() => hold(name, force)} onLetGo={letGo}>
               <Icon size={17} aria-hidden />

@@ -17,7 +17,7 @@ import { Tools } from './Tools'
 import { useDetail } from './useDetail'
 import { play, usePlayback } from './usePlayback'
 import { useRunTime } from './useRunTime'
-import { useFollowedRun, useSubject } from './useSubject'
+import { useRunUpdates, useSubject } from './useSubject'
 
 export interface TimelineProps {
   readonly behavior: BehaviorView
@@ -33,7 +33,7 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   const isShown = useIsVisible(place)
   const { ref: sized, width } = useElementSize()
   const subject = useSubject(run)
-  useFollowedRun(subject, run, isShown)
+  useRunUpdates(subject, run, isShown)
   const course = useTimeline((s) => s.course)
   const problem = useTimeline((s) => s.problem)
   const cursorS = useTimeline((s) => s.timeS)

@@ -14,7 +14,7 @@ export function useSubject(run: RunView | undefined): Subject | undefined {
 const PERIOD_MS = 400
 
 /** Keep the timeline up to date while it is seen. */
-export function useFollowedRun(subject: Subject | undefined, run: RunView | undefined, isShown: boolean): void {
+export function useRunUpdates(subject: Subject | undefined, run: RunView | undefined, isShown: boolean): void {
   const generation = useLive((s) => s.generation)
   const goesOn = isActive(run) && !subject?.isPast
   useEffect(() => forget, [subject?.address, generation])

@@ -82,9 +82,9 @@ export const STEPS: readonly Step[] = [
     words: 'Every outcome needs a target. Drag from the dot beside done to the pill finished: there the behavior ends.',
     keys: 'Choose the state, press C, choose the outcome with Enter, write finished, press Enter.',
     page: 'edit',
-    targets: ['.edit-canvas .way.is-loose', TABS('canvas'), '.problem-count'],
+    targets: ['.edit-canvas .transition-row.is-loose', TABS('canvas'), '.problem-count'],
     clear: '.edit-canvas',
-    isDone: () => isSettled() && countOf('.edit-canvas .way') > 1 && !isThere('.edit-canvas .way.is-loose') && errors() === 0,
+    isDone: () => isSettled() && countOf('.edit-canvas .transition-row') > 1 && !isThere('.edit-canvas .transition-row.is-loose') && errors() === 0,
   },
   {
     title: 'Check, save, and go to the run page',
@@ -145,7 +145,7 @@ function countOf(selector: string): number {
 function isFilled(name: string): boolean {
   const field = document.querySelector<HTMLInputElement>(FIELD(name))
   if (!isSettled()) return false
-  if (!field) return errors() <= countOf('.edit-canvas .way.is-loose')
+  if (!field) return errors() <= countOf('.edit-canvas .transition-row.is-loose')
   return field.value.trim() !== '' && !field.closest('.edit-field')?.classList.contains('has-problem')
 }
 
