@@ -17,7 +17,7 @@ from engine.document.parameter_spec import ParameterSpec
 from engine.document.python_name import is_python_name
 from engine.document.sweep import Sweep, sweep_of_source
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
-from engine.sweep.factor_text import parse_factor
+from engine.sweep.design.factor_text import parse_factor
 
 _PLAIN = ("runs", "time", "width", "require", "design", "seed", "confidence")
 NO_SEARCH = "none"

@@ -15,8 +15,8 @@ import msgspec
 from engine.errors import FlexcellError
 from engine.host.sqlite_file import advice, open_sqlite
 from engine.host.sqlite_migrations import SqliteMigrations
-from engine.sweep.configuration import Configuration
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
 
 _SCHEMA = SqliteMigrations(
     steps=(

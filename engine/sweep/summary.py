@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.gate.success_count import Verdict
 from engine.sweep.statistics import Interval, exact_interval
 from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
 from engine.sweep.statistics.input_coverage import InputCoverage, input_coverage
-from engine.sweep.success_count import Verdict
 from engine.sweep.sweep_execution import EndedBy, SweepEnd
-from engine.sweep.trial_result import TrialResult
 
 _EXAMPLES = 5
 

@@ -12,15 +12,15 @@ from engine.document.sweep import Sweep, load_sweep
 from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.sweep.cluster.cluster_executor import ClusterOptions
-from engine.sweep.comparison import Comparison
-from engine.sweep.design import configurations
+from engine.sweep.design.designs import configurations
+from engine.sweep.execution.worker_pool import WorkerOptions
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report import report
 from engine.sweep.report.result_rows import Row, rows
 from engine.sweep.results import SweepResults
-from engine.sweep.subject import SweepSubject
+from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import SweepSummary, summarize
 from engine.sweep.sweep_execution import SweepProgress, execute_sweep
-from engine.sweep.worker_pool import WorkerOptions
 
 DEFAULT_RESULTS = Path(STATE_FOLDER) / "sweeps.db"
 """Where results are kept, relative to the current directory."""

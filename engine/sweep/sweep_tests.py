@@ -15,7 +15,7 @@ import pytest
 from engine.document.sweep import load_sweep
 from engine.errors import DocumentError, FlexcellError
 from engine.sweep import SweepSubject, TrialResult, Trials, configurations
-from engine.sweep.success_count import SuccessCount
+from engine.sweep.gate.success_count import SuccessCount
 
 MARKER = "flexcell_sweep"
 _SWEEP = re.compile(rb"^behavior:", re.MULTILINE)

@@ -8,10 +8,10 @@ from typing import Literal, get_type_hints
 import msgspec
 
 from engine.document.sweep import SweepDocument
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.gate.success_count import SuccessCount, Verdict
 from engine.sweep.statistics import Interval
-from engine.sweep.success_count import SuccessCount, Verdict
 from engine.sweep.summary import SweepSummary
-from engine.sweep.trial_result import TrialResult
 
 SweepStatus = Literal["idle", "running", "stopping"]
 _APART = frozenset({"sweep", "results"})

@@ -36,12 +36,12 @@ from engine.sweep import (
     summarize,
 )
 from engine.sweep.case_file import case_document
+from engine.sweep.execution.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
 from engine.sweep.report import markdown, report
 from engine.sweep.search import execute_search, saved_search, summarize_search
 from engine.sweep.shrinking import same_cause, same_outcome
 from engine.sweep.shrinking import shrink as shrink_failure
 from engine.sweep.sweep_table import DEFAULT_RESULTS
-from engine.sweep.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"

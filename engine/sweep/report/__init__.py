@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from engine.errors import FlexcellError
-from engine.sweep.comparison import Comparison
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.markdown import markdown
 from engine.sweep.report.parquet_table import parquet_table
 from engine.sweep.report.result_rows import csv_table, json_report

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine.sweep.comparison import Comparison
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.tables import markdown_section
 from engine.sweep.report.words import (
     difference_text,

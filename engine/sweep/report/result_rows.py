@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import msgspec
 
-from engine.sweep.comparison import Comparison
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.summary import SweepSummary
-from engine.sweep.trial_result import TrialResult
 
 Row = dict[str, object]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from engine.sweep.comparison import Comparison
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
 from engine.sweep.report.tables import html_document, html_table
 from engine.sweep.report.words import (

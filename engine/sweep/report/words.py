@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.sweep.comparison import Comparison
+from engine.sweep.gate.comparison import Comparison
 from engine.sweep.statistics import Interval
 from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import SweepSummary

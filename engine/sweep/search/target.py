@@ -9,7 +9,7 @@ from typing import Self
 
 from engine.errors import FlexcellError
 from engine.suggestions import did_you_mean
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.execution.trial_result import TrialResult
 
 DURATION = "duration_s"
 

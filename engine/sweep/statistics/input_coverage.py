@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from engine.document.sweep import Factor
-from engine.sweep.distributions import share_of, value_at
+from engine.sweep.design.distributions import share_of, value_at
 
 _PARTS = 10
 

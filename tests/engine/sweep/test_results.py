@@ -9,9 +9,9 @@ import msgspec
 import pytest
 
 from engine.errors import FlexcellError
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import NodeTime, TrialResult
 from engine.sweep.results import SweepResults, without_costs
-from engine.sweep.trial_result import NodeTime, TrialResult
 
 
 def _result(number: int, *, outcome: str = "done", wall_s: float = 1.0) -> TrialResult:

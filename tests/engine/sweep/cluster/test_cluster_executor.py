@@ -24,9 +24,9 @@ from engine.sweep import (
     saved_sweep,
 )
 from engine.sweep.cluster import cluster_executor
+from engine.sweep.execution.trial_execution import ExecutionOptions
 from engine.sweep.results import without_costs
-from engine.sweep.subject import environment_versions
-from engine.sweep.trial_execution import ExecutionOptions
+from engine.sweep.subject.sweep_subject import environment_versions
 from tests.engine.sweep.cluster.dask_processes import DaskProcesses, wait_until
 from tests.engine.sweep.luck_project import LuckProject
 

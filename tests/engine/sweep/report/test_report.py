@@ -12,8 +12,8 @@ import pytest
 
 from engine.errors import FlexcellError
 from engine.sweep import SweepSubject, SweepSummary, TrialResult, Trials, configurations, summarize
+from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.report import SUFFIXES, report
-from engine.sweep.success_count import SuccessCount
 from engine.sweep.sweep_execution import SweepEnd
 from tests.engine.sweep.luck_project import LuckProject
 

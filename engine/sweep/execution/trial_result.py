@@ -8,7 +8,7 @@ from typing import Literal
 
 import msgspec
 
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
 
 _NUMBERS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
 TrialStatus = Literal["finished", "stopped", "errored", "refused", "crashed", "hung"]

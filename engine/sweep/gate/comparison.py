@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import msgspec
 
 from engine.errors import FlexcellError
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.gate.success_count import Verdict
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import Interval, RatePair, difference
-from engine.sweep.success_count import Verdict
-from engine.sweep.trial_result import TrialResult
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,8 +6,8 @@ from collections import Counter
 from typing import Literal
 
 from engine.document.sweep import SweepDocument
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.statistics import Interval, exact_interval, rate_interval
-from engine.sweep.trial_result import TrialResult
 
 Verdict = Literal["passed", "failed", "undecided"]
 
