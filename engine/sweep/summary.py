@@ -227,7 +227,6 @@ def _effects(end: SweepEnd, confidence: float) -> list[FactorEffect]:
     results = end.results
     if not results:
         return []
-    factors = end.subject.sweep.document.factors
     addresses = list(end.configurations[0].values)
     found = [
         factor_effect(
@@ -235,7 +234,6 @@ def _effects(end: SweepEnd, confidence: float) -> list[FactorEffect]:
             [each.configuration.values[address] for each in results],
             [each.success for each in results],
             [each.duration_s for each in results],
-            factor=factors.get(address),
             confidence=confidence,
         )
         for address in addresses

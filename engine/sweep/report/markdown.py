@@ -61,7 +61,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     yield from _failing(summary)
     yield from markdown_section(
         "Factors, those that matter most first",
-        ("factor", "correlation with success", "with duration", "success by level", "input covered"),
+        ("factor", "correlation with success", "with duration", "success by level"),
         [_effect(each) for each in summary.effects],
     )
     durations = [summary.duration_s] if summary.duration_s is not None else []
@@ -129,8 +129,7 @@ def _failing(summary: SweepSummary) -> Iterator[str]:
 
 def _effect(effect: FactorEffect) -> tuple[object, ...]:
     levels = "; ".join(f"{each.label}: {each.successes}/{each.runs}" for each in effect.levels)
-    share = percent(effect.input_share) if effect.input_share is not None else "–"
-    return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels, share
+    return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels
 
 
 def _input(each: FactorCoverage) -> tuple[object, ...]:

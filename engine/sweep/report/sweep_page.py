@@ -110,8 +110,6 @@ def _factors(summary: SweepSummary) -> Iterator[str]:
             for name, value in (("success", effect.with_success), ("duration", effect.with_duration))
             if value is not None
         ]
-        if effect.input_share is not None:
-            words.append(f"{percent(effect.input_share)} of its range has a run")
         caption = f"<code>{escape(effect.address)}</code>: {escape('; '.join(words))}"
         yield f"<figure><figcaption>{caption}</figcaption>{level_rates(effect, rate=rate)}</figure>"
     numbers = [

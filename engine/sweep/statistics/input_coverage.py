@@ -91,11 +91,6 @@ def input_coverage(factors: Mapping[str, Factor], runs: Sequence[Mapping[str, ob
     )
 
 
-def covered_share(factor: Factor, values: Sequence[object]) -> float:
-    """Return the share of the parts of a factor in which one of these values lies."""
-    return len(set(_parts_of(factor, values)) - {None}) / _part_count(factor)
-
-
 def _factor_coverage(
     address: str, factor: Factor, values: Sequence[object], parts: Sequence[int | None]
 ) -> FactorCoverage:

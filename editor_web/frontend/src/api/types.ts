@@ -684,7 +684,6 @@ export interface FactorEffect {
   readonly with_success: number | null
   readonly with_duration: number | null
   readonly levels: readonly Level[]
-  readonly input_share: number | null
 }
 
 /** A fault of the fault file was applied to a request. */
