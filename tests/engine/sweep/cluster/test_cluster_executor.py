@@ -27,7 +27,8 @@ from engine.sweep.cluster import cluster_executor
 from engine.sweep.execution.trial_execution import ExecutionOptions
 from engine.sweep.results import without_costs
 from engine.sweep.subject.sweep_subject import environment_versions
-from tests.engine.sweep.cluster.dask_processes import DaskProcesses, wait_until
+from tests.engine.awaited import wait_until
+from tests.engine.sweep.cluster.dask_processes import DaskProcesses
 from tests.engine.sweep.luck_project import LuckProject
 
 
