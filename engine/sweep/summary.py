@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.success_count import Verdict
+from engine.sweep.gate.judged_requirement import JudgedRequirement, Verdict
 from engine.sweep.statistics import Interval, exact_interval
 from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
 from engine.sweep.statistics.input_coverage import InputCoverage, input_coverage
@@ -80,6 +80,7 @@ class SweepSummary:
     looked_at: int
     successes: int
     interval: Interval | None
+    requirements: Sequence[JudgedRequirement]
     verdict: Verdict | None
     ended_by: EndedBy
     outcomes: Sequence[OutcomeShare]
@@ -127,6 +128,7 @@ def summarize(end: SweepEnd) -> SweepSummary:
         looked_at=count.looked_at,
         successes=count.successes,
         interval=count.interval,
+        requirements=count.requirements,
         verdict=count.verdict,
         ended_by=end.ended_by,
         outcomes=_outcomes(results, document.confidence),

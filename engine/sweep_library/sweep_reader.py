@@ -240,7 +240,7 @@ class SweepReader:
             description=document.description,
             behavior=behavior.relative_to(self.project).as_posix() if inside else document.behavior,
             design=document.design.csv if isinstance(document.design, PointsFile) else document.design,
-            require=document.require or "",
+            require="; ".join(each.text for each in document.requirements),
             factors=tuple(document.factors),
             live=live,
         )

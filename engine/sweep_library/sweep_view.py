@@ -9,7 +9,8 @@ import msgspec
 
 from engine.document.sweep import SweepDocument
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.success_count import SuccessCount, Verdict
+from engine.sweep.gate.judged_requirement import Verdict
+from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.statistics import Interval
 from engine.sweep.summary import SweepSummary
 
@@ -45,6 +46,7 @@ class SweepLine(msgspec.Struct, frozen=True, kw_only=True):
     """The path of the behavior in the project, or as it is written where that leads out of it."""
     design: str = ""
     require: str = ""
+    """What is required, separated by semicolons."""
     factors: tuple[str, ...] = ()
     live: SweepLive = SweepLive()
     problem: str = ""

@@ -36,6 +36,7 @@ from engine.sweep import (
     summarize,
 )
 from engine.sweep.execution.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
+from engine.sweep.gate.judged_requirement import require_known_numbers
 from engine.sweep.report import markdown, report
 from engine.sweep.search import execute_search, saved_search, summarize_search
 from engine.sweep.sweep_table import DEFAULT_RESULTS
@@ -60,7 +61,13 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
-Require = Annotated[str | None, typer.Option(help='Required success rate, for example "success >= 0.98".')]
+Require = Annotated[
+    list[str] | None,
+    typer.Option(
+        help='What is required, may be repeated: "success >= 0.98", or the share of runs in which a number keeps a '
+        'limit, "share(cell.contact_force_max_n <= 30) >= 0.95".'
+    ),
+]
 Width = Annotated[
     float | None, typer.Option(help="End when the interval of the success rate is at most so wide.", min=0.0, max=1.0)
 ]
@@ -127,8 +134,8 @@ def run(
 ) -> None:
     """Execute the runs of a sweep that have no result yet, and report all its results.
 
-    Exit code 0: what is required is reached, or nothing is. 1: it is not reached. 5: undecided. 2: nothing was
-    executed. 130: interrupted; what had ended is saved, and the same command goes on.
+    Exit code 0: what is required is reached, or nothing is. 1: it is not reached. 5: undecided. 2: something is wrong,
+    mostly before anything was executed. 130: interrupted; what had ended is saved, and the same command goes on.
     """
     prepare(junit, *(report_ or ()))
     cluster = ClusterAddress(scheduler=scheduler, tls_ca_file=tls_ca_file, tls_cert=tls_cert, tls_key=tls_key)
@@ -137,7 +144,7 @@ def run(
         runs=runs,
         time=time,
         width=width,
-        require=require,
+        require=tuple(require or ()),
         design=design,
         seed=seed,
         cell=cell,
@@ -197,7 +204,7 @@ def report_saved(
     overrides = SweepOverrides(
         vary=tuple(vary or ()),
         runs=runs,
-        require=require,
+        require=tuple(require or ()),
         design=design,
         seed=seed,
         cell=cell,
@@ -246,6 +253,7 @@ def _shard(text: str | None) -> Shard | None:
 
 
 def _compared(end: SweepEnd, baseline: Path | None, margin: float | None) -> tuple[SweepSummary, Comparison | None]:
+    require_known_numbers(end.subject.sweep, end.results)
     summary = summarize(end)
     if baseline is None:
         if margin is not None:

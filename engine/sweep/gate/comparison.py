@@ -9,7 +9,7 @@ import msgspec
 
 from engine.errors import FlexcellError
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.success_count import Verdict
+from engine.sweep.gate.judged_requirement import Verdict
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import Interval, RatePair, difference
 

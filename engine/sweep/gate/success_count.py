@@ -1,15 +1,15 @@
-"""Counts results of a sweep as they arrive, and what they prove about the success rate."""
+"""Counts results of a sweep as they arrive, and what they prove about the success rate and what is required."""
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import Literal
+from collections.abc import Sequence
 
+from engine.document.requirement import Requirement
 from engine.document.sweep import SweepDocument
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.statistics import Interval, exact_interval, rate_interval
-
-Verdict = Literal["passed", "failed", "undecided"]
+from engine.sweep.gate.judged_requirement import JudgedRequirement, Verdict, judged, share_interval, verdict_of
+from engine.sweep.statistics import Interval
 
 
 class SuccessCount:
@@ -32,7 +32,10 @@ class SuccessCount:
         self.successes = 0
         """The successes among those."""
         self._document = document
-        self._waiting: dict[int, bool] = {}
+        self._required = document.requirements
+        self._kept: Counter[Requirement] = Counter()
+        self._missing: Counter[Requirement] = Counter()
+        self._waiting: dict[int, TrialResult] = {}
 
     @property
     def done(self) -> int:
@@ -42,10 +45,9 @@ class SuccessCount:
     def add(self, result: TrialResult) -> None:
         """Count a result; each configuration is counted once by its caller."""
         self.labels[result.label] += 1
-        self._waiting[result.configuration.number] = result.success
+        self._waiting[result.configuration.number] = result
         while self.looked_at in self._waiting:
-            self.successes += self._waiting.pop(self.looked_at)
-            self.looked_at += 1
+            self._look_at(self._waiting.pop(self.looked_at))
 
     @property
     def rate(self) -> float | None:
@@ -55,40 +57,42 @@ class SuccessCount:
     @property
     def interval(self) -> Interval | None:
         """The interval of the success rate; None where the design has none, or an exact one whose runs are not done."""
-        document = self._document
-        if document.design != "random":
-            return None
-        if document.interval == "anytime":
-            return rate_interval(self.successes, self.looked_at, confidence=document.confidence)
-        if self.looked_at < self.planned:
-            return None
-        return exact_interval(self.successes, self.looked_at, confidence=document.confidence)
+        return share_interval(self.successes, self.looked_at, self._document, planned=self.planned)
+
+    @property
+    def requirements(self) -> Sequence[JudgedRequirement]:
+        """Each requirement and whether it is reached."""
+        return [
+            judged(
+                requirement,
+                self._document,
+                kept=self._kept[requirement],
+                missing=self._missing[requirement],
+                runs=self.looked_at,
+                planned=self.planned,
+                among=len(self._required),
+            )
+            for requirement in self._required
+        ]
 
     @property
     def verdict(self) -> Verdict | None:
-        """Whether the required rate is reached; None where nothing is required."""
-        required = self._document.required_rate
-        if required is None:
-            return None
-        if self._document.design != "random":
-            return self._verdict_of_all(required)
-        interval = self.interval
-        if interval is None:
-            return "undecided"
-        if interval.low >= required:
-            return "passed"
-        return "failed" if interval.high < required else "undecided"
+        """Whether what is required is reached, all of it; None where nothing is required."""
+        return verdict_of(self.requirements)
 
     @property
     def is_decided(self) -> bool:
-        """Whether more runs are not needed: the required rate is decided, or the interval is narrow enough."""
-        interval, width = self.interval, self._document.width
+        """Whether more runs are not needed: what is required is decided, or the interval is narrow enough."""
+        width = self._document.width
+        interval = self.interval if width is not None else None
         if width is not None and interval is not None and interval.width <= width:
             return True
         return self.verdict in ("passed", "failed")
 
-    def _verdict_of_all(self, required: float) -> Verdict:
-        if self.looked_at == self.planned:
-            return "passed" if self.successes >= required * self.planned else "failed"
-        most = self.planned - (self.looked_at - self.successes)
-        return "failed" if most < required * self.planned else "undecided"
+    def _look_at(self, result: TrialResult) -> None:
+        self.looked_at += 1
+        self.successes += result.success
+        numbers = result.numbers
+        for each in self._required:
+            self._kept[each] += each.is_kept(success=result.success, numbers=numbers)
+            self._missing[each] += each.limit is not None and each.limit.name not in numbers

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.tables import markdown_section
 from engine.sweep.report.words import (
+    REQUIRED_HEAD,
     difference_text,
     end_text,
     gap_text,
     interval_text,
     percent,
     rate_text,
+    required_rows,
     value_text,
     verdict_text,
 )
@@ -42,6 +44,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     if document.design != "random":
         yield ""
         yield "The configurations are not drawn at random: the share is that of this design, and has no interval."
+    yield from markdown_section("Required", REQUIRED_HEAD, required_rows(summary))
     if comparison is not None:
         yield ""
         yield f"The success rate is {difference_text(comparison)}. Changed: {', '.join(comparison.changed)}."

@@ -71,6 +71,7 @@ def json_report(summary: SweepSummary, comparison: Comparison | None) -> bytes:
         "rate": summary.rate,
         "interval": list(interval) if interval is not None else None,
         "confidence": summary.sweep.document.confidence,
+        "requirements": summary.requirements,
         "verdict": summary.verdict,
         "ended_by": summary.ended_by,
         "outcomes": summary.outcomes,

@@ -9,12 +9,14 @@ from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
 from engine.sweep.report.tables import html_document, html_table
 from engine.sweep.report.words import (
+    REQUIRED_HEAD,
     difference_text,
     end_text,
     gap_text,
     interval_text,
     percent,
     rate_text,
+    required_rows,
     value_text,
     verdict_text,
 )
@@ -40,6 +42,7 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
     if summary.verdict is not None:
         yield f'<p class="verdict {summary.verdict}">{escape(verdict_text(summary))}</p>'
     yield f"<p>{escape(rate_text(summary).capitalize())}. {escape(end_text(summary).capitalize())}.</p>"
+    yield from html_table("Required", REQUIRED_HEAD, required_rows(summary))
     if comparison is not None:
         changed = ", ".join(comparison.changed)
         yield f"<p>The success rate is {escape(difference_text(comparison))}. Changed: {escape(changed)}.</p>"

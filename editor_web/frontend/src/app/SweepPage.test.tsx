@@ -52,6 +52,7 @@ const VIEW: SweepView = {
   looked_at: 4,
   successes: 2,
   interval: [0.12, 0.88],
+  requirements: [],
   verdict: 'undecided',
   ended_by: 'interrupted',
   outcomes: [
