@@ -94,10 +94,10 @@ def test_several_fail_if_one_fails_and_pass_if_all_do() -> None:
 )
 def test_several_pass_like_each_alone_and_fail_only_if_one_alone_does(kept: list[bool], rates: list[int]) -> None:
     """With one look at the same runs: the error of failing is divided, that of passing need not be."""
-    forces_n = [1.0 if each else 99.0 for each in kept]
+    forces_n: list[float | None] = [1.0 if each else 99.0 for each in kept]
     texts = [f"share(cell.contact_force_max_n <= 30) >= 0.{rate:02}" for rate in rates]
-    alone = [_counted(_document(text), [*forces_n]).verdict for text in texts]
-    together = _counted(_document(*texts), [*forces_n])
+    alone = [_counted(_document(text), forces_n).verdict for text in texts]
+    together = _counted(_document(*texts), forces_n)
     assert (together.verdict == "passed") == all(each == "passed" for each in alone)
     if together.verdict == "failed":
         assert "failed" in alone
