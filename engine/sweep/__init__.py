@@ -10,7 +10,7 @@ from engine.lazy_face import lazy_face
 
 _HOMES = {
     "ClusterOptions": "engine.sweep.cluster.cluster_executor",
-    "Comparison": "engine.sweep.gate.comparison",
+    "Comparison": "engine.sweep.verdict.comparison",
     "Configuration": "engine.sweep.design.configuration",
     "Shard": "engine.sweep.sweep_execution",
     "SweepEnd": "engine.sweep.sweep_execution",
@@ -22,7 +22,7 @@ _HOMES = {
     "TrialResult": "engine.sweep.execution.trial_result",
     "Trials": "engine.sweep.execution.trial",
     "WorkerOptions": "engine.sweep.execution.worker_pool",
-    "compare_with_baseline": "engine.sweep.gate.comparison",
+    "compare_with_baseline": "engine.sweep.verdict.comparison",
     "configurations": "engine.sweep.design.designs",
     "execute_sweep": "engine.sweep.sweep_execution",
     "run_sweep": "engine.sweep.sweep_table",

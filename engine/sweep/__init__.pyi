@@ -6,12 +6,12 @@ from engine.sweep.design.designs import configurations
 from engine.sweep.execution.trial import Trials
 from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.execution.worker_pool import WorkerOptions
-from engine.sweep.gate.comparison import Comparison, compare_with_baseline
 from engine.sweep.results import SweepResults
 from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import SweepSummary, summarize
 from engine.sweep.sweep_execution import Shard, SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.sweep_table import SweepTable, run_sweep
+from engine.sweep.verdict.comparison import Comparison, compare_with_baseline
 
 __all__ = [
     "ClusterOptions",

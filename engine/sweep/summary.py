@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.judged_requirement import JudgedRequirement, Verdict
 from engine.sweep.statistics import Interval, exact_interval
 from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
 from engine.sweep.statistics.input_coverage import InputCoverage, input_coverage
 from engine.sweep.sweep_execution import EndedBy, SweepEnd
+from engine.sweep.verdict.judged_requirement import JudgedRequirement, Verdict
 
 _EXAMPLES = 5
 

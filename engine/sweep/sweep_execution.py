@@ -11,9 +11,9 @@ from engine.document.duration import seconds
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_execution import ExecutionOptions
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.results import SweepResults
 from engine.sweep.subject.sweep_subject import SweepSubject
+from engine.sweep.verdict.success_count import SuccessCount
 
 EndedBy = Literal["runs", "decided", "time", "interrupted"]
 

@@ -14,14 +14,14 @@ from engine.host.state_folder_names import STATE_FOLDER
 from engine.sweep.cluster.cluster_executor import ClusterOptions
 from engine.sweep.design.designs import configurations
 from engine.sweep.execution.worker_pool import WorkerOptions
-from engine.sweep.gate.comparison import Comparison
-from engine.sweep.gate.judged_requirement import require_known_numbers
 from engine.sweep.report import report
 from engine.sweep.report.result_rows import Row, rows
 from engine.sweep.results import SweepResults
 from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import SweepSummary, summarize
 from engine.sweep.sweep_execution import SweepProgress, execute_sweep
+from engine.sweep.verdict.comparison import Comparison
+from engine.sweep.verdict.judged_requirement import require_known_numbers
 
 DEFAULT_RESULTS = Path(STATE_FOLDER) / "sweeps.db"
 """Where results are kept, relative to the current directory."""

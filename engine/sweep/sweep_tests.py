@@ -15,8 +15,8 @@ import pytest
 from engine.document.sweep import SweepDocument, load_sweep
 from engine.errors import DocumentError, FlexcellError
 from engine.sweep import SweepSubject, TrialResult, Trials, configurations
-from engine.sweep.gate.judged_requirement import require_known_numbers
-from engine.sweep.gate.success_count import SuccessCount
+from engine.sweep.verdict.judged_requirement import require_known_numbers
+from engine.sweep.verdict.success_count import SuccessCount
 
 MARKER = "flexcell_sweep"
 _SWEEP = re.compile(rb"^behavior:", re.MULTILINE)

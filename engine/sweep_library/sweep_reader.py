@@ -20,13 +20,13 @@ from engine.sweep.design.designs import configurations
 from engine.sweep.execution.trial import Trials
 from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.execution.worker_pool import WorkerOptions
-from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import rate_interval
 from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import summarize
 from engine.sweep.sweep_execution import SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
+from engine.sweep.verdict.success_count import SuccessCount
 from engine.sweep_library.factor_choices import factor_choices
 from engine.sweep_library.sweep_files import NoSuchSweep, Stamps, new_sweep_text, project_stamps, sweep_file, sweep_ids
 from engine.sweep_library.sweep_view import (

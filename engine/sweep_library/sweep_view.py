@@ -9,10 +9,10 @@ import msgspec
 
 from engine.document.sweep import SweepDocument
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.judged_requirement import Verdict
-from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.statistics import Interval
 from engine.sweep.summary import SweepSummary
+from engine.sweep.verdict.judged_requirement import Verdict
+from engine.sweep.verdict.success_count import SuccessCount
 
 SweepStatus = Literal["idle", "running", "stopping"]
 _APART = frozenset({"sweep", "results"})

@@ -36,10 +36,10 @@ from engine.sweep import (
     summarize,
 )
 from engine.sweep.execution.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
-from engine.sweep.gate.judged_requirement import require_known_numbers
 from engine.sweep.report import markdown, report
 from engine.sweep.search import execute_search, saved_search, summarize_search
 from engine.sweep.sweep_table import DEFAULT_RESULTS
+from engine.sweep.verdict.judged_requirement import require_known_numbers
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"

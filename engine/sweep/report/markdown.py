@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.tables import markdown_section
 from engine.sweep.report.words import (
     REQUIRED_HEAD,
@@ -21,6 +20,7 @@ from engine.sweep.report.words import (
 from engine.sweep.statistics.effects import FactorEffect
 from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import Quantiles, SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 _NODES = 12
 _FAILING = 20

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import msgspec
 
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.comparison import Comparison
 from engine.sweep.summary import SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 Row = dict[str, object]
 

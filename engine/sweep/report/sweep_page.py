@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from engine.sweep.gate.comparison import Comparison
 from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
 from engine.sweep.report.tables import html_document, html_table
 from engine.sweep.report.words import (
@@ -21,6 +20,7 @@ from engine.sweep.report.words import (
     verdict_text,
 )
 from engine.sweep.summary import Quantiles, SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 _NODES = 25
 _FAILING = 200

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from engine.sweep.gate.comparison import Comparison
-from engine.sweep.gate.judged_requirement import JudgedRequirement
 from engine.sweep.statistics import Interval
 from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import SweepSummary
+from engine.sweep.verdict.comparison import Comparison
+from engine.sweep.verdict.judged_requirement import JudgedRequirement
 
 REQUIRED_HEAD = ("required", "verdict", "runs that keep it", "share of all runs", "without the number")
 """The heads of `required_rows`."""

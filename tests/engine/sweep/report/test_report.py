@@ -12,9 +12,9 @@ import pytest
 
 from engine.errors import FlexcellError
 from engine.sweep import SweepSubject, SweepSummary, TrialResult, Trials, configurations, summarize
-from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.report import SUFFIXES, report
 from engine.sweep.sweep_execution import SweepEnd
+from engine.sweep.verdict.success_count import SuccessCount
 from tests.engine.sweep.luck_project import LuckProject
 
 HOSTILE = "<script>alert('x')</script> | a\nb"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,9 +12,9 @@ from engine.document.sweep import Sweep, SweepDocument, parse_sweep
 from engine.errors import FlexcellError
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.judged_requirement import require_known_numbers, share_interval
-from engine.sweep.gate.success_count import SuccessCount
 from engine.sweep.statistics import rate_interval
+from engine.sweep.verdict.judged_requirement import require_known_numbers, share_interval
+from engine.sweep.verdict.success_count import SuccessCount
 
 FORCE = "share(cell.contact_force_max_n <= 30) >= 0.9"
 
@@ -37,7 +39,7 @@ def _result(number: int, force_n: float | None, *, success: bool = True) -> Tria
     )
 
 
-def _counted(document: SweepDocument, forces_n: list[float | None], *, planned: int = 1000) -> SuccessCount:
+def _counted(document: SweepDocument, forces_n: Sequence[float | None], *, planned: int = 1000) -> SuccessCount:
     count = SuccessCount(document, planned)
     for number, force_n in enumerate(forces_n):
         count.add(_result(number, force_n))
@@ -94,7 +96,7 @@ def test_several_fail_if_one_fails_and_pass_if_all_do() -> None:
 )
 def test_several_pass_like_each_alone_and_fail_only_if_one_alone_does(kept: list[bool], rates: list[int]) -> None:
     """With one look at the same runs: the error of failing is divided, that of passing need not be."""
-    forces_n: list[float | None] = [1.0 if each else 99.0 for each in kept]
+    forces_n = [1.0 if each else 99.0 for each in kept]
     texts = [f"share(cell.contact_force_max_n <= 30) >= 0.{rate:02}" for rate in rates]
     alone = [_counted(_document(text), forces_n).verdict for text in texts]
     together = _counted(_document(*texts), forces_n)

@@ -9,8 +9,8 @@ import pytest
 from engine.errors import FlexcellError
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.comparison import Comparison, compare_with_baseline
 from engine.sweep.results import SweepResults
+from engine.sweep.verdict.comparison import Comparison, compare_with_baseline
 
 
 def _results(ends: str, *, first: int = 0) -> list[TrialResult]:

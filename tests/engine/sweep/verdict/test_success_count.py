@@ -9,7 +9,7 @@ import pytest
 from engine.document.sweep import SweepDocument
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.success_count import SuccessCount
+from engine.sweep.verdict.success_count import SuccessCount
 
 
 def _document(**keys: object) -> SweepDocument:

@@ -9,9 +9,9 @@ import msgspec
 
 from engine.errors import FlexcellError
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.judged_requirement import Verdict
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import Interval, RatePair, difference
+from engine.sweep.verdict.judged_requirement import Verdict
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from engine.document.requirement import Requirement
 from engine.document.sweep import SweepDocument
 from engine.sweep.execution.trial_result import TrialResult
-from engine.sweep.gate.judged_requirement import JudgedRequirement, Verdict, judged, share_interval, verdict_of
 from engine.sweep.statistics import Interval
+from engine.sweep.verdict.judged_requirement import JudgedRequirement, Verdict, judged, share_interval, verdict_of
 
 
 class SuccessCount:
