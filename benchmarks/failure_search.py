@@ -1,11 +1,12 @@
 """How many runs a search needs to find a planted failure, beside a random design, and whether its estimates hold.
 
-    python -m benchmarks.failure_search [--seeds 100] [--most 20000] [--optuna 10]
+    python -m benchmarks.failure_search [--seeds 100] [--most 20000] [--optuna 10] [--unguided 0]
 
 A planted case has a rule instead of a behavior: it fails in a known region of known probability, and a run that does
 not has a number that says how far from the region it is, as the clearance of an arm would. The first table has the runs
 until the first failure: the median of a random design is ln 2 / probability. The second one executes searches of a
 fixed number of runs, and compares their estimates of the failure probability and their intervals with the truth.
+With `--unguided`, so many searches of each case have no number (`towards: failure`); they take the longest.
 """
 
 from __future__ import annotations
@@ -164,6 +165,15 @@ def first_failures(seeds: int, most: int, optuna_seeds: int) -> None:
         )
 
 
+def unguided_failures(seeds: int, most: int) -> None:
+    """Print the runs until the first failure of searches without a number."""
+    print(f"| planted | random, median | without a number, median of {seeds} |")
+    print("|---|--:|--:|")
+    for case in CASES:
+        found = [runs_to_first(case, seed, runs=most, towards="failure") for seed in range(seeds)]
+        print(f"| {case.name} | {math.log(2.0) / case.probability:.0f} | {statistics.median(found):.0f} |")
+
+
 def estimates(seeds: int, runs: int) -> None:
     """Print the second table."""
     print(f"{seeds} searches of {runs} runs\n")
@@ -182,16 +192,20 @@ def estimates(seeds: int, runs: int) -> None:
 
 
 def main() -> None:
-    """Print both tables."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--most", type=int, default=20000)
     parser.add_argument("--optuna", type=int, default=10)
     parser.add_argument("--runs", type=int, default=400)
+    parser.add_argument("--unguided", type=int, default=0)
     options = parser.parse_args()
     first_failures(options.seeds, options.most, options.optuna)
     print()
     estimates(options.seeds, options.runs)
+    if options.unguided:
+        print()
+        unguided_failures(options.unguided, options.most)
 
 
 if __name__ == "__main__":

@@ -42,8 +42,8 @@ from engine.sweep import (
     configurations,
     execute_sweep,
 )
+from engine.sweep.execution.trial_execution import ExecutionOptions
 from engine.sweep.statistics import Interval, exact_interval, rate_interval
-from engine.sweep.trial_execution import ExecutionOptions
 
 BEHAVIOR = Path(__file__).resolve().parents[1] / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 RATES = (0.5, 0.9, 0.97, 0.99)

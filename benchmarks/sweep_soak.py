@@ -174,7 +174,9 @@ def _part(
 def _hit_a_worker(driver: int, chance: random.Random, disturbed: Disturbed) -> None:
     children = Path(f"/proc/{driver}/task/{driver}/children").read_text("ascii").split()
     # One that is just being started has no program of its own yet: stopped then, it would stop its parent for ever.
-    workers = [int(each) for each in children if b"engine.sweep.worker" in Path(f"/proc/{each}/cmdline").read_bytes()]
+    workers = [
+        int(each) for each in children if b"engine.sweep.execution.worker" in Path(f"/proc/{each}/cmdline").read_bytes()
+    ]
     if workers:
         how = chance.choice((signal.SIGKILL, signal.SIGSTOP))
         os.kill(chance.choice(workers), how)

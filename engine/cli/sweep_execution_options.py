@@ -7,8 +7,8 @@ from pathlib import Path
 
 from engine.errors import FlexcellError
 from engine.sweep import ClusterOptions, WorkerOptions
+from engine.sweep.execution.trial_execution import ExecutionOptions, ProcessLimits
 from engine.sweep.sweep_table import available_processors
-from engine.sweep.trial_execution import ExecutionOptions, ProcessLimits
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,9 +17,9 @@ from engine.document.parameter_spec import ParameterSpec
 from engine.document.python_name import is_python_name
 from engine.document.sweep import Sweep, sweep_of_source
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
-from engine.sweep.factor_text import parse_factor
+from engine.sweep.design.factor_text import parse_factor
 
-_PLAIN = ("runs", "time", "width", "require", "design", "seed", "confidence")
+_PLAIN = ("runs", "time", "width", "design", "seed", "confidence")
 NO_SEARCH = "none"
 """The text of `--search` with which there is none."""
 Data = dict[str, object]
@@ -33,7 +33,7 @@ class SweepOverrides:
     runs: int | None = None
     time: str | None = None
     width: float | None = None
-    require: str | None = None
+    require: Sequence[str] = ()
     design: str | None = None
     seed: int | None = None
     cell: Path | None = None
@@ -57,6 +57,8 @@ def read_sweep(file: Path, options: SweepOverrides) -> Sweep:
         value = getattr(options, name)
         if value is not None:
             data[name] = value
+    if options.require:
+        data["require"] = options.require[0] if len(options.require) == 1 else list(options.require)
     _with_search(data, options)
     if options.cell is not None:
         data["cell"] = os.path.relpath(options.cell.resolve(), file.parent.resolve())

@@ -1,4 +1,4 @@
-"""Sweep documents: one behavior executed many times with varied factors, and what is required of its success rate.
+"""Sweep documents: one behavior executed many times with varied factors, and what is required of its runs.
 
     flexcell: 1
     behavior: two_arm_transfer.yaml
@@ -27,6 +27,7 @@ import msgspec
 from msgspec import Meta
 
 from engine.document.duration import Duration
+from engine.document.requirement import Requirement, RequirementText
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source, parse_source
@@ -115,11 +116,15 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
     what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are
     drawn at random. In another design what is required is compared with the share of its runs.
 
+    `require` is a success rate, `success >= 0.98`, the share of runs in which a number keeps a limit,
+    `share(cell.contact_force_max_n <= 30) >= 0.95`, or a list of these. A number is a measure, userdata at the end, or
+    `duration_s`; a run without it does not keep the limit.
+
     Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts
     that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of
     the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its
     time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is
-    required of a success rate is then not decided.
+    required is then not decided.
     """
 
     flexcell: Literal[1]
@@ -142,19 +147,23 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
     interval: Literal["anytime", "exact"] = "anytime"
     confidence: Annotated[float, Meta(ge=0.5, lt=1.0, description="Confidence of intervals, for example 0.95")] = 0.95
     require: (
-        Annotated[
-            str,
-            Meta(pattern=r"^success *>= *(0(\.\d+)?|1(\.0+)?)$", description="For example `success >= 0.98`"),
-        ]
+        RequirementText
+        | Annotated[tuple[RequirementText, ...], Meta(min_length=1, description="One or more requirements")]
         | None
     ) = None
     timeout: Duration = 300.0
     limit: Duration = 3600.0
 
     @property
+    def requirements(self) -> tuple[Requirement, ...]:
+        """What is required, each once."""
+        written = (self.require,) if isinstance(self.require, str) else self.require or ()
+        return tuple(dict.fromkeys(map(Requirement.parse, written)))
+
+    @property
     def required_rate(self) -> float | None:
-        """The success rate that is required; None where nothing is."""
-        return float(self.require.partition(">=")[2]) if self.require is not None else None
+        """The success rate that is required; None where none is."""
+        return max((each.rate for each in self.requirements if each.limit is None), default=None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,6 +222,7 @@ def sweep_of_source(source: DocumentSource, *, file: Path) -> Sweep:
             where=source.position(("width",), of_key=True),
             hint="`design: random` and `interval: anytime`, or remove `width`",
         )
+    _require_requirements(document, source)
     _require_searchable(document, source)
     for address, factor in document.factors.items():
         path: DataPath = ("factors", address)
@@ -220,6 +230,14 @@ def sweep_of_source(source: DocumentSource, *, file: Path) -> Sweep:
         _require_order(source, path, factor)
         _require_target(document, source, path, address, factor)
     return Sweep(document=document, file=file, source=source)
+
+
+def _require_requirements(document: SweepDocument, source: DocumentSource) -> None:
+    if isinstance(document.require, str):
+        Requirement.parse(document.require, where=source.position(("require",)))
+    else:
+        for index, text in enumerate(document.require or ()):
+            Requirement.parse(text, where=source.position(("require", index)))
 
 
 def _require_searchable(document: SweepDocument, source: DocumentSource) -> None:

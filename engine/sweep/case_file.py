@@ -9,7 +9,7 @@ import msgspec
 
 from engine.document.sweep import NO_FILE, Sweep
 from engine.document.text.yaml_writer import write_yaml
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.execution.trial_result import TrialResult
 
 _FILES = ("faults", "substitutes")
 

@@ -15,8 +15,8 @@ import msgspec
 from engine.errors import FlexcellError
 from engine.host.sqlite_file import advice, open_sqlite
 from engine.host.sqlite_migrations import SqliteMigrations
-from engine.sweep.configuration import Configuration
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
 
 _SCHEMA = SqliteMigrations(
     steps=(
@@ -31,6 +31,8 @@ _SCHEMA = SqliteMigrations(
     )
 )
 _BUSY_S = 30.0
+_KEYS_OF_QUERY = 500
+"""A search asks for the results of a batch, and a design for all of them; SQLite limits the values of one query."""
 _COSTS = {"wall_s": 0.0, "cpu_s": 0.0, "memory_bytes": 0}
 
 
@@ -96,9 +98,14 @@ class SweepResults:
         Raises:
             FlexcellError: the file cannot be read or is damaged.
         """
-        asked = frozenset(keys)
-        rows = self._read("SELECT key, result FROM results WHERE subject = ?", subject)
-        return {str(key): self._decoded(key, text) for key, text in rows if key in asked}
+        asked = list(keys)
+        found: dict[str, TrialResult] = {}
+        for start in range(0, len(asked), _KEYS_OF_QUERY):
+            some = asked[start : start + _KEYS_OF_QUERY]
+            places = ", ".join("?" * len(some))
+            query = f"SELECT key, result FROM results WHERE subject = ? AND key IN ({places})"  # noqa: S608 - marks
+            found |= {str(key): self._decoded(key, text) for key, text in self._read(query, subject, *some)}
+        return found
 
     def of_design(self, subject: str, configurations: Iterable[Configuration]) -> dict[int, TrialResult]:
         """Return the saved results of configurations by the number that each has in its design.

@@ -17,8 +17,8 @@ import msgspec
 
 from engine.document.sweep import Factor
 from engine.errors import ControlError
-from engine.sweep.configuration import Configuration
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
 
 _BISECTIONS = 6
 """Halvings of the distance to the nominal value: the boundary is then known to 1/64 of it."""

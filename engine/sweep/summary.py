@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from engine.coverage import CoverageItem, CoverageRuns
 from engine.document.sweep import Sweep
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.statistics import Interval, exact_interval
 from engine.sweep.statistics.effects import FactorEffect, RunGroup, factor_effect, quantile
 from engine.sweep.statistics.input_coverage import InputCoverage, input_coverage
-from engine.sweep.success_count import Verdict
 from engine.sweep.sweep_execution import EndedBy, SweepEnd
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.verdict.judged_requirement import JudgedRequirement, Verdict
 
 _EXAMPLES = 5
 
@@ -80,6 +80,7 @@ class SweepSummary:
     looked_at: int
     successes: int
     interval: Interval | None
+    requirements: Sequence[JudgedRequirement]
     verdict: Verdict | None
     ended_by: EndedBy
     outcomes: Sequence[OutcomeShare]
@@ -127,6 +128,7 @@ def summarize(end: SweepEnd) -> SweepSummary:
         looked_at=count.looked_at,
         successes=count.successes,
         interval=count.interval,
+        requirements=count.requirements,
         verdict=count.verdict,
         ended_by=end.ended_by,
         outcomes=_outcomes(results, document.confidence),
@@ -227,7 +229,6 @@ def _effects(end: SweepEnd, confidence: float) -> list[FactorEffect]:
     results = end.results
     if not results:
         return []
-    factors = end.subject.sweep.document.factors
     addresses = list(end.configurations[0].values)
     found = [
         factor_effect(
@@ -235,7 +236,6 @@ def _effects(end: SweepEnd, confidence: float) -> list[FactorEffect]:
             [each.configuration.values[address] for each in results],
             [each.success for each in results],
             [each.duration_s for each in results],
-            factor=factors.get(address),
             confidence=confidence,
         )
         for address in addresses

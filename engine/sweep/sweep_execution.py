@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.document.duration import seconds
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_execution import ExecutionOptions
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.results import SweepResults
-from engine.sweep.subject import SweepSubject
-from engine.sweep.success_count import SuccessCount
-from engine.sweep.trial_execution import ExecutionOptions
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.subject.sweep_subject import SweepSubject
+from engine.sweep.verdict.success_count import SuccessCount
 
 EndedBy = Literal["runs", "decided", "time", "interrupted"]
 

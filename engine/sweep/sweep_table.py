@@ -12,15 +12,16 @@ from engine.document.sweep import Sweep, load_sweep
 from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.sweep.cluster.cluster_executor import ClusterOptions
-from engine.sweep.comparison import Comparison
-from engine.sweep.design import configurations
+from engine.sweep.design.designs import configurations
+from engine.sweep.execution.worker_pool import WorkerOptions
 from engine.sweep.report import report
 from engine.sweep.report.result_rows import Row, rows
 from engine.sweep.results import SweepResults
-from engine.sweep.subject import SweepSubject
+from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import SweepSummary, summarize
 from engine.sweep.sweep_execution import SweepProgress, execute_sweep
-from engine.sweep.worker_pool import WorkerOptions
+from engine.sweep.verdict.comparison import Comparison
+from engine.sweep.verdict.judged_requirement import require_known_numbers
 
 DEFAULT_RESULTS = Path(STATE_FOLDER) / "sweeps.db"
 """Where results are kept, relative to the current directory."""
@@ -71,7 +72,8 @@ def run_sweep(
         show: Called after each run.
 
     Raises:
-        FlexcellError: the sweep or a document that it names has errors, or results cannot be saved.
+        FlexcellError: the sweep or a document that it names has errors, results cannot be saved, or no run
+            has a number that is limited; what was saved stays.
     """
     loaded = sweep if isinstance(sweep, Sweep) else load_sweep(sweep)
     if loaded.document.search is not None:
@@ -85,7 +87,9 @@ def run_sweep(
         else WorkerOptions(workers=workers or available_processors(), timeout_s=timeout_s)
     )
     with SweepResults.open(Path(results)) as saved:
-        return SweepTable(summarize(execute_sweep(subject, configurations(loaded), saved, options, show=show)))
+        end = execute_sweep(subject, configurations(loaded), saved, options, show=show)
+    require_known_numbers(loaded, end.results)
+    return SweepTable(summarize(end))
 
 
 def available_processors() -> int:

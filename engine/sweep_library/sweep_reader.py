@@ -15,18 +15,18 @@ from engine.document.sweep import PointsFile, Sweep, SweepDocument, load_sweep, 
 from engine.editing.versions import write_atomically
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.sweep.configuration import Configuration
-from engine.sweep.design import configurations
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.design.designs import configurations
+from engine.sweep.execution.trial import Trials
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.execution.worker_pool import WorkerOptions
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import rate_interval
-from engine.sweep.subject import SweepSubject
-from engine.sweep.success_count import SuccessCount
+from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import summarize
 from engine.sweep.sweep_execution import SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
-from engine.sweep.trial import Trials
-from engine.sweep.trial_result import TrialResult
-from engine.sweep.worker_pool import WorkerOptions
+from engine.sweep.verdict.success_count import SuccessCount
 from engine.sweep_library.factor_choices import factor_choices
 from engine.sweep_library.sweep_files import NoSuchSweep, Stamps, new_sweep_text, project_stamps, sweep_file, sweep_ids
 from engine.sweep_library.sweep_view import (
@@ -240,7 +240,7 @@ class SweepReader:
             description=document.description,
             behavior=behavior.relative_to(self.project).as_posix() if inside else document.behavior,
             design=document.design.csv if isinstance(document.design, PointsFile) else document.design,
-            require=document.require or "",
+            require="; ".join(each.text for each in document.requirements),
             factors=tuple(document.factors),
             live=live,
         )

@@ -8,10 +8,11 @@ from typing import Literal, get_type_hints
 import msgspec
 
 from engine.document.sweep import SweepDocument
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.statistics import Interval
-from engine.sweep.success_count import SuccessCount, Verdict
 from engine.sweep.summary import SweepSummary
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.verdict.judged_requirement import Verdict
+from engine.sweep.verdict.success_count import SuccessCount
 
 SweepStatus = Literal["idle", "running", "stopping"]
 _APART = frozenset({"sweep", "results"})
@@ -45,6 +46,7 @@ class SweepLine(msgspec.Struct, frozen=True, kw_only=True):
     """The path of the behavior in the project, or as it is written where that leads out of it."""
     design: str = ""
     require: str = ""
+    """What is required, separated by semicolons."""
     factors: tuple[str, ...] = ()
     live: SweepLive = SweepLive()
     problem: str = ""

@@ -217,7 +217,7 @@ def _load_of_runs(kind: str, file: Path) -> None:
 
 
 def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
-    from engine.cli.commands.check_store import stored_names
+    from engine.cli.check_store import stored_names
 
     return stored_names(behavior, store)
 

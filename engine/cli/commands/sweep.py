@@ -5,18 +5,19 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
+from engine.cli.commands.sweep_trial import rerun, shrink
 from engine.cli.exit_code import ExitCode
 from engine.cli.failure_search import report_search, require_no_search, search_exit_code
 from engine.cli.output.output_file import prepare, write
 from engine.cli.output.search_output import SearchPrinter
-from engine.cli.output.shrink_output import show_shrinking, shrunk_text
 from engine.cli.output.sweep_output import SweepPrinter, write_github_summary, write_sweep_junit
-from engine.cli.sweep_choice import chosen_result, existing_results
+from engine.cli.sweep_arguments import Cell, Design, File, Method, Parameter, Results, Runs, Search, Seed, Vary
+from engine.cli.sweep_choice import existing_results
 from engine.cli.sweep_execution_options import ClusterAddress, execution_options
 from engine.cli.sweep_options import SweepOverrides, read_sweep
 from engine.document.duration import seconds
@@ -28,24 +29,20 @@ from engine.sweep import (
     SweepResults,
     SweepSubject,
     SweepSummary,
-    Trials,
     compare_with_baseline,
     configurations,
     execute_sweep,
     saved_sweep,
     summarize,
 )
-from engine.sweep.case_file import case_document
+from engine.sweep.execution.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
 from engine.sweep.report import markdown, report
 from engine.sweep.search import execute_search, saved_search, summarize_search
-from engine.sweep.shrinking import same_cause, same_outcome
-from engine.sweep.shrinking import shrink as shrink_failure
 from engine.sweep.sweep_table import DEFAULT_RESULTS
-from engine.sweep.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
+from engine.sweep.verdict.judged_requirement import require_known_numbers
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"
-_SAME = {"outcome": same_outcome, "cause": same_cause}
 
 
 class _RunByDefault(TyperGroup):
@@ -64,37 +61,17 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
-File = Annotated[Path, typer.Argument(help="A sweep document, or a behavior with --vary.", show_default=False)]
-Results = Annotated[Path, typer.Option(help="File in which results are found and saved.")]
-Cell = Annotated[Path | None, typer.Option(help="Cell of all runs; by default that of the behavior.")]
-Parameter = Annotated[
-    list[str] | None, typer.Option("-p", "--parameter", help="Parameter of all runs, NAME=VALUE; may be repeated.")
-]
-Vary = Annotated[
+Require = Annotated[
     list[str] | None,
     typer.Option(
-        help="A factor, may be repeated: NAME=0.3..1.0, NAME=1,2,5, NAME=log(0.01..10), NAME=normal(0, 0.004). NAME is "
-        "a parameter, displace.PART.x_m, cell.PATH, inputs.KEY, seed, faults or substitutes."
+        help='What is required, may be repeated: "success >= 0.98", or the share of runs in which a number keeps a '
+        'limit, "share(cell.contact_force_max_n <= 30) >= 0.95".'
     ),
 ]
-Runs = Annotated[int | None, typer.Option(help="Runs at most.", min=1)]
-Seed = Annotated[int | None, typer.Option(help="Seed from which factors and seeds of runs are drawn.", min=0)]
-Design = Annotated[
-    Literal["random", "grid", "latin_hypercube", "sobol"] | None, typer.Option(help="How factors are combined.")
-]
-Require = Annotated[str | None, typer.Option(help='Required success rate, for example "success >= 0.98".')]
 Width = Annotated[
     float | None, typer.Option(help="End when the interval of the success rate is at most so wide.", min=0.0, max=1.0)
 ]
 Confidence = Annotated[float | None, typer.Option(help="Confidence of intervals.", min=0.5, max=0.9999)]
-Search = Annotated[
-    str | None,
-    typer.Option(
-        help="Search for failures instead: `failure`, or towards a number of runs that succeed, `least NAME` or `most "
-        "NAME`; `none` for the design of a document with a search."
-    ),
-]
-Method = Annotated[Literal["cross_entropy", "optuna"] | None, typer.Option(help="With --search: how it chooses runs.")]
 StopAfter = Annotated[int | None, typer.Option(help="With --search: failures after which it ends.", min=1)]
 Baseline = Annotated[
     Path | None, typer.Option(help="Compare with another version that has executed this sweep into this file.")
@@ -157,8 +134,8 @@ def run(
 ) -> None:
     """Execute the runs of a sweep that have no result yet, and report all its results.
 
-    Exit code 0: what is required is reached, or nothing is. 1: it is not reached. 5: undecided. 2: nothing was
-    executed. 130: interrupted; what had ended is saved, and the same command goes on.
+    Exit code 0: what is required is reached, or nothing is. 1: it is not reached. 5: undecided. 2: something is wrong,
+    mostly before anything was executed. 130: interrupted; what had ended is saved, and the same command goes on.
     """
     prepare(junit, *(report_ or ()))
     cluster = ClusterAddress(scheduler=scheduler, tls_ca_file=tls_ca_file, tls_cert=tls_cert, tls_key=tls_key)
@@ -167,7 +144,7 @@ def run(
         runs=runs,
         time=time,
         width=width,
-        require=require,
+        require=tuple(require or ()),
         design=design,
         seed=seed,
         cell=cell,
@@ -227,7 +204,7 @@ def report_saved(
     overrides = SweepOverrides(
         vary=tuple(vary or ()),
         runs=runs,
-        require=require,
+        require=tuple(require or ()),
         design=design,
         seed=seed,
         cell=cell,
@@ -262,97 +239,8 @@ def merge(
     sys.stderr.write(f"{added} results added to {to}\n")
 
 
-@app.command("rerun")
-def rerun(
-    file: File,
-    number: Annotated[int, typer.Argument(help="The number of the configuration.", min=0, show_default=False)],
-    vary: Vary = None,
-    runs: Runs = None,
-    design: Design = None,
-    search: Search = None,
-    method: Method = None,
-    seed: Seed = None,
-    cell: Cell = None,
-    parameter: Parameter = None,
-    results: Results = DEFAULT_RESULTS,
-    record: Annotated[Path | None, typer.Option(help="Record the run to this MCAP file.")] = None,
-) -> None:
-    """Execute one configuration again in this process, and say whether it ends as its saved result."""
-    prepare(record)
-    overrides = SweepOverrides(
-        vary=tuple(vary or ()),
-        runs=runs,
-        design=design,
-        seed=seed,
-        cell=cell,
-        parameters=tuple(parameter or ()),
-        search=search,
-        method=method,
-    )
-    subject, saved = chosen_result(file, overrides, results, number)
-    result = Trials(subject).run(saved.configuration, record=record)
-    same = (result.label, result.events_sha256) == (saved.label, saved.events_sha256)
-    sys.stdout.write(f"#{number}: {result.label}{f': {result.cause}' if result.cause else ''}\n")
-    sys.stdout.write("the same events as before\n" if same else f"it was {saved.label} before: DIFFERENT\n")
-    raise typer.Exit(ExitCode.SUCCESS if same else ExitCode.REPLAY_DIFFERS)
-
-
-@app.command("shrink")
-def shrink(
-    file: File,
-    number: Annotated[int, typer.Argument(help="The number of a failing configuration.", min=0, show_default=False)],
-    vary: Vary = None,
-    runs: Runs = None,
-    design: Design = None,
-    search: Search = None,
-    method: Method = None,
-    seed: Seed = None,
-    cell: Cell = None,
-    parameter: Parameter = None,
-    results: Results = DEFAULT_RESULTS,
-    same: Annotated[
-        Literal["outcome", "cause"],
-        typer.Option(help="What must stay the same: how the run ends, or its root cause too."),
-    ] = "outcome",
-    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = 200,
-    record: Annotated[Path | None, typer.Option(help="Record the smallest failing run to this MCAP file.")] = None,
-    case: Annotated[
-        Path | None, typer.Option(help="Write it as a sweep of one run that requires success: a regression test.")
-    ] = None,
-) -> None:
-    """Find the smallest change from nominal with which a run still fails as this one did."""
-    prepare(record, case)
-    overrides = SweepOverrides(
-        vary=tuple(vary or ()),
-        runs=runs,
-        design=design,
-        seed=seed,
-        cell=cell,
-        parameters=tuple(parameter or ()),
-        search=search,
-        method=method,
-    )
-    subject, failing = chosen_result(file, overrides, results, number)
-    noisy = Trials(subject)
-    quiet = Trials(subject.without_placement_noise()) if subject.sweep.document.placement_noise else None
-    found = shrink_failure(
-        failing,
-        subject.sweep.document.factors,
-        subject.nominal,
-        noisy.run,
-        quiet=quiet.run if quiet is not None else None,
-        same=_SAME[same],
-        most_runs=most,
-        show=show_shrinking,
-    )
-    sys.stdout.write(shrunk_text(found))
-    if record is not None:
-        (noisy if found.placement_noise or quiet is None else quiet).run(found.result.configuration, record=record)
-        sys.stdout.write(f"recorded to {record}\n")
-    if case is not None:
-        noise = found.placement_noise and quiet is not None
-        write(case, case_document(subject.sweep, found.result, case, placement_noise=noise))
-        sys.stdout.write(f"`flexcell sweep {case}` fails until it is mended\n")
+app.command("rerun")(rerun)
+app.command("shrink")(shrink)
 
 
 def _shard(text: str | None) -> Shard | None:
@@ -365,6 +253,7 @@ def _shard(text: str | None) -> Shard | None:
 
 
 def _compared(end: SweepEnd, baseline: Path | None, margin: float | None) -> tuple[SweepSummary, Comparison | None]:
+    require_known_numbers(end.subject.sweep, end.results)
     summary = summarize(end)
     if baseline is None:
         if margin is not None:

@@ -15,7 +15,7 @@ from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_n
 from engine.errors import FlexcellError
 from engine.sweep import Comparison, SweepProgress, SweepSummary
 from engine.sweep.report import markdown
-from engine.sweep.report.words import difference_text, interval_text, percent, rate_text, verdict_text
+from engine.sweep.report.words import difference_text, interval_text, kept_text, percent
 
 _EVERY = 0.05
 """Without a terminal, a line is printed after each such share of the runs."""
@@ -75,20 +75,22 @@ def progress_text(progress: SweepProgress) -> str:
 
 
 def write_sweep_junit(path: Path, file: Path, summary: SweepSummary, comparison: Comparison | None) -> None:
-    """Write the verdicts as JUnit: a case for what is required, and one for the comparison with the baseline.
+    """Write the verdicts as JUnit: a case for each requirement, and one for the comparison with the baseline.
 
     Raises:
         FlexcellError: the file cannot be written.
     """
     name, text = class_name(file), markdown(summary, comparison)
+    # All are of the same runs: their time is told once.
     cases = [
         JunitCase(
-            name=summary.sweep.document.require or "success rate",
+            name=each.text,
             classname=name,
-            time_s=summary.cpu_s,
-            problem=_problem(summary.verdict, rate_text(summary), text),
+            time_s=0.0 if number else summary.cpu_s,
+            problem=_problem(each.verdict, kept_text(each), text),
         )
-    ]
+        for number, each in enumerate(summary.requirements)
+    ] or [JunitCase(name="success rate", classname=name, time_s=summary.cpu_s)]
     if comparison is not None:
         problem = _problem(comparison.verdict, difference_text(comparison), text)
         cases.append(JunitCase(name="not worse than the baseline", classname=name, time_s=0.0, problem=problem))
@@ -102,14 +104,16 @@ def write_sweep_junit(path: Path, file: Path, summary: SweepSummary, comparison:
 
 
 def write_github_summary(summary: SweepSummary, comparison: Comparison | None, environment: Mapping[str, str]) -> None:
-    """In a GitHub job, append the report to its summary, and annotate it unless what is required is reached.
+    """In a GitHub job, append the report to its summary, and annotate each requirement that is not reached.
 
     Raises:
         FlexcellError: the file of the summary cannot be written.
     """
-    if append_github_summary(markdown(summary, comparison), environment) and summary.verdict in ("failed", "undecided"):
-        level = "error" if summary.verdict == "failed" else "warning"
-        sys.stderr.write(f"::{level} title={verdict_text(summary)}::{rate_text(summary)}\n")
+    if append_github_summary(markdown(summary, comparison), environment):
+        for each in summary.requirements:
+            if each.verdict != "passed":
+                level = "error" if each.verdict == "failed" else "warning"
+                sys.stderr.write(f"::{level} title={each.text}: {each.verdict}::{kept_text(each)}\n")
 
 
 def append_github_summary(text: str, environment: Mapping[str, str]) -> bool:

@@ -27,11 +27,11 @@ from engine.sweep.cluster.remote_run import (
     shipped,
 )
 from engine.sweep.cluster.shipment import pack
-from engine.sweep.configuration import Configuration
-from engine.sweep.subject import SweepSubject, environment_versions, other_versions
-from engine.sweep.trial import ended_process
-from engine.sweep.trial_execution import ProcessLimits, TrialExecutor
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial import ended_process
+from engine.sweep.execution.trial_execution import ProcessLimits, TrialExecutor
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.subject.sweep_subject import SweepSubject, environment_versions, other_versions
 
 _LOOK_S = 5.0
 """Interval at which workers are counted, and the longest time until Ctrl-C is noticed."""

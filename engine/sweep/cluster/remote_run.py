@@ -16,11 +16,11 @@ from typing import Any
 import msgspec
 
 from engine.sweep.cluster.shipment import Shipment
-from engine.sweep.configuration import Configuration
-from engine.sweep.subject import environment_versions
-from engine.sweep.trial_execution import ProcessLimits
-from engine.sweep.trial_process import TrialProcess
-from engine.sweep.worker import WorkerAnswer, WorkerTask
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_execution import ProcessLimits
+from engine.sweep.execution.trial_process import TrialProcess
+from engine.sweep.execution.worker import WorkerAnswer, WorkerTask
+from engine.sweep.subject.sweep_subject import environment_versions
 
 _IDLE_S = 60.0
 _KNOWN_S = 1.0

@@ -11,9 +11,9 @@ import msgspec
 from engine.document.behavior import Behavior
 from engine.document.sweep import NO_FILE, Sweep, SweepDocument
 from engine.errors import DocumentError, FlexcellError
-from engine.sweep.cell_files import written_paths
-from engine.sweep.subject import SweepSubject
-from engine.sweep.subject_files import subject_files, subject_root
+from engine.sweep.subject.cell_files import written_paths
+from engine.sweep.subject.subject_files import subject_files, subject_root
+from engine.sweep.subject.sweep_subject import SweepSubject
 
 _FILES = ("faults", "substitutes")
 _STORE = ".flexcell-sweep-store.db"

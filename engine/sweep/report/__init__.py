@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from engine.errors import FlexcellError
-from engine.sweep.comparison import Comparison
 from engine.sweep.report.markdown import markdown
 from engine.sweep.report.parquet_table import parquet_table
 from engine.sweep.report.result_rows import csv_table, json_report
 from engine.sweep.report.sweep_page import html_page
 from engine.sweep.summary import SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 SUFFIXES = (".md", ".html", ".json", ".csv", ".parquet")
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.report.words import interval_text, percent, value_text
 from engine.sweep.statistics import rate_interval
 from engine.sweep.statistics.effects import FactorEffect
 from engine.sweep.summary import MeasureSpread
-from engine.sweep.trial_result import TrialResult
 
 WIDTH, HEIGHT = 640, 240
 LEFT, RIGHT, TOP, BOTTOM = 52, 12, 12, 34

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine.sweep.comparison import Comparison
 from engine.sweep.report.tables import markdown_section
 from engine.sweep.report.words import (
+    REQUIRED_HEAD,
     difference_text,
     end_text,
     gap_text,
     interval_text,
     percent,
     rate_text,
+    required_rows,
     value_text,
     verdict_text,
 )
 from engine.sweep.statistics.effects import FactorEffect
 from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import Quantiles, SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 _NODES = 12
 _FAILING = 20
@@ -42,6 +44,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     if document.design != "random":
         yield ""
         yield "The configurations are not drawn at random: the share is that of this design, and has no interval."
+    yield from markdown_section("Required", REQUIRED_HEAD, required_rows(summary))
     if comparison is not None:
         yield ""
         yield f"The success rate is {difference_text(comparison)}. Changed: {', '.join(comparison.changed)}."
@@ -61,7 +64,7 @@ def _lines(summary: SweepSummary, comparison: Comparison | None) -> Iterator[str
     yield from _failing(summary)
     yield from markdown_section(
         "Factors, those that matter most first",
-        ("factor", "correlation with success", "with duration", "success by level", "input covered"),
+        ("factor", "correlation with success", "with duration", "success by level"),
         [_effect(each) for each in summary.effects],
     )
     durations = [summary.duration_s] if summary.duration_s is not None else []
@@ -129,8 +132,7 @@ def _failing(summary: SweepSummary) -> Iterator[str]:
 
 def _effect(effect: FactorEffect) -> tuple[object, ...]:
     levels = "; ".join(f"{each.label}: {each.successes}/{each.runs}" for each in effect.levels)
-    share = percent(effect.input_share) if effect.input_share is not None else "–"
-    return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels, share
+    return effect.address, _correlation(effect.with_success), _correlation(effect.with_duration), levels
 
 
 def _input(each: FactorCoverage) -> tuple[object, ...]:

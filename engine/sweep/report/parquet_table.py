@@ -8,8 +8,8 @@ from typing import Any, cast
 import msgspec
 
 from engine.errors import FlexcellError
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.report.result_rows import rows
-from engine.sweep.trial_result import TrialResult
 
 _INTEGERS = range(-(2**63), 2**63)
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import msgspec
 
-from engine.sweep.comparison import Comparison
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.summary import SweepSummary
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.verdict.comparison import Comparison
 
 Row = dict[str, object]
 
@@ -71,6 +71,7 @@ def json_report(summary: SweepSummary, comparison: Comparison | None) -> bytes:
         "rate": summary.rate,
         "interval": list(interval) if interval is not None else None,
         "confidence": summary.sweep.document.confidence,
+        "requirements": summary.requirements,
         "verdict": summary.verdict,
         "ended_by": summary.ended_by,
         "outcomes": summary.outcomes,

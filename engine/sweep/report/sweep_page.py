@@ -5,20 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from engine.sweep.comparison import Comparison
 from engine.sweep.report.figures import convergence, histogram, level_rates, scatter
 from engine.sweep.report.tables import html_document, html_table
 from engine.sweep.report.words import (
+    REQUIRED_HEAD,
     difference_text,
     end_text,
     gap_text,
     interval_text,
     percent,
     rate_text,
+    required_rows,
     value_text,
     verdict_text,
 )
 from engine.sweep.summary import Quantiles, SweepSummary
+from engine.sweep.verdict.comparison import Comparison
 
 _NODES = 25
 _FAILING = 200
@@ -40,6 +42,7 @@ def _sections(summary: SweepSummary, comparison: Comparison | None, title: str) 
     if summary.verdict is not None:
         yield f'<p class="verdict {summary.verdict}">{escape(verdict_text(summary))}</p>'
     yield f"<p>{escape(rate_text(summary).capitalize())}. {escape(end_text(summary).capitalize())}.</p>"
+    yield from html_table("Required", REQUIRED_HEAD, required_rows(summary))
     if comparison is not None:
         changed = ", ".join(comparison.changed)
         yield f"<p>The success rate is {escape(difference_text(comparison))}. Changed: {escape(changed)}.</p>"
@@ -110,8 +113,6 @@ def _factors(summary: SweepSummary) -> Iterator[str]:
             for name, value in (("success", effect.with_success), ("duration", effect.with_duration))
             if value is not None
         ]
-        if effect.input_share is not None:
-            words.append(f"{percent(effect.input_share)} of its range has a run")
         caption = f"<code>{escape(effect.address)}</code>: {escape('; '.join(words))}"
         yield f"<figure><figcaption>{caption}</figcaption>{level_rates(effect, rate=rate)}</figure>"
     numbers = [

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from engine.sweep.comparison import Comparison
 from engine.sweep.statistics import Interval
 from engine.sweep.statistics.input_coverage import FactorCoverage
 from engine.sweep.summary import SweepSummary
+from engine.sweep.verdict.comparison import Comparison
+from engine.sweep.verdict.judged_requirement import JudgedRequirement
+
+REQUIRED_HEAD = ("required", "verdict", "runs that keep it", "share of all runs", "without the number")
+"""The heads of `required_rows`."""
 
 
 def percent(share: float) -> str:
@@ -34,10 +38,38 @@ def rate_text(summary: SweepSummary) -> str:
 
 
 def verdict_text(summary: SweepSummary) -> str:
-    """Return what is required and whether it is reached; empty where nothing is."""
-    if summary.verdict is None:
-        return ""
-    return f"{summary.sweep.document.require}: {summary.verdict}"
+    """Return each requirement and whether it is reached; empty where nothing is required."""
+    return "; ".join(f"{each.text}: {each.verdict}" for each in summary.requirements)
+
+
+def kept_text(requirement: JudgedRequirement) -> str:
+    """Return how many runs keep a requirement, in one sentence."""
+    runs, name = requirement.runs, requirement.number
+    text = f"{requirement.kept} of {runs} runs {'succeeded' if name is None else 'keep the limit'}"
+    if runs:
+        text += f" ({percent(requirement.kept / runs)})"
+    if requirement.missing:
+        text += f", {requirement.missing} have no number {name}"
+    if requirement.interval is None:
+        return text
+    return f"{text}; the share of all runs is {interval_text(requirement.interval)}"
+
+
+def required_rows(summary: SweepSummary) -> list[tuple[object, ...]]:
+    """Return a row for each requirement; none where only a success rate is required, which is told anyway."""
+    required = summary.requirements
+    if all(each.number is None for each in required):
+        return []
+    return [
+        (
+            each.text,
+            each.verdict,
+            f"{each.kept} of {each.runs}",
+            interval_text(each.interval) if each.interval is not None else "–",
+            each.missing,
+        )
+        for each in required
+    ]
 
 
 def end_text(summary: SweepSummary) -> str:

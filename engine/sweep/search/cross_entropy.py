@@ -12,7 +12,7 @@ import random
 from collections.abc import Mapping, Sequence
 
 from engine.document.sweep import Factor, SearchSpec
-from engine.sweep.design import configuration_of, random_shares
+from engine.sweep.design.designs import configuration_of, random_shares
 from engine.sweep.search.proposal import FactorProposal, written_proposals
 from engine.sweep.search.sampler import ScoredPoint, SearchPoint, values_at
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from engine.document.sweep import Factor, SearchSpec
 from engine.errors import FlexcellError
-from engine.sweep.design import configuration_of, random_shares
+from engine.sweep.design.designs import configuration_of, random_shares
 from engine.sweep.search.sampler import ScoredPoint, SearchPoint, values_at
 
 try:

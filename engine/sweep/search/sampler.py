@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from engine.document.sweep import Factor
-from engine.sweep.configuration import Configuration
-from engine.sweep.distributions import value_at
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.design.distributions import value_at
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,12 +8,12 @@ from pathlib import Path
 from engine.document.duration import seconds
 from engine.document.sweep import Sweep, load_sweep
 from engine.errors import DocumentError
+from engine.sweep.execution.worker_pool import WorkerOptions
 from engine.sweep.results import SweepResults
 from engine.sweep.search.search_execution import SearchProgress, execute_search
 from engine.sweep.search.search_summary import SearchSummary, summarize_search
-from engine.sweep.subject import SweepSubject
+from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
-from engine.sweep.worker_pool import WorkerOptions
 
 
 def run_search(

@@ -12,14 +12,14 @@ from typing import Literal
 
 from engine.document.duration import seconds
 from engine.document.sweep import SearchSpec
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_execution import ExecutionOptions
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.results import SweepResults
 from engine.sweep.search.sampler import SearchPoint
 from engine.sweep.search.search_plan import SearchPlan, SearchStep
 from engine.sweep.search.target import SearchTarget, is_failure
-from engine.sweep.subject import SweepSubject
-from engine.sweep.trial_execution import ExecutionOptions
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.subject.sweep_subject import SweepSubject
 
 SearchEndedBy = Literal["runs", "failures", "time", "interrupted"]
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from engine.document.sweep import Sweep
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.search.cross_entropy import CrossEntropySampler
 from engine.sweep.search.sampler import ScoredPoint, SearchPoint, SearchSampler
 from engine.sweep.search.target import SearchTarget, is_failure
-from engine.sweep.trial_result import TrialResult
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 import msgspec
 
 from engine.errors import FlexcellError
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.report import SUFFIXES, csv_table
 from engine.sweep.report.figures import scatter
 from engine.sweep.report.result_rows import rows
@@ -16,7 +17,6 @@ from engine.sweep.report.tables import html_document, html_table, markdown_secti
 from engine.sweep.report.words import interval_text, percent, value_text
 from engine.sweep.search.search_figures import margin_trace
 from engine.sweep.search.search_summary import FactorRegion, FailureCluster, SearchSummary
-from engine.sweep.trial_result import TrialResult
 
 _FAILING = 20
 _REGION_HEAD = ("factor", "failing", "executed", "likelihood of that", "successes in there")

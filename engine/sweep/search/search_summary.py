@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from engine.document.sweep import Factor, SearchSpec, Sweep
-from engine.sweep.distributions import share_of
+from engine.sweep.design.distributions import share_of
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.search.failure_probability import FailureProbability, failure_probability
 from engine.sweep.search.search_execution import SearchEnd, SearchEndedBy
 from engine.sweep.search.search_plan import SearchStep
 from engine.sweep.search.target import SearchTarget, is_failure
 from engine.sweep.summary import CauseGroup, cause_groups
-from engine.sweep.trial_result import TrialResult
 
 
 @dataclass(frozen=True, kw_only=True)

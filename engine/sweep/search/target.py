@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
-from engine.errors import FlexcellError
-from engine.suggestions import did_you_mean
-from engine.sweep.trial_result import TrialResult
-
-DURATION = "duration_s"
+from engine.sweep.execution.trial_result import TrialResult, require_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +24,7 @@ class SearchTarget:
     def parse(cls, towards: str) -> Self:
         """Return the target that a valid `search.towards` names."""
         if towards == "failure":
-            return cls(name=DURATION, sign=-1.0, guides=False)
+            return cls(name="duration_s", sign=-1.0, guides=False)
         direction, _, name = towards.partition(" ")
         return cls(name=name.strip(), sign=1.0 if direction == "least" else -1.0)
 
@@ -39,7 +35,7 @@ class SearchTarget:
 
     def value(self, result: TrialResult) -> float | None:
         """Return the number of a run; None where it has none."""
-        return dict(_numbers(result)).get(self.name)
+        return result.numbers.get(self.name)
 
     def score(self, result: TrialResult) -> float:
         """Return how near a run is to failure: -inf for one that failed, inf for one of which nothing is known."""
@@ -56,20 +52,9 @@ class SearchTarget:
         Raises:
             FlexcellError: there are such runs, and none has the number.
         """
-        known = [dict(_numbers(each)) for each in results if each.success]
-        if known and not any(self.name in each for each in known):
-            names = {name for each in known for name in each}
-            hint = did_you_mean(self.name, names)
-            raise FlexcellError(f"no run has a number `{self.name}`", where=where, hint=hint)
+        require_number(self.name, (each for each in results if each.success), where=where)
 
 
 def is_failure(result: TrialResult) -> bool:
     """Return whether a run failed; a configuration that is refused shows no weakness of the behavior."""
     return not result.success and result.status != "refused"
-
-
-def _numbers(result: TrialResult) -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a run by name."""
-    yield from result.outputs.items()
-    yield from result.measures.items()
-    yield DURATION, result.duration_s

@@ -12,8 +12,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from engine.document.sweep import Factor
-from engine.sweep.statistics.input_coverage import covered_share
 from engine.sweep.statistics.intervals import Interval, exact_interval
 from engine.sweep.statistics.special_functions import rank_correlation
 
@@ -49,8 +47,6 @@ class FactorEffect:
     with_duration: float | None
     """The same for the durations of runs that succeeded."""
     levels: Sequence[Level]
-    input_share: float | None
-    """The share of ten equally likely parts of its distribution, or of its values, in which there is a run."""
 
     @property
     def spread(self) -> float:
@@ -65,7 +61,6 @@ def factor_effect(
     successes: Sequence[bool],
     durations_s: Sequence[float],
     *,
-    factor: Factor | None,
     confidence: float,
 ) -> FactorEffect:
     """Return the effect of one factor.
@@ -75,7 +70,6 @@ def factor_effect(
         values: Its value in each run.
         successes: Whether each run succeeded.
         durations_s: The duration of each run.
-        factor: Its distribution; None for a column of a file.
         confidence: Of the intervals of levels.
     """
     numbers = _numbers(values)
@@ -86,7 +80,6 @@ def factor_effect(
             with_success=None,
             with_duration=None,
             levels=levels,
-            input_share=_share_of_values(values, factor),
         )
     good = [index for index, success in enumerate(successes) if success]
     return FactorEffect(
@@ -94,7 +87,6 @@ def factor_effect(
         with_success=correlation(numbers, [float(success) for success in successes]),
         with_duration=correlation([numbers[i] for i in good], [durations_s[i] for i in good]),
         levels=_levels(_binned(numbers), successes, confidence),
-        input_share=_share_of_values(values, factor),
     )
 
 
@@ -151,10 +143,6 @@ def _order(label: str) -> tuple[float, str]:
         return float(label.partition(" to ")[0]), label
     except ValueError:
         return math.inf, label
-
-
-def _share_of_values(values: Sequence[object], factor: Factor | None) -> float | None:
-    return covered_share(factor, values) if factor is not None else None
 
 
 def _label(value: object) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from engine.document.sweep import Factor
-from engine.sweep.distributions import share_of, value_at
+from engine.sweep.design.distributions import share_of, value_at
 
 _PARTS = 10
 
@@ -89,11 +89,6 @@ def input_coverage(factors: Mapping[str, Factor], runs: Sequence[Mapping[str, ob
         ],
         pairs=sorted(pairs, key=lambda each: each.share),
     )
-
-
-def covered_share(factor: Factor, values: Sequence[object]) -> float:
-    """Return the share of the parts of a factor in which one of these values lies."""
-    return len(set(_parts_of(factor, values)) - {None}) / _part_count(factor)
 
 
 def _factor_coverage(

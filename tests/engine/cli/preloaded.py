@@ -27,7 +27,7 @@ from engine.registry import load_states
 # A server is a program of its own, and brings the web with it.
 _NOT_HERE = ("engine.cli.commands.serve", "engine.cli.entry")
 # What sweeps load with their first use: scipy takes a second.
-_LATER = ("engine.sweep.design", "engine.sweep.summary", "engine.sweep.sweep_execution")
+_LATER = ("engine.sweep.design.designs", "engine.sweep.summary", "engine.sweep.sweep_execution")
 
 
 def serve() -> None:

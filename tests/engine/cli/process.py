@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import time
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 from engine.errors import JournalError
 from engine.event import AnyEvent, NodeEntered
 from engine.journal import RunRecord, list_runs, read_events
+from tests.engine.awaited import wait_until
 from tests.engine.cli.command import FLEXCELL
 
 JOURNAL = ".flexcell"
@@ -46,11 +46,16 @@ def until(
     process: subprocess.Popen[str], folder: Path, true: Callable[[Sequence[AnyEvent]], bool]
 ) -> tuple[AnyEvent, ...]:
     """Wait until the durable events of the newest run say so, and return them."""
-    while not true(events := events_in(folder)):
-        if process.poll() is not None:
-            raise AssertionError(f"it ended with {process.returncode}: {process.communicate()}")
-        # Looking all the time would take the processor from the command that is looked at.
-        time.sleep(0.005)
+    events: tuple[AnyEvent, ...] = ()
+
+    def holds() -> bool:
+        nonlocal events
+        if true(events := events_in(folder)):
+            return True
+        assert process.poll() is None, f"it ended with {process.returncode}: {process.communicate()}"
+        return False
+
+    wait_until(holds)
     return events
 
 

@@ -7,7 +7,6 @@ import json
 import logging
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -27,6 +26,7 @@ from engine.messages import FramePoses, JointState
 from engine.recording import load_recording, part_file, recovered_file
 from engine.recording.recording import RecordedEvent
 from engine.runtime.run import Run
+from tests.engine.awaited import wait_until
 from tests.engine.recording.foxglove_rules import complaints
 from tests.engine.replay.rig import Tick, record_run, recorded
 from tests.engine.run_document import run_document
@@ -210,8 +210,7 @@ def test_what_a_killed_process_left_is_read_and_kept_beside_the_next_recording(
         assert process.stdout is not None
         assert process.stdout.readline() == b"going on\n"
         # Its events go to the disk by a thread of its own.
-        while len(events_left(target)) < 3:
-            time.sleep(0.005)
+        wait_until(lambda: len(events_left(target)) >= 3)
         process.kill()
     left = load_recording(target)
     assert (left.path, left.complete) == (part_file(target), False)

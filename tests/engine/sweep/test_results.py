@@ -9,9 +9,9 @@ import msgspec
 import pytest
 
 from engine.errors import FlexcellError
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import NodeTime, TrialResult
 from engine.sweep.results import SweepResults, without_costs
-from engine.sweep.trial_result import NodeTime, TrialResult
 
 
 def _result(number: int, *, outcome: str = "done", wall_s: float = 1.0) -> TrialResult:
@@ -70,6 +70,26 @@ def test_only_the_keys_that_are_asked_for_are_found(tmp_path: Path) -> None:
     with SweepResults.open(file) as saved:
         assert list(saved.of("a", [key, "unknown"])) == [key]
         assert saved.of("b", [key]) == {}
+
+
+def test_what_is_found_is_all_that_is_read(tmp_path: Path) -> None:
+    """A search asks for one batch after the other, of a file that grows."""
+    file = _file(tmp_path / "r.db", _result(0), _result(1))
+    damaged = sqlite3.connect(file)
+    damaged.execute("UPDATE results SET result = 'no result' WHERE key = ?", (_result(0).configuration.key("a"),))
+    damaged.commit()
+    damaged.close()
+    with SweepResults.open(file) as saved:
+        assert list(saved.of_design("a", [_result(1).configuration])) == [1]
+        with pytest.raises(FlexcellError, match="is damaged"):
+            saved.of_design("a", [_result(0).configuration])
+
+
+def test_a_design_of_more_runs_than_a_query_has_values_is_found(tmp_path: Path) -> None:
+    designed = [_result(number).configuration for number in range(1201)]
+    file = _file(tmp_path / "r.db", *(_result(number) for number in (0, 499, 500, 999, 1000, 1200)))
+    with SweepResults.open(file) as saved:
+        assert sorted(saved.of_design("a", designed)) == [0, 499, 500, 999, 1000, 1200]
 
 
 def test_parts_are_merged_and_equal_results_counted_once(tmp_path: Path) -> None:

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from engine.document.sweep import Factor, Normal
 from engine.errors import ControlError
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.shrinking import ShrinkProgress, same_cause, shrink
-from engine.sweep.trial_result import TrialResult
 
 FACTORS = {
     "parameters.speed": Factor(uniform=(0.0, 1.0)),

@@ -256,7 +256,7 @@ def test_kill_9_of_a_worker_costs_the_run_that_it_had(project: LuckProject, tmp_
 
 
 def _is_worker(pid: int) -> bool:
-    return b"engine.sweep.worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    return b"engine.sweep.execution.worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 def test_a_full_disk_ends_the_sweep_and_keeps_what_was_saved(project: LuckProject, tmp_path: Path) -> None:

@@ -684,7 +684,6 @@ export interface FactorEffect {
   readonly with_success: number | null
   readonly with_duration: number | null
   readonly levels: readonly Level[]
-  readonly input_share: number | null
 }
 
 /** A fault of the fault file was applied to a request. */
@@ -1016,6 +1015,17 @@ export interface JointFit {
   readonly cut: TrimInterval
   readonly rms_m: number | null
   readonly max_m: number | null
+}
+
+/** What the runs of a sweep that are looked at say about one requirement. */
+export interface JudgedRequirement {
+  readonly text: string
+  readonly number: string | null
+  readonly runs: number
+  readonly kept: number
+  readonly missing: number
+  readonly interval: Interval | null
+  readonly verdict: "failed" | "passed" | "undecided"
 }
 
 /** One key with all its writers and readers, in document order. */
@@ -2006,7 +2016,7 @@ export interface Supervision {
   readonly loss_timeout_s?: number
 }
 
-/** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is required of a success rate is then not decided. */
+/** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. `require` is a success rate, `success >= 0.98`, the share of runs in which a number keeps a limit, `share(cell.contact_force_max_n <= 30) >= 0.95`, or a list of these. A number is a measure, userdata at the end, or `duration_s`; a run without it does not keep the limit. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is required is then not decided. */
 export interface SweepDocument {
   readonly flexcell: 1
   readonly description?: string
@@ -2027,7 +2037,7 @@ export interface SweepDocument {
   readonly width?: number | null
   readonly interval?: "anytime" | "exact"
   readonly confidence?: number
-  readonly require?: string | null
+  readonly require?: string | readonly string[] | null
   readonly timeout?: number | string
   readonly limit?: number | string
 }
@@ -2092,6 +2102,7 @@ export interface SweepView {
   readonly looked_at: number
   readonly successes: number
   readonly interval: Interval | null
+  readonly requirements: readonly JudgedRequirement[]
   readonly verdict: "failed" | "passed" | "undecided" | null
   readonly ended_by: "decided" | "interrupted" | "runs" | "time"
   readonly outcomes: readonly OutcomeShare[]

@@ -14,6 +14,7 @@ import {
   proposedId,
   quantileGroups,
   requiredRate,
+  requiredText,
   scatterAxes,
   speedText,
   type FactorDraft,
@@ -67,6 +68,14 @@ it('tells the speed and what is left at most', () => {
 it('reads what is required', () => {
   expect(requiredRate('success >= 0.98')).toBe(0.98)
   expect(requiredRate('')).toBeUndefined()
+  expect(requiredRate(undefined)).toBeUndefined()
+  const limit = 'share(cell.contact_force_max_n <= 30) >= 0.95'
+  expect(requiredRate(limit)).toBeUndefined()
+  expect(requiredRate(['success >= 0.9', limit, 'success >= 0.98'])).toBe(0.98)
+  expect(requiredRate(`success >= 0.9; ${limit}`)).toBe(0.9)
+  expect(requiredText('success >= 0.98')).toBe('at least 98.0 %')
+  expect(requiredText(limit)).toBe(limit)
+  expect(requiredText(`success >= 0.9; ${limit}`)).toBe(`success >= 0.9; ${limit}`)
 })
 
 it('finds every distribution of a summary, also one that it has no name for', () => {

@@ -1,5 +1,5 @@
 /** What a sweep has shown, in words, orders and scales. Pure. */
-import type { Factor, FactorChoice, FactorCoverage, Interval, MeasureSpread, Quantiles, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
+import type { Factor, FactorChoice, FactorCoverage, Interval, JudgedRequirement, MeasureSpread, Quantiles, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
 import { lookup } from './dict'
 import { numeral } from './values'
 
@@ -48,10 +48,22 @@ function roughly(seconds: number): string {
   return seconds < 3600 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`
 }
 
-/** `success >= 0.98` as a number. */
-export function requiredRate(require: string | null | undefined): number | undefined {
-  const text = require?.split('>=')[1]
-  return text === undefined ? undefined : Number(text)
+/** The success rate in `success >= 0.98`, or in a list of requirements; undefined where none is required. */
+export function requiredRate(require: string | readonly string[] | null | undefined): number | undefined {
+  const texts = typeof require === 'string' ? require.split(';') : (require ?? [])
+  const rates = texts.flatMap((text) => /^\s*success\s*>=(.+)$/.exec(text)?.[1] ?? []).map(Number)
+  return rates.length > 0 ? Math.max(...rates) : undefined
+}
+
+/** What is required in words: `at least 98.0 %`, or as it is written where it is more than a success rate. */
+export function requiredText(require: string): string {
+  const rate = require.includes(';') ? undefined : requiredRate(require)
+  return rate === undefined ? require : `at least ${percent(rate)}`
+}
+
+/** How many of the runs that were looked at keep a requirement: `12 of 20 (3 without the number)`. */
+export function keptText({ kept, runs, missing }: JudgedRequirement): string {
+  return `${kept} of ${runs}${missing > 0 ? ` (${missing} without the number)` : ''}`
 }
 
 export interface QuantileGroup {

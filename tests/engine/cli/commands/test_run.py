@@ -6,7 +6,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from importlib.metadata import version
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 from engine.event import RunEnded, StopRequested
 from engine.host.thread_switch_interval import INTERVAL_S
 from engine.journal import list_runs, read_events
+from tests.engine.awaited import wait_until
 from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.project_folder import STATE, ProjectFolder
 
@@ -132,10 +132,12 @@ def test_a_signal_stops_the_run_and_closes_the_journal(behavior: Path, number: s
     command = [FLEXCELL, "run", behavior, "-p", "pause=3000", "--journal", "journal"]
     with subprocess.Popen(command, cwd=behavior.parent, stderr=subprocess.PIPE, text=True) as process:
         journal = behavior.parent / "journal" / "journal.db"
-        while not journal.exists() or not _running(journal):
+
+        def is_running() -> bool:
             assert process.poll() is None
-            # Looking all the time would take the processor from the command that is looked at.
-            time.sleep(0.005)
+            return journal.exists() and _running(journal)
+
+        wait_until(is_running)
         process.send_signal(number)
         _, errors = process.communicate(timeout=30)
     assert process.returncode == 130

@@ -43,15 +43,16 @@ def test_a_document_with_options_is_swept_in_parts_and_reported(project: LuckPro
         assert (ended.code, ended.err) == (0, "")
     assert "6 results added to all.db" in _sweep(project, "merge", *parts, "--to", "all.db").err
     told = _sweep(
-        project, "report", file, "--results", "all.db", "--json", "--require", "success >= 0.999", "--junit", "j.xml",
-        "--report", "r.html", "--report", "r.csv",
+        project, "report", file, "--results", "all.db", "--json", "--require", "success >= 0.999",
+        "--require", "share(duration_s <= 2) >= 0.4", "--junit", "j.xml", "--report", "r.html", "--report", "r.csv",
     )  # fmt: skip
     document = json.loads(told.out)
     assert (document["done"], document["verdict"]) == (6, "failed")
     assert told.code == 1
-    case = next(ET.parse(project.path / "j.xml").iter("testcase"))
-    assert case.get("name") == "success >= 0.999"
-    assert case.find("failure") is not None
+    success, duration = ET.parse(project.path / "j.xml").iter("testcase")
+    assert (success.get("name"), duration.get("name")) == ("success >= 0.999", "share(duration_s <= 2) >= 0.4")
+    assert success.find("failure") is not None
+    assert duration.find("failure") is None
     assert (project.path / "r.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     assert len((project.path / "r.csv").read_text(encoding="utf-8").splitlines()) == 7
 
@@ -141,6 +142,7 @@ def test_a_changed_behavior_is_compared_with_its_baseline(tmp_path: Path) -> Non
         (["shrink", "luck.yaml", "900"], "the sweep has no configuration 900 (0 to 99)"),
         (["merge", "none.db", "--to", "m.db"], "there is no such file"),
         (["luck.yaml", "--require", "success > 1"], "`require`"),
+        (["luck.yaml", "--require", "success >= 1", "--require", "most a <= 3"], "'most a <= 3' is no requirement"),
     ],
 )
 def test_a_mistake_executes_nothing_and_says_what_to_do(
@@ -162,5 +164,5 @@ def test_a_github_job_gets_a_summary_and_an_annotation(
         *ONE,
     )  # fmt: skip
     assert ended.code == 1
-    assert "::error title=success >= 0.9: failed::" in ended.err
+    assert "::error title=success >= 0.9: failed::0 of " in ended.err
     assert "# Sweep of luck.yaml" in summary.read_text(encoding="utf-8")

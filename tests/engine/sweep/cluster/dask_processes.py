@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -100,11 +98,3 @@ class DaskProcesses:
 def _children(pid: int) -> list[int]:
     text = Path(f"/proc/{pid}/task").glob("*/children")
     return [int(each) for file in text for each in file.read_text(encoding="ascii").split()]
-
-
-def wait_until(holds: Callable[[], bool]) -> None:
-    """Wait until something holds."""
-    deadline_s = time.monotonic() + _START_S
-    while not holds():
-        assert time.monotonic() < deadline_s
-        time.sleep(0.05)

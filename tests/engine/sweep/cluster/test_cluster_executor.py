@@ -24,10 +24,11 @@ from engine.sweep import (
     saved_sweep,
 )
 from engine.sweep.cluster import cluster_executor
+from engine.sweep.execution.trial_execution import ExecutionOptions
 from engine.sweep.results import without_costs
-from engine.sweep.subject import environment_versions
-from engine.sweep.trial_execution import ExecutionOptions
-from tests.engine.sweep.cluster.dask_processes import DaskProcesses, wait_until
+from engine.sweep.subject.sweep_subject import environment_versions
+from tests.engine.awaited import wait_until
+from tests.engine.sweep.cluster.dask_processes import DaskProcesses
 from tests.engine.sweep.luck_project import LuckProject
 
 

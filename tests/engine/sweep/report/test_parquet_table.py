@@ -8,9 +8,9 @@ from typing import Any, cast
 from pyarrow import parquet
 
 from engine.sweep import Configuration, TrialResult
+from engine.sweep.execution.trial_result import NodeTime
 from engine.sweep.report import parquet_table
 from engine.sweep.report.result_rows import rows
-from engine.sweep.trial_result import NodeTime
 
 RESULTS = [
     TrialResult(

@@ -13,8 +13,8 @@ import pytest
 from engine.errors import FlexcellError
 from engine.sweep import SweepSubject, SweepSummary, TrialResult, Trials, configurations, summarize
 from engine.sweep.report import SUFFIXES, report
-from engine.sweep.success_count import SuccessCount
 from engine.sweep.sweep_execution import SweepEnd
+from engine.sweep.verdict.success_count import SuccessCount
 from tests.engine.sweep.luck_project import LuckProject
 
 HOSTILE = "<script>alert('x')</script> | a\nb"
@@ -110,6 +110,24 @@ def test_times_coverage_and_the_factor_are_there(summary: SweepSummary) -> None:
     assert [item.name for item in summary.missing] == ["missed", "missed"]
     (effect,) = summary.effects
     assert effect.spread == 1.0
+
+
+def test_every_report_tells_each_requirement(tmp_path: Path) -> None:
+    limit = "share(run.duration_s <= 1.6) >= 0.1"
+    found = _summary(tmp_path, require=[limit, "share(force_n <= 1) >= 0.5"])
+    kept = sum(each.duration_s <= 1.6 for each in found.results)
+    assert 0 < kept < 12
+    text = report(found, None, Path("s.md")).decode()
+    assert f"**{limit}: passed; share(force_n <= 1) >= 0.5: failed**" in text
+    assert f"| {limit} | passed  | {kept} of 12 " in text
+    page = report(found, None, Path("s.html")).decode()
+    assert "<td>share(force_n &lt;= 1) &gt;= 0.5</td><td>failed</td><td>0 of 12</td>" in page
+    told = json.loads(report(found, None, Path("s.json")))
+    assert [(each["text"], each["kept"], each["missing"]) for each in told["requirements"]] == [
+        (limit, kept, 0),
+        ("share(force_n <= 1) >= 0.5", 0, 12),
+    ]
+    assert told["verdict"] == "failed"
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -8,8 +8,8 @@ import pytest
 
 from engine.errors import FlexcellError
 from engine.sweep import Configuration, TrialResult
+from engine.sweep.execution.trial_result import TrialStatus
 from engine.sweep.search.target import SearchTarget, is_failure
-from engine.sweep.trial_result import TrialStatus
 
 
 def _result(*, success: bool = True, status: TrialStatus = "finished", **outputs: float) -> TrialResult:

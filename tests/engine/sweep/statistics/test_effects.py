@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from engine.document.sweep import Factor, Normal
 from engine.sweep.statistics.effects import correlation, factor_effect, quantile
 
 
@@ -15,7 +14,6 @@ def test_a_factor_that_decides_success_has_a_strong_correlation_and_levels_that_
         values,
         [value < 0.5 for value in values],
         [1.0 + value for value in values],
-        factor=Factor(uniform=(0.0, 1.0)),
         confidence=0.95,
     )
     assert effect.with_success is not None
@@ -23,7 +21,6 @@ def test_a_factor_that_decides_success_has_a_strong_correlation_and_levels_that_
     assert effect.with_duration == pytest.approx(1.0)
     assert [(level.runs, level.successes) for level in effect.levels] == [(25, 25), (25, 25), (25, 0), (25, 0)]
     assert effect.spread == 1.0
-    assert effect.input_share == 1.0
 
 
 def test_an_effect_without_a_direction_shows_in_the_levels_only() -> None:
@@ -34,7 +31,6 @@ def test_an_effect_without_a_direction_shows_in_the_levels_only() -> None:
         values,
         successes,
         [1.0] * 100,
-        factor=Factor(normal=Normal(deviation=1.0)),
         confidence=0.95,
     )
     assert effect.with_success == pytest.approx(0.0, abs=1e-9)
@@ -48,7 +44,6 @@ def test_values_without_an_order_have_levels_and_no_correlation() -> None:
         ["none", "slip.yaml", "none"],
         [True, False, True],
         [1.0, 2.0, 1.0],
-        factor=Factor(values=("none", "slip.yaml", "lost.yaml")),
         confidence=0.95,
     )
     assert (effect.with_success, effect.with_duration) == (None, None)
@@ -56,12 +51,10 @@ def test_values_without_an_order_have_levels_and_no_correlation() -> None:
         ("none", 2, 2),
         ("slip.yaml", 0, 1),
     ]
-    assert effect.input_share == pytest.approx(2 / 3)
 
 
-def test_a_column_of_a_file_has_no_known_range() -> None:
-    effect = factor_effect("parameters.a", [1, 2, 3], [True] * 3, [1.0, 2.0, 3.0], factor=None, confidence=0.95)
-    assert effect.input_share is None
+def test_what_always_succeeds_has_no_correlation_with_success() -> None:
+    effect = factor_effect("parameters.a", [1, 2, 3], [True] * 3, [1.0, 2.0, 3.0], confidence=0.95)
     assert effect.with_success is None
 
 
@@ -77,5 +70,5 @@ def test_a_quantile_is_linear_between_values(share: float, value: float) -> None
 
 def test_few_runs_with_a_number_of_their_own_are_levels_of_quarters() -> None:
     numbers = [0.1, 0.9, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]
-    effect = factor_effect("parameters.a", numbers, [True] * 8, [1.0] * 8, factor=None, confidence=0.95)
+    effect = factor_effect("parameters.a", numbers, [True] * 8, [1.0] * 8, confidence=0.95)
     assert [level.runs for level in effect.levels] == [2, 2, 2, 2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.document.sweep import Factor, Normal
-from engine.sweep.statistics.input_coverage import FactorCoverage, PairCoverage, covered_share, input_coverage
+from engine.sweep.statistics.input_coverage import FactorCoverage, PairCoverage, input_coverage
 
 SPEED, FAULTS = "parameters.speed", "faults"
 FACTORS = {SPEED: Factor(uniform=(0.0, 2.0)), FAULTS: Factor(values=("none", "slip.yaml"))}
@@ -49,5 +49,6 @@ def test_without_a_run_nothing_is_covered_and_the_gap_is_everything() -> None:
 
 
 def test_a_value_that_a_factor_does_not_have_covers_nothing() -> None:
-    assert covered_share(Factor(values=(1, 2, 4)), [1, 4, 4, 8]) == pytest.approx(2 / 3)
-    assert covered_share(Factor(uniform=(0.0, 1.0)), ["fast", 0.3]) == 0.1
+    factors = {"parameters.a": Factor(values=(1, 2, 4)), "parameters.b": Factor(uniform=(0.0, 1.0))}
+    runs = [{"parameters.a": a, "parameters.b": b} for a, b in [(1, "fast"), (4, 0.3), (4, 0.3), (8, 0.3)]]
+    assert [(each.covered, each.parts) for each in input_coverage(factors, runs).factors] == [(2, 3), (1, 10)]

@@ -45,7 +45,6 @@ function effectText(effect: FactorEffect): string {
     ['success', effect.with_success],
     ['duration', effect.with_duration],
   ].flatMap(([name, value]) => (typeof value === 'number' ? [`correlation with ${name} ${signed(value)}`] : []))
-  if (effect.input_share !== null) parts.push(`${percent(effect.input_share)} of its range has a run`)
   return parts.join('; ')
 }
 

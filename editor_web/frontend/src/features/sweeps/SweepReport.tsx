@@ -9,6 +9,7 @@ import { FactorEffects } from './FactorEffects'
 import { MissedItems } from './MissedItems'
 import { CauseList, OutcomeTable } from './Outcomes'
 import { RateCurve } from './RateCurve'
+import { Requirements } from './Requirements'
 import { RunDetails } from './RunDetails'
 import { RunScatter } from './RunScatter'
 import { RunTable } from './RunTable'
@@ -35,6 +36,7 @@ export function SweepReport({ view, runs, mayOperate, selected, onSelect, onOpen
       <div className="sweep-column">
         <Card title="Success rate after each run">
           <RateCurve curve={view.curve} required={requiredRate(view.document.require)} />
+          <Requirements requirements={view.requirements} />
         </Card>
         {factors.length > 0 && (
           <Card title="Runs over two factors">

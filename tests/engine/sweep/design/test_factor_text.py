@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.errors import DocumentError
-from engine.sweep.factor_text import parse_factor
+from engine.sweep.design.factor_text import parse_factor
 
 
 @pytest.mark.parametrize(

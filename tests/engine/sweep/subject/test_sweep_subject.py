@@ -8,7 +8,7 @@ import pytest
 
 from engine.document.sweep import parse_sweep
 from engine.errors import DocumentError
-from engine.sweep.subject import SweepSubject, other_versions, package_versions
+from engine.sweep.subject.sweep_subject import SweepSubject, other_versions, package_versions
 from tests.engine.sweep.luck_project import LuckProject
 
 CELL = """\

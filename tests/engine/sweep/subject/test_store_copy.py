@@ -12,7 +12,7 @@ from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import load_entries
 from engine.skills.entries import EntryRecord
-from engine.sweep.store_copy import entries_hash
+from engine.sweep.subject.store_copy import entries_hash
 
 SEED = "flexcell: 1\njoints: {home: [0.0, 1.0]}\n"
 

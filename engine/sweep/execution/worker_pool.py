@@ -12,12 +12,12 @@ from types import TracebackType
 from typing import Self
 
 from engine.errors import FlexcellError
-from engine.sweep.configuration import Configuration
-from engine.sweep.subject import SweepSubject
-from engine.sweep.trial_execution import ProcessLimits, TrialExecutor
-from engine.sweep.trial_process import TrialProcess
-from engine.sweep.trial_result import TrialResult
-from engine.sweep.worker import WorkerAnswer, WorkerTask
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_execution import ProcessLimits, TrialExecutor
+from engine.sweep.execution.trial_process import TrialProcess
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.execution.worker import WorkerAnswer, WorkerTask
+from engine.sweep.subject.sweep_subject import SweepSubject
 
 
 @dataclass(frozen=True, kw_only=True)

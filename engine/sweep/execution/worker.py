@@ -14,12 +14,12 @@ import msgspec
 from engine.document.sweep import parse_sweep
 from engine.errors import DocumentError, FlexcellError
 from engine.host.child_process import set_parent_death_signal
-from engine.sweep.configuration import Configuration
-from engine.sweep.subject import SweepSubject, other_versions
-from engine.sweep.trial import Trials
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial import Trials
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.subject.sweep_subject import SweepSubject, other_versions
 
-CODE = "import sys; from engine.sweep.worker import main; main(int(sys.argv[1]))"
+CODE = "import sys; from engine.sweep.execution.worker import main; main(int(sys.argv[1]))"
 """The program of the process; its argument is the number of its socket."""
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.document.sweep import Sweep, parse_sweep
 from engine.errors import DocumentError
-from engine.sweep.design import configurations, run_seed
+from engine.sweep.design.designs import configurations, run_seed
 
 HEAD = "flexcell: 1\nbehavior: b.yaml\n"
 TWO = "factors:\n  parameters.a: {uniform: [0, 1]}\n  parameters.b: {values: [x, y]}\n"

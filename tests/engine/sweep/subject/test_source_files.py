@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.sweep.source_files import SourceFile, with_imports
+from engine.sweep.subject.source_files import SourceFile, with_imports
 
 FILES = {
     "cell/__init__.py": "",

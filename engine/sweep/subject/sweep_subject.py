@@ -31,11 +31,11 @@ from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan, new_plan
 from engine.suggestions import did_you_mean
-from engine.sweep.cell_files import model_files
-from engine.sweep.cell_variation import varied_cell, written_value
-from engine.sweep.distributions import nominal
-from engine.sweep.source_files import SourceFile, with_imports
-from engine.sweep.store_copy import entries_hash
+from engine.sweep.design.distributions import nominal
+from engine.sweep.subject.cell_files import model_files
+from engine.sweep.subject.cell_variation import varied_cell, written_value
+from engine.sweep.subject.source_files import SourceFile, with_imports
+from engine.sweep.subject.store_copy import entries_hash
 
 _PACKAGE = "flexcell"
 _HASH = 64

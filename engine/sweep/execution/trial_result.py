@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Literal
 
 import msgspec
 
-from engine.sweep.configuration import Configuration
+from engine.errors import FlexcellError
+from engine.suggestions import did_you_mean
+from engine.sweep.design.configuration import Configuration
 
 _NUMBERS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
 TrialStatus = Literal["finished", "stopped", "errored", "refused", "crashed", "hung"]
@@ -66,6 +68,15 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
         return self.outcome or self.status
 
     @property
+    def numbers(self) -> dict[str, float]:
+        """What a search goes towards and a requirement limits: userdata at the end, measures and `duration_s`.
+
+        A run whose process ended, or that could not begin, has none.
+        """
+        is_known = self.status == "finished" or self.events > 0
+        return {**self.outputs, **self.measures, **({"duration_s": self.duration_s} if is_known else {})}
+
+    @property
     def cause_key(self) -> tuple[str, str]:
         """What runs that failed alike have in common: the place and message of the root cause without its numbers."""
         return self.reason_at, _NUMBERS.sub("#", self.reason)
@@ -74,3 +85,15 @@ class TrialResult(msgspec.Struct, frozen=True, kw_only=True):
     def broken(self) -> bool:
         """Whether the process failed and not the behavior: another attempt may end differently."""
         return self.status in ("crashed", "hung")
+
+
+def require_number(name: str, results: Iterable[TrialResult], *, where: object) -> None:
+    """Reject a name of a number that none of these runs has, where there are any.
+
+    Raises:
+        FlexcellError: none of them has it; the hint names similar ones.
+    """
+    known = [each.numbers for each in results]
+    if known and not any(name in each for each in known):
+        hint = did_you_mean(name, {other for each in known for other in each})
+        raise FlexcellError(f"no run has a number `{name}`", where=where, hint=hint)

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from engine.errors import FlexcellError
-from engine.sweep.comparison import Comparison, compare_with_baseline
-from engine.sweep.configuration import Configuration
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.results import SweepResults
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.verdict.comparison import Comparison, compare_with_baseline
 
 
 def _results(ends: str, *, first: int = 0) -> list[TrialResult]:

@@ -7,9 +7,9 @@ import random
 import pytest
 
 from engine.document.sweep import SweepDocument
-from engine.sweep.configuration import Configuration
-from engine.sweep.success_count import SuccessCount
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.verdict.success_count import SuccessCount
 
 
 def _document(**keys: object) -> SweepDocument:

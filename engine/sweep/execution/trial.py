@@ -23,12 +23,12 @@ from engine.project.headless_run import CompletedRun, run_headless
 from engine.project.run_request import RunRequest
 from engine.recording import RecordingOptions, collect_documents
 from engine.runtime.history import RunStateChange
-from engine.sweep.cell_variation import varied_cell
-from engine.sweep.configuration import Configuration
-from engine.sweep.store_copy import copied_store
-from engine.sweep.subject import SweepSubject
-from engine.sweep.subject_files import PortableText, subject_root
-from engine.sweep.trial_result import NodeTime, TrialResult, TrialStatus
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import NodeTime, TrialResult, TrialStatus
+from engine.sweep.subject.cell_variation import varied_cell
+from engine.sweep.subject.store_copy import copied_store
+from engine.sweep.subject.subject_files import PortableText, subject_root
+from engine.sweep.subject.sweep_subject import SweepSubject
 
 _KIBIBYTE = 1024
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import msgspec
 
 from engine.errors import FlexcellError
+from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.results import SweepResults
 from engine.sweep.statistics import Interval, RatePair, difference
-from engine.sweep.success_count import Verdict
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.verdict.judged_requirement import Verdict
 
 
 @dataclass(frozen=True, kw_only=True)

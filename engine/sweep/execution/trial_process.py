@@ -14,11 +14,11 @@ from multiprocessing.connection import Connection
 import msgspec
 
 from engine.host.child_process import describe_exit, start_child
-from engine.sweep.configuration import Configuration
-from engine.sweep.trial import ended_process
-from engine.sweep.trial_execution import ProcessLimits
-from engine.sweep.trial_result import TrialResult, TrialStatus
-from engine.sweep.worker import CODE, WorkerAnswer, WorkerTask
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial import ended_process
+from engine.sweep.execution.trial_execution import ProcessLimits
+from engine.sweep.execution.trial_result import TrialResult, TrialStatus
+from engine.sweep.execution.worker import CODE, WorkerAnswer, WorkerTask
 
 _NAME = "the worker of the sweep"
 _MUCH = 0.5

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Protocol, Self
 
-from engine.sweep.configuration import Configuration
-from engine.sweep.subject import SweepSubject
-from engine.sweep.trial_result import TrialResult
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.execution.trial_result import TrialResult
+from engine.sweep.subject.sweep_subject import SweepSubject
 
 DEFAULT_MEMORY_BYTES = 4 * 2**30
 DEFAULT_RUNS_OF_PROCESS = 200

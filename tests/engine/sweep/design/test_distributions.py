@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.document.sweep import Factor, Normal
-from engine.sweep.distributions import levels, nominal, share_of, value_at
+from engine.sweep.design.distributions import levels, nominal, share_of, value_at
 
 SHARES = st.floats(0.001, 0.999)
 CONTINUOUS = st.sampled_from(

@@ -15,8 +15,8 @@ from scipy.stats import qmc
 
 from engine.document.sweep import Factor, PointsFile, Sweep, require_address
 from engine.errors import DocumentError
-from engine.sweep.configuration import Configuration
-from engine.sweep.distributions import levels, value_at
+from engine.sweep.design.configuration import Configuration
+from engine.sweep.design.distributions import levels, value_at
 
 
 def configurations(sweep: Sweep) -> Sequence[Configuration]:

@@ -10,11 +10,11 @@ from pathlib import Path
 import msgspec
 
 from engine.document.behavior import Behavior
-from engine.sweep.cell_files import model_files, model_paths
-from engine.sweep.source_files import SourceFile, with_imports
-from engine.sweep.subject import SweepSubject, importable_folders
+from engine.sweep.subject.cell_files import model_files, model_paths
+from engine.sweep.subject.source_files import SourceFile, with_imports
+from engine.sweep.subject.sweep_subject import SweepSubject, importable_folders
 
-_ENGINE = Path(__file__).resolve().parents[2]
+_ENGINE = Path(__file__).resolve().parents[3]
 
 
 def subject_root(subject: SweepSubject) -> Path:

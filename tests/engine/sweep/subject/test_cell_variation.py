@@ -9,7 +9,7 @@ import pytest
 
 from engine.document.cell import Cell, load_cell
 from engine.errors import DocumentError
-from engine.sweep.cell_variation import varied_cell
+from engine.sweep.subject.cell_variation import varied_cell
 
 CELL = """\
 flexcell: 1
