@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from engine.measures import ARM_MEASURES
 from engine.messages.measures import Measure
 from robots.port import Array
 
@@ -15,14 +16,6 @@ _CELL = (
     Measure(name="contact_force_max_n", unit="N", reduction="largest"),
 )
 _CLEARANCE = Measure(name="clearance_min_m", unit="m", reduction="least")
-_ARM = (
-    Measure(name="path_m", unit="m", reduction="sum"),
-    Measure(name="joint_path_rad", unit="rad", reduction="sum"),
-    Measure(name="speed_max_m_s", unit="m/s", reduction="largest"),
-    Measure(name="tracking_error_max_rad", unit="rad", reduction="largest"),
-    Measure(name="force_max_n", unit="N", reduction="largest"),
-    Measure(name="torque_max_nm", unit="N m", reduction="largest"),
-)
 _TOOL = (
     Measure(name="force_max_n", unit="N", reduction="largest"),
     Measure(name="force_min_n", unit="N", reduction="least"),
@@ -47,7 +40,7 @@ class MeasureLayout:
         self.clearances: dict[str, int] = {}
         self.tools: dict[str, slice] = {}
         for arm, kind in tools.items():
-            self.arms[arm] = _add(measures, arm, _ARM)
+            self.arms[arm] = _add(measures, arm, ARM_MEASURES)
             self.clearances[arm] = _add(measures, arm, (_CLEARANCE,)).start
             if kind is not None:
                 self.tools[arm] = _add(measures, f"{arm}.{kind}", _TOOL)

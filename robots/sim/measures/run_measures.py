@@ -76,7 +76,6 @@ class RunMeasures:
                 control=arm.control,
                 tool_xyz=arm.tool_xyz,
                 steps=self._block_steps,
-                samples=_BLOCK_SAMPLES,
                 sample_s=self._sample_steps * step_s,
             )
             for name, arm in arms.items()
