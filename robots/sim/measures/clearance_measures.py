@@ -25,7 +25,7 @@ _RESOLUTION_M = 0.001
 _FASTER_M_S = 0.1
 
 
-class _Things:
+class _FollowedPair:
     """Two things whose distance is followed."""
 
     def __init__(self, pair: ThingPair) -> None:
@@ -75,7 +75,7 @@ class ClearanceMeasures:
         pairs = ClearancePairs(cell, physics)
         self._first, self._second, self._starts = pairs.first, pairs.second, pairs.starts
         self._geoms = list(zip(pairs.first.tolist(), pairs.second.tolist(), strict=True))
-        self._things = [_Things(pair) for pair in pairs.things]
+        self._things = [_FollowedPair(pair) for pair in pairs.things]
         self._least = {arm: LIMIT_M for arm in arms if any(arm in pair.arms for pair in pairs.things)}
         self._bounds = np.zeros(len(pairs.first))
         self._levels = np.zeros(len(self._things))
@@ -157,7 +157,7 @@ class ClearanceMeasures:
         self._looked = step
         return moved_m / passed_s if passed_s else 0.0
 
-    def _measure(self, things: _Things, reach_m: float) -> float:
+    def _measure(self, things: _FollowedPair, reach_m: float) -> float:
         """Measure a distance, and return how far one of the two may move until the next time."""
         bounds, distance_m = self._bounds, math.inf
         start, end = things.pair.start, things.pair.end
@@ -173,30 +173,36 @@ class ClearanceMeasures:
                 self._least[arm] = min(self._least[arm], counts_m)
         return max(distance_m - least_m, _SHARE * distance_m, _RESOLUTION_M)
 
-    def _followed(self, things: _Things, approach: Approach, distance_m: float) -> float:
+    def _followed(self, things: _FollowedPair, approach: Approach, distance_m: float) -> float:
         """Return the distance at which two things have passed each other by now."""
-        passed_m = math.inf
-        if things.measured < self._looks - 1:
-            # It was not measured because it was larger than this.
-            least_m = max(self._least[arm] for arm in things.owners)
-            lasting_m = approach.lasting_m if approach.lasting_m < math.inf else least_m
-            passed_m = approach.follow(max(least_m, lasting_m) + APART_M)
-        things.measured = self._looks
-        lasting_m = approach.lasting_m
+        passed_m = self._unmeasured(things, approach) if things.measured < self._looks - 1 else math.inf
+        things.measured, lasting_m = self._looks, approach.lasting_m
         passed_m = min(passed_m, approach.follow(distance_m))
         self._changed |= approach.lasting_m != lasting_m
         return passed_m
 
+    def _unmeasured(self, things: _FollowedPair, approach: Approach) -> float:
+        """Follow an approach while its distance was not measured, because it was larger than this."""
+        least_m = max([self._least[arm] for arm in things.owners])
+        lasting_m = approach.lasting_m if approach.lasting_m < math.inf else least_m
+        return approach.follow(max(least_m, lasting_m) + APART_M)
+
     def _change_owners(self, grasps: frozenset[tuple[str, int]]) -> None:
         self._grasps = grasps
         for things in self._things:
-            owners = _owners(things.pair, grasps)
-            if things.approach is not None and owners != things.owners:
-                if not owners or not things.owners:
-                    things.approach.restart()
-                    things.measured = self._looks
-                things.owners = owners
+            approach, owners = things.approach, _owners(things.pair, grasps)
+            if approach is None or owners == things.owners:
+                continue
+            if things.owners and things.measured < self._looks:
+                passed_m = self._unmeasured(things, approach)
+                for arm in things.owners:
+                    self._least[arm] = min(self._least[arm], passed_m)
+            if not owners or not things.owners:
+                approach.restart()
+                things.measured = self._looks
+            things.owners = owners
         self._set_levels()
+        self._write()
 
     def _set_levels(self) -> None:
         self._changed = False

@@ -73,6 +73,8 @@ class ContactMeasures:
         self._jumped = False
         self.pressing = False
         """Whether something was touched in the last step that was looked at that is no grasp."""
+        self.touched = False
+        """Whether something began to be touched in that step."""
         self.handled: frozenset[str] = frozenset()
         """The arms whose tools touched a part in the last step that was looked at."""
         self.grasps: frozenset[tuple[str, int]] = frozenset()
@@ -82,7 +84,7 @@ class ContactMeasures:
         """Look at the contacts of the step just done, which has this number."""
         geoms = self._physics.contact_geoms()
         pairs = self._pairs[geoms[:, 0], geoms[:, 1]] if len(geoms) else _NONE
-        self.pressing = False
+        self.pressing = self.touched = False
         handled: list[str] = []
         for pair in sorted(set(pairs.tolist())):
             if pair:
@@ -107,7 +109,8 @@ class ContactMeasures:
         """Begin again after the world has jumped to another state."""
         self._open.clear()
         self._jumped = True
-        self._looked, self.pressing, self.handled, self.grasps = step, False, frozenset(), frozenset()
+        self._looked, self.pressing, self.touched = step, False, False
+        self.handled, self.grasps = frozenset(), frozenset()
 
     def _take(self, step: int, pair: int, pairs: NDArray[np.intp], handled: list[str]) -> None:
         contact = self._open.get(pair)
@@ -121,6 +124,7 @@ class ContactMeasures:
             contact.grasp = contact.grasp or self._jumped or self._moving[arm]()
         if not contact.grasp:
             self.pressing = True
+            self.touched |= contact.steps == 1
             points = (pairs == pair).nonzero()[0].tolist()
             contact.force_n = max(contact.force_n, sum(map(self._physics.normal_force_n, points)))
 

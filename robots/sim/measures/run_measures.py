@@ -121,9 +121,8 @@ class RunMeasures:
         sampled = not step % self._sample_steps
         if sampled or contacts.pressing or count != self._contact_count:
             self._contact_count = count
-            pressing = contacts.pressing
             contacts.look(step)
-            if contacts.pressing and not pressing:
+            if contacts.touched:
                 # A touch is no clearance, however short it was.
                 self._clearance.due = step
         if sampled:

@@ -146,6 +146,9 @@ def test_a_held_part_that_passes_a_post_has_the_clearance_of_its_arm() -> None:
     go(arm, LIFTED, 0.8, motion=3)
     assert clearance(arm) == pytest.approx(0.022 - TIP_M, abs=1e-3)
     go(arm, LIFTED + 0.6 * FIRST_JOINT, 1.0, motion=4)
+    # Nor does it count as set down when the fingers open above the other side of the table.
+    move_tool(arm, OPEN, motion=11)
+    arm.run(0.2)
     assert clearance(arm) == pytest.approx(0.005, abs=0.001)
 
 
