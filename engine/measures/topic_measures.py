@@ -33,7 +33,7 @@ class TopicMeasures:
     What is not published is missing. Set points are on no topic: there is no tracking error.
 
     Args:
-        arms: The arms; None for all that have a description.
+        arms: The arms; None for all that publish more than a wrench.
     """
 
     def __init__(self, arms: Collection[str] | None = None) -> None:
@@ -104,7 +104,7 @@ class _Arm:
     def __init__(self) -> None:
         self.sums = ArmSums()
         self.known = False
-        """Whether it has a description: other devices have a status too."""
+        """Whether it is an arm: a force sensor has a wrench, too."""
         self._tool_frame = ""
         self._tool_xyz_m: Vector3 = (0.0, 0.0, 0.0)
         self._moved_s = self._turned_s = -math.inf
@@ -115,12 +115,14 @@ class _Arm:
 
     def tool_centre(self, tool_xyz_m: Vector3) -> None:
         """Take note of where the tool centre point is in that frame; another one is no movement."""
+        self.known = True
         if tool_xyz_m != self._tool_xyz_m:
             self._tool_xyz_m = tool_xyz_m
             self.sums.leave_tool()
 
     def joints(self, state: JointState) -> None:
         """Take a sample of the joints, if it is due."""
+        self.known = True
         if state.time_s < self._turned_s:
             # The clock of the device began again: it was connected again.
             self.sums.leave()
