@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from robots.port import Array
-from robots.sim.measures.approach import APART_M, Approach
 from robots.sim.measures.clearance_kernels import least_row, take_moved
 from robots.sim.measures.clearance_pairs import ClearancePairs, ThingPair
+from robots.sim.measures.passing_distance import APART_M, PassingDistance
 from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.physics import Physics
 
@@ -25,12 +25,12 @@ _RESOLUTION_M = 0.001
 _FASTER_M_S = 0.1
 
 
-class _FollowedPair:
+class _PairDistance:
     """Two things whose distance is followed."""
 
     def __init__(self, pair: ThingPair) -> None:
         self.pair = pair
-        self.approach = Approach() if pair.parts else None
+        self.passing = PassingDistance() if pair.parts else None
         self.owners: tuple[str, ...] = ()
         """The arms that this distance is a clearance of; empty while it is none."""
         self.measured = 0
@@ -44,7 +44,7 @@ class ClearanceMeasures:
     so far the distance is measured, by MuJoCo, as it measures contacts; it is the next bound. When to look
     again follows from how near and how fast things are, so that the least distance is met within a few percent.
 
-    Two things of which one is a part may be meant to meet, see `Approach`; a part counts while a tool holds it, and
+    Two things of which one is a part may be meant to meet, see `PassingDistance`. A part counts while a tool holds it;
     its arm and it are no obstacles to each other then.
 
     Args:
@@ -75,7 +75,7 @@ class ClearanceMeasures:
         pairs = ClearancePairs(cell, physics)
         self._first, self._second, self._starts = pairs.first, pairs.second, pairs.starts
         self._geoms = list(zip(pairs.first.tolist(), pairs.second.tolist(), strict=True))
-        self._things = [_FollowedPair(pair) for pair in pairs.things]
+        self._things = [_PairDistance(pair) for pair in pairs.things]
         self._least = {arm: LIMIT_M for arm in arms if any(arm in pair.arms for pair in pairs.things)}
         self._bounds = np.zeros(len(pairs.first))
         self._levels = np.zeros(len(self._things))
@@ -98,8 +98,8 @@ class ClearanceMeasures:
         self._grasps = frozenset()
         for things in self._things:
             things.owners = _owners(things.pair, self._grasps)
-            if things.approach is not None:
-                things.approach.restart()
+            if things.passing is not None:
+                things.passing.restart()
                 things.measured = self._looks
         xyz, radii, first, second = self._physics.geom_centres, self._physics.geom_radii, self._first, self._second
         self._bounds[:] = np.sqrt(np.square(xyz[first] - xyz[second]).sum(axis=1)) - radii[first] - radii[second]
@@ -132,9 +132,9 @@ class ClearanceMeasures:
         """Return the clearances by their place among the measures, approaches that still last included."""
         least = dict(self._least)
         for things in self._things:
-            if things.approach is not None:
+            if things.passing is not None:
                 for arm in things.owners:
-                    least[arm] = min(least[arm], things.approach.lasting_m)
+                    least[arm] = min(least[arm], things.passing.lasting_m)
         return self._places(least)
 
     def _lower_bounds(self, step: int) -> float:
@@ -157,7 +157,7 @@ class ClearanceMeasures:
         self._looked = step
         return moved_m / passed_s if passed_s else 0.0
 
-    def _measure(self, things: _FollowedPair, reach_m: float) -> float:
+    def _measure(self, things: _PairDistance, reach_m: float) -> float:
         """Measure a distance, and return how far one of the two may move until the next time."""
         bounds, distance_m = self._bounds, math.inf
         start, end = things.pair.start, things.pair.end
@@ -166,39 +166,39 @@ class ClearanceMeasures:
             distance_m = min(distance_m, measured_m)
         owners = things.owners
         least_m = min([self._least[arm] for arm in owners])
-        counts_m = distance_m if things.approach is None else self._followed(things, things.approach, distance_m)
+        counts_m = distance_m if things.passing is None else self._passed_at(things, things.passing, distance_m)
         if counts_m < max([self._least[arm] for arm in owners]):
             self._changed = True
             for arm in owners:
                 self._least[arm] = min(self._least[arm], counts_m)
         return max(distance_m - least_m, _SHARE * distance_m, _RESOLUTION_M)
 
-    def _followed(self, things: _FollowedPair, approach: Approach, distance_m: float) -> float:
+    def _passed_at(self, things: _PairDistance, passing: PassingDistance, distance_m: float) -> float:
         """Return the distance at which two things have passed each other by now."""
-        passed_m = self._unmeasured(things, approach) if things.measured < self._looks - 1 else math.inf
-        things.measured, lasting_m = self._looks, approach.lasting_m
-        passed_m = min(passed_m, approach.follow(distance_m))
-        self._changed |= approach.lasting_m != lasting_m
+        passed_m = self._unmeasured(things, passing) if things.measured < self._looks - 1 else math.inf
+        things.measured, lasting_m = self._looks, passing.lasting_m
+        passed_m = min(passed_m, passing.follow(distance_m))
+        self._changed |= passing.lasting_m != lasting_m
         return passed_m
 
-    def _unmeasured(self, things: _FollowedPair, approach: Approach) -> float:
+    def _unmeasured(self, things: _PairDistance, passing: PassingDistance) -> float:
         """Follow an approach while its distance was not measured, because it was larger than this."""
         least_m = max([self._least[arm] for arm in things.owners])
-        lasting_m = approach.lasting_m if approach.lasting_m < math.inf else least_m
-        return approach.follow(max(least_m, lasting_m) + APART_M)
+        lasting_m = passing.lasting_m if passing.lasting_m < math.inf else least_m
+        return passing.follow(max(least_m, lasting_m) + APART_M)
 
     def _change_owners(self, grasps: frozenset[tuple[str, int]]) -> None:
         self._grasps = grasps
         for things in self._things:
-            approach, owners = things.approach, _owners(things.pair, grasps)
-            if approach is None or owners == things.owners:
+            passing, owners = things.passing, _owners(things.pair, grasps)
+            if passing is None or owners == things.owners:
                 continue
             if things.owners and things.measured < self._looks:
-                passed_m = self._unmeasured(things, approach)
+                passed_m = self._unmeasured(things, passing)
                 for arm in things.owners:
                     self._least[arm] = min(self._least[arm], passed_m)
             if not owners or not things.owners:
-                approach.restart()
+                passing.restart()
                 things.measured = self._looks
             things.owners = owners
         self._set_levels()
@@ -208,8 +208,8 @@ class ClearanceMeasures:
         self._changed = False
         for index, things in enumerate(self._things):
             level = max((self._least[arm] for arm in things.owners), default=-math.inf)
-            if things.approach is not None and things.owners and things.approach.lasting_m < math.inf:
-                level = max(level, things.approach.lasting_m)
+            if things.passing is not None and things.owners and things.passing.lasting_m < math.inf:
+                level = max(level, things.passing.lasting_m)
             self._levels[index] = level
 
     def _write(self) -> None:

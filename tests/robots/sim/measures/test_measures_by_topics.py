@@ -33,7 +33,7 @@ def description() -> RobotDescription:
 
 
 @pytest.mark.virtual
-async def test_topics_tell_what_the_world_sums_up() -> None:
+async def test_topics_have_what_the_world_sums_up() -> None:
     """Within the rate of the topics: 30 Hz for the tool, 25 ms for the joints, and forces as often as published."""
     bus, by_topics = SkillBus(new_clock()), TopicMeasures()
     async with opened(one_arm()) as world:

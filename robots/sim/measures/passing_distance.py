@@ -8,7 +8,7 @@ APART_M = 0.01
 """Two things have passed each other when they are so much farther apart than at their nearest."""
 
 
-class Approach:
+class PassingDistance:
     """Follows the distance of a tool and a part, or of a held part and another thing.
 
     It decreases to nothing before a grasp, and increases from nothing when a part is lifted: only a least distance

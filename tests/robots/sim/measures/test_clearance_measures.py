@@ -12,8 +12,8 @@ from engine.messages import Pose, Vector3
 from robots.port import Array
 from robots.scene.sim_scene import FixtureBody, SimScene
 from robots.sim.commands.world_commands import MoveTool, RestoreWorld
-from robots.sim.measures.approach import Approach
 from robots.sim.measures.clearance_measures import LIMIT_M
+from robots.sim.measures.passing_distance import PassingDistance
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.sim_cell import ABOVE_PART, AT_PART, LEFT, LIFTED, PART_XYZ, RIGHT, TABLE, box, one_arm
 from tests.robots.sim.stepped import SteppedArm
@@ -188,9 +188,9 @@ def test_an_arm_alone_has_no_clearance() -> None:
 
 
 def passed(*distances_m: float) -> list[float]:
-    """Return where an approach says that two things passed each other."""
-    approach = Approach()
-    return [passed_m for each in distances_m if (passed_m := approach.follow(each)) < math.inf]
+    """Return the distances at which two things passed each other."""
+    passing = PassingDistance()
+    return [passed_m for each in distances_m if (passed_m := passing.follow(each)) < math.inf]
 
 
 def test_only_a_least_distance_between_two_larger_ones_is_passed() -> None:
