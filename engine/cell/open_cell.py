@@ -20,6 +20,7 @@ from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries_document import load_entries
 from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
+from engine.measures import TopicMeasures
 from engine.preemption import OverduePolicy, preempt
 from engine.registry import DRIVERS, WORLDS, load_factory
 from engine.robot import MeasurePort, Robot, World
@@ -59,6 +60,7 @@ class OpenCell:
         self.store: Store | None = None
         self.robots: Mapping[str, Robot] = {}
         self._world: World | None = None
+        self._real_arms = TopicMeasures(())
         self._store_path = store_path
         self.relay = relay
         self._stack = AsyncExitStack()
@@ -144,18 +146,16 @@ class OpenCell:
     def measures(self) -> dict[str, float]:
         """Return what the devices have summed up since the cell was opened, by name as in `engine.messages.measures`.
 
+        Arms that are not simulated and sum up nothing themselves have what their topics tell.
+
         Raises:
             RobotError: a device is not connected.
         """
         devices: tuple[Robot, ...] = tuple(self.robots.values())
         if self._world is not None:
             devices += (self._world,)
-        return {
-            name: value
-            for device in devices
-            if isinstance(device, MeasurePort)
-            for name, value in device.measures().items()
-        }
+        ports = (self._real_arms, *(device for device in devices if isinstance(device, MeasurePort)))
+        return {name: value for port in ports for name, value in port.measures().items()}
 
     async def snapshot(self) -> bytes | None:
         """Return a snapshot of the world for `restore`; None without a world."""
@@ -235,6 +235,10 @@ class OpenCell:
             robots[name] = robot
             self._connections.follow(robot)
         self.robots = robots
+        real = frozenset(name for name, entry in cell.document.robots.items() if not entry.simulated)
+        if real:
+            self._real_arms = TopicMeasures(real)
+            self._stack.callback(self._real_arms.listen(self.bus))
 
     def _new_robot(self, cell: Cell, name: str, kind: str) -> Robot:
         maker: NewRobot = load_factory(DRIVERS, kind)

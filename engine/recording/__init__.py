@@ -13,6 +13,7 @@ from engine.recording.recorded_documents import (
     recorded_behavior,
     recorded_substitutes,
 )
+from engine.recording.recorded_measures import recorded_measures
 from engine.recording.recording import RecordedEvent, Recording, load_recording
 from engine.recording.run_recording import DEFAULT_RATE_HZ, RecordingOptions, RunRecording
 
@@ -29,6 +30,7 @@ __all__ = [
     "load_recording",
     "part_file",
     "recorded_behavior",
+    "recorded_measures",
     "recorded_substitutes",
     "recovered_file",
 ]

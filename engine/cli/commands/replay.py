@@ -15,7 +15,7 @@ from engine.cli.output.junit import JunitCase, JunitProblem, JunitSuite, class_n
 from engine.cli.output.output_file import prepare
 from engine.document import load_behavior
 from engine.errors import FlexcellError
-from engine.recording import Recording, load_recording
+from engine.recording import Recording, load_recording, recorded_measures
 from engine.recording.recorded_run import read_run
 from engine.registry import load_states
 from engine.replay import ReplayDifference, ReplayReport, recording_from_journal
@@ -51,7 +51,7 @@ def replay(
     if junit is not None:
         write_junit(junit, [_suite(*each) for each in zip(recordings, results, strict=True)])
     if json:
-        _print_json(recordings, results)
+        _print_json(recordings, results, from_files=journal is None)
     else:
         for name, result in zip(recordings, results, strict=True):
             sys.stderr.writelines(f"{line}\n" for line in _lines(name, result))
@@ -95,15 +95,17 @@ def _lines(name: str, result: ReplayReport | FlexcellError) -> Iterator[str]:
         yield f"  after {line}"
 
 
-def _print_json(names: list[str], results: list[ReplayReport | FlexcellError]) -> None:
-    rows = [_row(name, result) for name, result in zip(names, results, strict=True)]
+def _print_json(names: list[str], results: list[ReplayReport | FlexcellError], *, from_files: bool) -> None:
+    rows = [_row(name, result, from_file=from_files) for name, result in zip(names, results, strict=True)]
     sys.stdout.write(msgspec.json.encode({"replays": rows}).decode() + "\n")
 
 
-def _row(name: str, result: ReplayReport | FlexcellError) -> dict[str, object]:
+def _row(name: str, result: ReplayReport | FlexcellError, *, from_file: bool) -> dict[str, object]:
     if isinstance(result, FlexcellError):
         return {"recording": name, "status": "unusable", "error": str(result)}
     description = result.recording.description
+    # A journal has no topics.
+    measures = recorded_measures(result.recording.path) if from_file else {}
     return {
         "recording": name,
         "status": "same" if result.same else "differs",
@@ -113,6 +115,7 @@ def _row(name: str, result: ReplayReport | FlexcellError) -> dict[str, object]:
         "complete": result.recording.complete,
         "difference": _difference(result.difference),
         "duration_s": round(result.duration_s, 6),
+        **({"measures": measures} if measures else {}),
     }
 
 

@@ -24,8 +24,8 @@ _NONE = np.zeros(0, dtype=np.intp)
 class _Contact:
     """Two things that touch."""
 
-    handler: str | None
-    """The arm whose tool touches a part here."""
+    handler: tuple[str, int] | None
+    """The arm whose tool touches a part here, and the body of the part."""
     last: int = -1
     """The last step in which they were seen to touch."""
     steps: int = 0
@@ -39,6 +39,7 @@ class ContactMeasures:
     A contact is between an arm with its tool and anything else: a part, a fixture, a person, another arm. Parts on
     fixtures and on parts rest there. A tool that touches a part while its fingers move, or its field changes, takes or
     releases it: from their first touch until they separate this is a grasp. Another touch of a part is a contact.
+    A part that a tool touches when the world jumps to another state is held in it.
 
     Args:
         values: Where the measures are kept, in the order of `MeasureLayout`.
@@ -69,16 +70,21 @@ class ContactMeasures:
         self._moving = moving
         self._open: dict[int, _Contact] = {}
         self._looked = 0
+        self._jumped = False
         self.pressing = False
         """Whether something was touched in the last step that was looked at that is no grasp."""
+        self.touched = False
+        """Whether something began to be touched in that step."""
         self.handled: frozenset[str] = frozenset()
         """The arms whose tools touched a part in the last step that was looked at."""
+        self.grasps: frozenset[tuple[str, int]] = frozenset()
+        """Each arm and the part that its tool takes, holds or releases, by its body."""
 
     def look(self, step: int) -> None:
         """Look at the contacts of the step just done, which has this number."""
         geoms = self._physics.contact_geoms()
         pairs = self._pairs[geoms[:, 0], geoms[:, 1]] if len(geoms) else _NONE
-        self.pressing = False
+        self.pressing = self.touched = False
         handled: list[str] = []
         for pair in sorted(set(pairs.tolist())):
             if pair:
@@ -86,7 +92,9 @@ class ContactMeasures:
         self.handled = frozenset(handled)
         if self._open:
             self._close(step)
-        self._looked = step
+        grasps = [contact.handler for contact in self._open.values() if contact.grasp and contact.handler is not None]
+        self.grasps = frozenset(grasps)
+        self._looked, self._jumped = step, False
 
     def totals(self) -> tuple[float, float, float]:
         """Return number, duration and largest force, those of contacts that still last included."""
@@ -100,7 +108,9 @@ class ContactMeasures:
     def restart(self, step: int) -> None:
         """Begin again after the world has jumped to another state."""
         self._open.clear()
-        self._looked, self.pressing, self.handled = step, False, frozenset()
+        self._jumped = True
+        self._looked, self.pressing, self.touched = step, False, False
+        self.handled, self.grasps = frozenset(), frozenset()
 
     def _take(self, step: int, pair: int, pairs: NDArray[np.intp], handled: list[str]) -> None:
         contact = self._open.get(pair)
@@ -109,10 +119,12 @@ class ContactMeasures:
         contact.steps += step - self._looked if contact.last == self._looked else 1
         contact.last = step
         if contact.handler is not None:
-            handled.append(contact.handler)
-            contact.grasp = contact.grasp or self._moving[contact.handler]()
+            arm, _ = contact.handler
+            handled.append(arm)
+            contact.grasp = contact.grasp or self._jumped or self._moving[arm]()
         if not contact.grasp:
             self.pressing = True
+            self.touched |= contact.steps == 1
             points = (pairs == pair).nonzero()[0].tolist()
             contact.force_n = max(contact.force_n, sum(map(self._physics.normal_force_n, points)))
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from engine.measures import ARM_MEASURES
 from engine.messages.measures import Measure
 from robots.port import Array
 
@@ -14,14 +15,7 @@ _CELL = (
     Measure(name="contact_s", unit="s", reduction="sum"),
     Measure(name="contact_force_max_n", unit="N", reduction="largest"),
 )
-_ARM = (
-    Measure(name="path_m", unit="m", reduction="sum"),
-    Measure(name="joint_path_rad", unit="rad", reduction="sum"),
-    Measure(name="speed_max_m_s", unit="m/s", reduction="largest"),
-    Measure(name="tracking_error_max_rad", unit="rad", reduction="largest"),
-    Measure(name="force_max_n", unit="N", reduction="largest"),
-    Measure(name="torque_max_nm", unit="N m", reduction="largest"),
-)
+_CLEARANCE = Measure(name="clearance_min_m", unit="m", reduction="least")
 _TOOL = (
     Measure(name="force_max_n", unit="N", reduction="largest"),
     Measure(name="force_min_n", unit="N", reduction="least"),
@@ -32,7 +26,7 @@ _TOOL = (
 class MeasureLayout:
     """The measures of a world in one array: those of the cell, then of each arm and of its tool.
 
-    NaN is what a run has nothing of: the grip force where nothing was held.
+    NaN is what a run has nothing of: the grip force where nothing was held, the clearance of what nothing can touch.
 
     Args:
         tools: The kind of tool of each arm, None for a bare flange.
@@ -40,11 +34,14 @@ class MeasureLayout:
 
     def __init__(self, tools: Mapping[str, str | None]) -> None:
         measures: list[Measure] = []
-        self.cell = _add(measures, "cell", _CELL)
+        self.contacts = _add(measures, "cell", _CELL)
+        self.cell_clearance = _add(measures, "cell", (_CLEARANCE,)).start
         self.arms: dict[str, slice] = {}
+        self.clearances: dict[str, int] = {}
         self.tools: dict[str, slice] = {}
         for arm, kind in tools.items():
-            self.arms[arm] = _add(measures, arm, _ARM)
+            self.arms[arm] = _add(measures, arm, ARM_MEASURES)
+            self.clearances[arm] = _add(measures, arm, (_CLEARANCE,)).start
             if kind is not None:
                 self.tools[arm] = _add(measures, f"{arm}.{kind}", _TOOL)
         self.measures = tuple(measures)
@@ -55,6 +52,7 @@ class MeasureLayout:
         values = np.zeros(self.size)
         for tool in self.tools.values():
             values[tool] = np.nan
+        values[[self.cell_clearance, *self.clearances.values()]] = np.nan
         return values
 
     def read(self, values: Array) -> dict[str, float]:

@@ -10,6 +10,7 @@ from robots.port import Array
 from robots.sim.grip.mechanics import ToolMechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.measures.arm_measures import ArmMeasures
+from robots.sim.measures.clearance_measures import ClearanceMeasures
 from robots.sim.measures.contact_measures import ContactMeasures
 from robots.sim.measures.measure_layout import MeasureLayout
 from robots.sim.measures.tool_measures import ToolMeasures
@@ -61,7 +62,7 @@ class RunMeasures:
             {name: summary.kind if summary is not None else None for name, summary in summaries.items()}
         )
         self.summed_up = self._values = layout.new_values()
-        """The values as of the last block, contacts as of their ends; always the same array."""
+        """The values as of the last block, contacts and approaches as of their ends; always the same array."""
         self._physics = physics
         self._step_s = step_s
         self._sample_steps = max(1, round(_SAMPLE_S / step_s))
@@ -75,7 +76,6 @@ class RunMeasures:
                 control=arm.control,
                 tool_xyz=arm.tool_xyz,
                 steps=self._block_steps,
-                samples=_BLOCK_SAMPLES,
                 sample_s=self._sample_steps * step_s,
             )
             for name, arm in arms.items()
@@ -95,11 +95,19 @@ class RunMeasures:
             if (summary := summaries[name]) is not None
         }
         self._contacts = ContactMeasures(
-            self._values[layout.cell],
+            self._values[layout.contacts],
             cell=cell,
             physics=physics,
             beyond_flange={name: arm.beyond_flange for name, arm in arms.items()},
             moving={name: _moving(tool) for name, tool in tools.items()},
+            step_s=step_s,
+        )
+        self._clearance = ClearanceMeasures(
+            self._values,
+            arms=layout.clearances,
+            cell_value=layout.cell_clearance,
+            cell=cell,
+            physics=physics,
             step_s=step_s,
         )
 
@@ -114,9 +122,14 @@ class RunMeasures:
         if sampled or contacts.pressing or count != self._contact_count:
             self._contact_count = count
             contacts.look(step)
+            if contacts.touched:
+                # A touch is no clearance, however short it was.
+                self._clearance.due = step
         if sampled:
             for arm in self._arms:
                 arm.sample()
+        if step >= self._clearance.due:
+            self._clearance.look(step, contacts.grasps)
         if not step % self._grip_steps:
             self._look_at_grips(step)
         if self._row == self._block_steps:
@@ -126,7 +139,9 @@ class RunMeasures:
         """Return the values until now, (`layout.size`,)."""
         self._reduce()
         values = self._values.copy()
-        values[self.layout.cell] = self._contacts.totals()
+        values[self.layout.contacts] = self._contacts.totals()
+        for place, clearance_m in self._clearance.totals().items():
+            values[place] = clearance_m
         return values
 
     def restart(self, step: int) -> None:
@@ -138,6 +153,7 @@ class RunMeasures:
         for tool in self._tools.values():
             tool.let_go()
         self._contacts.restart(step)
+        self._clearance.restart(step)
 
     def _look_at_grips(self, step: int) -> None:
         handled = self._contacts.handled

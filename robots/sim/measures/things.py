@@ -44,12 +44,11 @@ class Things:
         codes = np.minimum(numbers[:, None], numbers) * count + np.maximum(numbers[:, None], numbers)
         return np.where((robots[:, None] | robots) & (numbers[:, None] != numbers), codes, 0)
 
-    def handler(self, pair: int) -> str | None:
-        """Return the arm whose tool touches a part, if that is what a pair of things is."""
+    def handler(self, pair: int) -> tuple[str, int] | None:
+        """Return the arm whose tool touches a part, and the body of the part, if that is what a pair of things is."""
         first, second = divmod(pair, len(self.of_body))
-        if second in self._parts:
-            return self._tools.get(first)
-        return self._tools.get(second) if first in self._parts else None
+        tool, part = (first, second) if second in self._parts else (second, first)
+        return (self._tools[tool], part) if part in self._parts and tool in self._tools else None
 
     def _join(self, bodies: frozenset[int]) -> int:
         thing = min(bodies)

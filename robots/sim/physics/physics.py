@@ -18,6 +18,9 @@ from robots.sim.physics.mujoco_library import load_mujoco
 
 mujoco: Any = load_mujoco()
 
+# Distances are measured up to this one.
+_FAR_M = 100.0
+
 
 class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
@@ -26,6 +29,9 @@ class Physics:
     `bias` is gravity and Coriolis force at the state read by `start_step`. `pull` is the torque in the last
     step besides motors, bias and joint dampers: the external torque,
     as measured by joint torque sensors and a model of the arm.
+
+    `geom_centres` (n, 3) and `geom_rotations` (n, 9), row by row, are the poses of the geometries at the start of the
+    last step, and `geom_radii` (n,) the radii of the spheres around their centres that contain them.
     """
 
     def __init__(self, model: Any) -> None:
@@ -55,6 +61,9 @@ class Physics:
         self._tree_centres: Array = self._data.subtree_com
         self._pushes: Array = self._data.xfrc_applied
         self._roots: list[int] = model.body_rootid.tolist()
+        self.geom_centres: Array = self._data.geom_xpos
+        self.geom_rotations: Array = self._data.geom_xmat
+        self.geom_radii: Array = model.geom_rbound.copy()
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -156,6 +165,24 @@ class Physics:
     def geom_position(self, geom: int) -> Array:
         """Return the centre of a geometry in the world, (3,)."""
         return self._data.geom_xpos[geom]
+
+    def distance_m(self, first: int, second: int) -> float:
+        """Return the distance of two geometries at the start of the last step, negative where they overlap."""
+        return mujoco.mj_geomDistance(self._model, self._data, first, second, _FAR_M, None)
+
+    def collidable_pairs(self) -> NDArray[np.intp]:
+        """Return all pairs of geometries between which there can be contacts and whose distance can change, (n, 2)."""
+        model = self._model
+        first, second = np.triu_indices(model.ngeom, k=1)
+        kinds, partners, body = model.geom_contype, model.geom_conaffinity, model.geom_bodyid.astype(np.intp)
+        touching = ((kinds[first] & partners[second]) | (kinds[second] & partners[first])).astype(np.bool_)
+        # Bodies without a joint between them are one.
+        welded = model.body_weldid[body]
+        touching &= welded[first] != welded[second]
+        low, high = np.minimum(body[first], body[second]), np.maximum(body[first], body[second])
+        excluded = np.sort(np.stack((model.exclude_signature >> 16, model.exclude_signature & 0xFFFF), axis=1), axis=1)
+        touching &= ~np.isin(low * model.nbody + high, excluded @ (model.nbody, 1))
+        return np.stack((first[touching], second[touching]), axis=1)
 
     def geom_distance(self, geom: int, point: Array) -> float:
         """Return a lower bound of the distance from a point (world) to a geometry: to its bounding sphere."""

@@ -11,6 +11,7 @@ import pytest
 from engine.journal import list_runs
 from tests.engine.cli.command import CommandOutput, flexcell
 
+RECORDINGS = Path(__file__).parents[3] / "replay"
 WAIT = """
 flexcell: 1
 name: wait
@@ -82,6 +83,14 @@ def test_json_and_junit_report_all_of_several(project: Path) -> None:
     properties = {each.get("name"): each.get("value") for each in suites.iter("property")}
     assert properties["run"] == differs["run"]
     assert len(properties["document_sha256"] or "") == 64
+
+
+def test_json_has_the_measures_of_recorded_arms(tmp_path: Path) -> None:
+    """Of this one, only joints and frames were recorded, without a description that names the frame of the tool."""
+    said = flexcell("replay", RECORDINGS / "test_cylinder.mcap", "--json", cwd=tmp_path)
+    (row,) = json.loads(said.out)["replays"]
+    assert set(row["measures"]) == {"arm.joint_path_rad"}
+    assert 1.0 < row["measures"]["arm.joint_path_rad"] < 100.0
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,7 @@ def test_a_turn_of_the_first_joint_moves_the_tool_along_its_arc(cell: CellModel)
         "cell.contacts": 0.0,
         "cell.contact_s": 0.0,
         "cell.contact_force_max_n": 0.0,
+        "cell.clearance_min_m": found["left.clearance_min_m"],
     }
     assert not any(name.startswith("left.gripper") for name in found)
 
@@ -192,7 +193,7 @@ def test_values_do_not_depend_on_when_they_are_read(cell: CellModel) -> None:
 
 
 def test_what_a_world_has_nothing_of_is_absent() -> None:
-    """The grip force of a tool that held nothing is no number; a bare flange has no grip at all."""
+    """The grip force of a tool that held nothing is no number; a bare flange has no grip at all; nothing is near."""
     layout = MeasureLayout({"left": "gripper", "right": None})
     found = layout.read(layout.new_values())
     assert set(found) == {
@@ -216,4 +217,7 @@ def test_what_a_world_has_nothing_of_is_absent() -> None:
         "left.gripper.force_max_n",
         "left.gripper.force_min_n",
         "left.gripper.slip_max_m",
+        "left.clearance_min_m",
+        "right.clearance_min_m",
+        "cell.clearance_min_m",
     }
