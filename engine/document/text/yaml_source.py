@@ -235,8 +235,7 @@ def _syntax_error(error: yaml.MarkedYAMLError, file: str, text: str) -> LineMist
     line, column = (mark.line, mark.column) if mark is not None else (0, 0)
     lines = text.split("\n", line + 1)
     here = lines[line][column : column + 1] if line < len(lines) else ""
-    message = error.problem or "this is not YAML"
-    hint = error.context
+    message, hint = error.problem or "this is not YAML", error.context
     if here == "\t":
         message, hint = "YAML requires spaces here, not a tab", "indent with spaces"
     elif here in ("{", "}") or "expected ',' or '}'" in message:
