@@ -2,9 +2,9 @@
 
 `python -m benchmarks.edits` starts `flexcell serve` in a temporary project, opens a document as the page does, and
 sends edits one after the other, each of the text that the last one left. It prints, for each kind of edit, the median
-and the 95th percentile of the time until the answer is there and until the findings are, the CPU time of the server,
-and the size of an answer beside that of the whole graph. The first edit of each kind is not counted. Positions and
-notes are not checked: the page has them before it asks.
+and the 95th percentile of the time until the answer is there with its findings, and of the CPU time of the server for
+it, which other work on the machine changes less; and the size of an answer beside that of the whole graph. The first
+edit of each kind is not counted. Positions and notes are not checked: the page has them before it asks.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import http.client
 import json
 import os
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -25,7 +24,7 @@ from pathlib import Path
 from typing import cast
 
 from benchmarks.large_document import large_document
-from benchmarks.process_cpu import cpu_s
+from benchmarks.process_cpu import cpu_now_s
 from editor_web.security.authentication import load_access_tokens
 
 _PROGRAM = "from engine.cli.main import main; main()"
@@ -47,10 +46,9 @@ class Subject:
 
 @dataclass(frozen=True)
 class Timing:
-    """One edit: seconds until its answer and until its findings, of CPU of the server, and bytes of its answer."""
+    """One edit: seconds until its answer and its findings, of CPU of the server, and bytes of its answer."""
 
     answer_s: float
-    findings_s: float
     cpu_s: float
     size: int
 
@@ -135,14 +133,13 @@ class Page:
     def edit(self, document: str, state: Plain, edit: Plain, *, check: bool) -> tuple[Plain, Timing]:
         """Send one edit of the text in `state`; return its answer, and how long it took."""
         body: Plain = {"text": state["text"], "edits": [edit], "check": check, "graph": state["hash"]}
-        spent, start = cpu_s(self._server), time.perf_counter()
+        spent, start = cpu_now_s(self._server), time.perf_counter()
         answer, size = self.ask("POST", f"{document}/edits", body)
-        answered = time.perf_counter()
         if answer["refused"] is not None:
             raise RuntimeError(f"refused: {answer['refused']}")
         if check and not answer["checked"]:
             self.ask("POST", f"{document}/findings", {"text": answer["text"]})
-        return answer, Timing(answered - start, time.perf_counter() - start, cpu_s(self._server) - spent, size)
+        return answer, Timing(time.perf_counter() - start, cpu_now_s(self._server) - spent, size)
 
 
 def measure(page: Page, document: str, subject: Subject, rounds: int) -> tuple[dict[str, list[Timing]], int]:
@@ -167,14 +164,13 @@ def percentile(values: Sequence[float], share: float) -> float:
 
 def _report(subject: Subject, found: dict[str, list[Timing]], whole: int) -> None:
     print(f"{subject.name}: text {len(subject.text) / 1e3:.0f} kB, answer with the whole graph {whole / 1e3:.0f} kB")
-    print(f"  {'edit':16}{'answer, ms':>18}{'findings, ms':>18}{'CPU, ms':>10}{'answer, kB':>12}")
-    print(f"  {'':16}{'p50':>9}{'p95':>9}{'p50':>9}{'p95':>9}{'mean':>10}")
+    print(f"  {'edit':16}{'answer, ms':>18}{'CPU of the server, ms':>27}{'answer, kB':>12}")
+    print(f"  {'':16}{'p50':>9}{'p95':>9}{'least':>9}{'p50':>9}{'p95':>9}")
     for name, timings in found.items():
-        shown = ""
-        for times in ([each.answer_s for each in timings], [each.findings_s for each in timings]):
-            shown += "".join(f"{percentile(times, share) * 1e3:9.1f}" for share in (0.5, 0.95))
-        cpu_ms = statistics.mean(each.cpu_s for each in timings) * 1e3
-        print(f"  {name:16}{shown}{cpu_ms:10.1f}{max(each.size for each in timings) / 1e3:12.1f}")
+        answers, cpu = [each.answer_s for each in timings], [each.cpu_s for each in timings]
+        values = [percentile(answers, 0.5), percentile(answers, 0.95), *(percentile(cpu, at) for at in (0, 0.5, 0.95))]
+        shown = "".join(f"{value * 1e3:9.1f}" for value in values)
+        print(f"  {name:16}{shown}{max(each.size for each in timings) / 1e3:12.1f}")
 
 
 def _wait(server: subprocess.Popen[bytes], port: int, token: str) -> Page:

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
 
 _TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+
+
+def cpu_now_s(pid: int) -> float:
+    """Return the CPU seconds that a process has used, to the microsecond, without what it started."""
+    # The clock of another process, as `clock_getcpuclockid` of Linux makes it.
+    return time.clock_gettime((~pid << 3) | 2)
 
 
 def cpu_s(*pids: int) -> float:

@@ -15,7 +15,6 @@ from engine.authoring.source_location import calling_position
 from engine.authoring.steps import Step
 from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.loader import load_behavior
-from engine.document.semantic_hash import compute_semantic_hash
 from engine.document.state_catalogue import loaded_class
 from engine.document.structural_rules import require_structural_rules
 from engine.document.text.decoding import decode_document
@@ -83,12 +82,10 @@ def _by_name(parameters: Iterable[Param[Any]]) -> dict[str, object]:
 def _read(source: DocumentSource, lowering: Lowering) -> Behavior:
     """Process plain data like the loader processes a file, so that both have the same semantics."""
     document = decode_document(source, BehaviorDocument)
-    draft = Behavior(document=document, file=lowering.file, meaning="", source=source)
+    draft = Behavior(document=document, file=lowering.file, source=source)
     require_structural_rules(draft)
     references = {**lowering.references, **_referred_files(draft, lowering.references)}
-    meanings = {written: target.meaning for written, target in references.items()}
-    meaning = compute_semantic_hash(document, meanings)
-    return replace(draft, references=references, meaning=meaning, classes=_loaded_classes(draft))
+    return replace(draft, references=references, classes=_loaded_classes(draft))
 
 
 def _loaded_classes(draft: Behavior) -> dict[str, type]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -22,10 +22,9 @@ from engine.errors import ExpressionError, FlexcellError, RegistryError, StateEr
 
 GivenValues = Mapping[str, Template | ExpressionError]
 _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
-_NOTHING_GIVEN: GivenValues = {}
 
 
-class NodeAt(msgspec.Struct, frozen=True, kw_only=True, eq=False):
+class NodeAt(msgspec.Struct, frozen=True, kw_only=True, eq=False, gc=False):
     """A node with its path inside its own document and the path of the container around it."""
 
     path: str
@@ -38,6 +37,16 @@ class NodeAt(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """Whether the node is a direct child of `tree`, a composite or a decorator."""
     is_part: bool
     """True for composites, decorators and py_trees behaviours, which occur only in trees."""
+    targets: Mapping[tuple[str, ...], str]
+    """Its targets as in a machine, by the keys inside the node that name them."""
+    given: GivenValues
+    """The compiled values under `with`, by name."""
+
+    @property
+    def has_diverted_outcomes(self) -> bool:
+        """Whether the targets of its guard, timeout and errors are outcomes of it, as in concurrency and foreach."""
+        around = self.container
+        return around is not None and (around.concurrency is not None or around.foreach is not None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +59,8 @@ class AnalyzedBehavior:
     behavior: Behavior
     base: str
     nodes: Mapping[str, NodeAt]
+    due: tuple[NodeAt, ...]
+    """The nodes that a check must look at by themselves: all but the states of which `note_settled` knows better."""
     inside: Mapping[str, tuple[NodeAt, ...]]
     """The nodes directly inside each container, by its path."""
     signatures: Mapping[str, StateSignature]
@@ -62,10 +73,6 @@ class AnalyzedBehavior:
     """The behaviors referred to, by the path as written."""
     gaps: DocumentGaps
     """Its unreadable parts."""
-    given: Mapping[str, GivenValues]
-    """The compiled values under `with`, by path and name; nodes without values are absent."""
-    targets: Mapping[str, Mapping[tuple[str, ...], str]]
-    """The targets of each node as in a machine, by path and by the keys inside the node that name them."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
     nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
@@ -76,12 +83,8 @@ class AnalyzedBehavior:
     @property
     def incomplete(self) -> bool:
         """True when a state or a reference is missing, so that its written keys are unknown."""
-        refers = (placed.node.behavior for placed in self.nodes.values())
-        return (
-            bool(self.unknown)
-            or self.gaps.hides_values
-            or any(name is not None and name not in self.references for name in refers)
-        )
+        refers = {placed.node.behavior for placed in self.due if placed.node.behavior is not None}
+        return bool(self.unknown) or self.gaps.hides_values or not refers <= self.references.keys()
 
     @property
     def postorder(self) -> Iterator[NodeAt]:
@@ -121,10 +124,6 @@ class AnalyzedBehavior:
         """Return the nodes directly inside a container."""
         return self.inside.get(placed.path, ())
 
-    def given_to(self, placed: NodeAt) -> GivenValues:
-        """Return the compiled values under `with` of a node."""
-        return self.given.get(placed.path, _NOTHING_GIVEN)
-
 
 def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[AnalyzedBehavior, ...]:
     """Return the behavior and its references, each once, in the order of their first reference."""
@@ -152,15 +151,11 @@ class _OwnFacts(NamedTuple):
 
 
 def _own_facts(node: NodeSpec) -> _OwnFacts:
-    given = {name: template(value) for name, value in node.parameters.items()}
-    return _OwnFacts(_targets(node), given or _NOTHING_GIVEN)
+    return _OwnFacts(_targets(node), {name: template(value) for name, value in node.parameters.items()})
 
 
 def _targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
-    found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
-    if node.guard is not None or node.timeout is not None or node.on_error is not None:
-        found.update(diversions(node))
-    return found
+    return {**{("transitions", outcome): to for outcome, to in node.transitions.items()}, **diversions(node)}
 
 
 def diversions(node: NodeSpec) -> dict[tuple[str, ...], str]:
@@ -202,7 +197,6 @@ def _make(
         return known
     references = {name: _make(other, catalogue, bases, made) for name, other in behavior.references.items()}
     nodes, inside = _placed(behavior)
-    facts = {path: placed.node.derived(_own_facts) for path, placed in nodes.items()}
     signatures, unknown = _signatures(behavior, nodes, catalogue)
     outcomes: dict[str, tuple[str, ...]] = {}
     nominal: dict[str, frozenset[str]] = {}
@@ -211,14 +205,13 @@ def _make(
         behavior=behavior,
         base=bases[id(behavior)],
         nodes=nodes,
+        due=_due(nodes.values(), signatures),
         inside=inside,
         signatures=signatures,
         unknown=unknown,
         catalogue=catalogue,
         references=references,
         gaps=DocumentGaps(behavior),
-        given={path: own.given for path, own in facts.items() if own.given},
-        targets={path: own.targets for path, own in facts.items()},
         outcomes=outcomes,
         nominal=nominal,
         statuses=statuses,
@@ -230,12 +223,14 @@ def _make(
         path = placed.path
         known_ends = ends.get(placed.node.state) if placed.node.state is not None else None
         if known_ends is not None:
-            outcomes[path], nominal[path] = _seen_outside(placed, known_ends[0]), known_ends[1]
+            own, nominal[path] = known_ends
+            # Without other targets than those of its outcomes it has no others outside.
+            outcomes[path] = own if len(placed.targets) == len(placed.node.transitions) else _seen_outside(placed, own)
             if placed.in_tree:
                 statuses[path] = _statuses(placed, subject)
             continue
         own = _own_outcomes(placed, subject)
-        if own is not None and not (subject.gaps.hides_course(path) and _sees_diversions(placed.container)):
+        if own is not None and not (subject.gaps.hides_course(path) and placed.has_diverted_outcomes):
             outcomes[path] = _seen_outside(placed, own)
         nominal[path] = _nominal(placed, subject)
         if placed.in_tree:
@@ -246,24 +241,33 @@ def _make(
 
 def _placed(behavior: Behavior) -> tuple[dict[str, NodeAt], dict[str, tuple[NodeAt, ...]]]:
     nodes: dict[str, NodeAt] = {}
-    inside: dict[str, list[NodeAt]] = {}
-    for path, node in behavior.nodes():
-        parent, _, name = path.rpartition("/")
-        around = nodes[parent] if parent else None
-        kind = node.kind
-        nodes[path] = placed = NodeAt(
-            path=path,
-            name=name,
-            kind=kind,
-            node=node,
-            parent=parent or None,
-            container=around.node if around is not None else None,
-            in_tree=around is not None and (around.is_part or around.kind == "tree"),
-            is_part=kind in _PARTS,
-        )
-        if parent:
-            inside.setdefault(parent, []).append(placed)
-    return nodes, {path: tuple(children) for path, children in inside.items()}
+    inside: dict[str, tuple[NodeAt, ...]] = {}
+    due = [_node_at("root", "root", behavior.root, None)]
+    while due:
+        placed = due.pop()
+        path = placed.path
+        nodes[path] = placed
+        children = placed.node.children.items()
+        if children:
+            inside[path] = found = tuple([_node_at(f"{path}/{name}", name, child, placed) for name, child in children])
+            due += found[::-1]
+    return nodes, inside
+
+
+def _node_at(path: str, name: str, node: NodeSpec, around: NodeAt | None) -> NodeAt:
+    kind, facts = node.kind, node.derived(_own_facts)
+    return NodeAt(
+        path=path,
+        name=name,
+        kind=kind,
+        node=node,
+        parent=around.path if around is not None else None,
+        container=around.node if around is not None else None,
+        in_tree=around is not None and (around.is_part or around.kind == "tree"),
+        is_part=kind in _PARTS,
+        targets=facts.targets,
+        given=facts.given,
+    )
 
 
 def _signatures(
@@ -282,21 +286,35 @@ def _signatures(
     return signatures, unknown
 
 
+def note_settled(subject: AnalyzedBehavior, findings: Iterable[Finding]) -> None:
+    """Note the states that need no check by themselves again, wherever they are: nothing was found at them.
+
+    They read no key and have no policies, so what is found in them follows from their class and their constants.
+    """
+    reported = {finding.path for finding in findings}
+    for placed in subject.due:
+        node, signature = placed.node, subject.signature(placed.node)
+        if signature is None or signature.inputs or subject.run_path(placed.path) in reported:
+            continue
+        policies = node.guard or node.retry or node.post or node.resume or node.autonomy or node.success
+        if not policies and not node.inputs and is_constant(placed.given):
+            node.clear_of.add((note_settled, signature.state))
+
+
+def _due(nodes: Iterable[NodeAt], signatures: Mapping[str, StateSignature]) -> tuple[NodeAt, ...]:
+    settled: dict[str | None, object] = {name: (note_settled, found.state) for name, found in signatures.items()}
+    return tuple([placed for placed in nodes if settled.get(placed.node.state) not in placed.node.clear_of])
+
+
 def _ends_of(signature: StateSignature) -> tuple[tuple[str, ...], frozenset[str]]:
     """Return the outcomes of a state, and the nominal ones."""
     return signature.outcomes, frozenset(signature.success or signature.outcomes)
 
 
 def _seen_outside(placed: NodeAt, own: tuple[str, ...]) -> tuple[str, ...]:
-    if not _sees_diversions(placed.container):
-        return own
     # In a concurrency or foreach container a guard, timeout or error gives the child an outcome.
-    leading = diversions(placed.node).values()
+    leading = diversions(placed.node).values() if placed.has_diverted_outcomes else ()
     return tuple(dict.fromkeys((*own, *leading))) if leading else own
-
-
-def _sees_diversions(container: NodeSpec | None) -> bool:
-    return container is not None and (container.concurrency is not None or container.foreach is not None)
 
 
 def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] | None:
@@ -304,7 +322,7 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
     if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_inside(placed.path):
         return None
     if node.state is not None:
-        signature = subject.signatures.get(node.state)
+        signature = subject.signature(node)
         return signature.outcomes if signature is not None else None
     if node.behavior is not None:
         referred = subject.behavior.references.get(node.behavior)
@@ -316,15 +334,19 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
         return FOREACH_OUTCOMES
     if node.sequential is None:
         return TREE_OUTCOMES
-    leading = [target for child in subject.children(placed) for target in subject.targets[child.path].values()]
-    return tuple(dict.fromkeys(target for target in leading if target not in node.children))
+    return node.derived(_machine_outcomes)
+
+
+def _machine_outcomes(node: NodeSpec) -> tuple[str, ...]:
+    led_to = [target for child in node.children.values() for target in child.derived(_own_facts).targets.values()]
+    return tuple(dict.fromkeys(target for target in led_to if target not in node.children))
 
 
 def _nominal(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
     """Return the nominal outcomes of a node: declared as success by its class or document, or derived."""
     node = placed.node
     if node.state is not None:
-        signature = subject.signatures.get(node.state)
+        signature = subject.signature(node)
         return _ends_of(signature)[1] if signature is not None else frozenset()
     if node.behavior is not None:
         referred = subject.behavior.references.get(node.behavior)
@@ -360,11 +382,11 @@ def _reached_nominally(placed: NodeAt, initial: str, subject: AnalyzedBehavior) 
 
 
 def _statuses(placed: NodeAt, subject: AnalyzedBehavior) -> Statuses:
-    children = subject.children(placed)
     if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_course(placed.path):
         return BOTH
     if placed.is_part:
-        ends = end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
+        inside = [(child.name, subject.statuses[child.path]) for child in subject.children(placed)]
+        ends = end_statuses(placed.node, inside)
         return ends | closed_statuses(placed.node)
     outcomes = subject.outcomes.get(placed.path)
     if not outcomes:

@@ -113,7 +113,7 @@ def _declared(
         signature = subject.signature(placed.node)
         if signature is None or not signature.has_arm_targets:
             continue
-        state = try_make_state(signature, given_values(subject, placed, given))
+        state = try_make_state(signature, given_values(placed, given))
         if state is None:
             continue
         try:

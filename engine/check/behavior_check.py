@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from engine.cell.cell_names import cell_names
-from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_behaviors
+from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_behaviors, note_settled
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.cell_name_checks import CellNameCheck
 from engine.check.cell.entry_references import Entries, add_written_entries, check_entries
@@ -143,6 +143,7 @@ def _check_one(
         *(check_entries(subject, entries) if entries is not None else ()),
         *(use.check(subject, resolver) if use is not None else ()),
     ]
+    note_settled(subject, findings)
     gaps = subject.gaps
     if subject.behavior.gaps:
         findings = [each for each in findings if not gaps.follows(each, "root" + each.path.removeprefix(subject.base))]

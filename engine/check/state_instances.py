@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.analyzed_behavior import NodeAt
 from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import ExpressionError
@@ -18,10 +18,10 @@ UNKNOWN_PLACEHOLDER = "\0unknown"
 """Placeholder for values that are known only in a run."""
 
 
-def given_values(subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, object]) -> dict[str, object]:
+def given_values(placed: NodeAt, known: Mapping[str, object]) -> dict[str, object]:
     """Return the parameters of a node by name; those that depend on unknown values are `UNKNOWN_PLACEHOLDER`."""
     values: dict[str, object] = {}
-    for name, found in subject.given_to(placed).items():
+    for name, found in placed.given.items():
         values[name] = UNKNOWN_PLACEHOLDER
         if isinstance(found, Template) and all(
             known.get(used, UNKNOWN_PLACEHOLDER) != UNKNOWN_PLACEHOLDER for used in found.names

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Literal
 
+import msgspec
 from msgspec import Meta
 
 from engine.document.nodes.node_kind import OutcomeName
@@ -36,12 +38,11 @@ class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
     notes: dict[str, str] = {}
 
 
+# No slots: cached properties need a `__dict__`.
 @dataclass(frozen=True, kw_only=True)
 class Behavior(DocumentFile[BehaviorDocument]):
     """A behavior document with its file, its positions and the behaviors it refers to."""
 
-    meaning: str
-    """Semantic hash (SHA-256) of the document and its references: without `view`, `notes`, comments, formatting."""
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
@@ -51,6 +52,23 @@ class Behavior(DocumentFile[BehaviorDocument]):
     gaps: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]], repr=False, compare=False)
     """Unreadable keys in a behavior that can only be checked, by the path of their node; the empty path is the behavior
     itself, the empty key an unknown key. Empty for a behavior that can be run."""
+
+    @cached_property
+    def meaning(self) -> str:
+        """Semantic hash (SHA-256) of document, references and substitutes; the order of nodes and parameters counts.
+
+        Formatting, comments, canvas positions and notes do not.
+        """
+        document = self.document
+        order = [list(document.parameters), *(list(node.children) for _, node in self.nodes())]
+        references = {written: referred.meaning for written, referred in self.references.items()}
+        digest = sha256()
+        for part in (msgspec.structs.replace(document, view={}, notes={}), order, references):
+            digest.update(msgspec.json.encode(part, order="sorted"))
+            digest.update(b"\n")
+        if self.substitutes is None:
+            return digest.hexdigest()
+        return sha256(digest.hexdigest().encode() + self.substitutes.text).hexdigest()
 
     @property
     def name(self) -> str:
@@ -85,10 +103,7 @@ class Behavior(DocumentFile[BehaviorDocument]):
 
     def with_substitutes(self, substitutes: Substitutes | None) -> Behavior:
         """Return the behavior with substitutes and another semantic hash; the behavior itself for None."""
-        if substitutes is None:
-            return self
-        meaning = sha256(self.meaning.encode() + substitutes.text).hexdigest()
-        return replace(self, substitutes=substitutes, meaning=meaning)
+        return replace(self, substitutes=substitutes) if substitutes is not None else self
 
     def nodes(self) -> tuple[tuple[str, NodeSpec], ...]:
         """Return (path, node) in document order, containers before their children."""

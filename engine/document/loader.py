@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import msgspec
 
 from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.partial_behavior import read_partial_behavior
-from engine.document.semantic_hash import compute_semantic_hash
 from engine.document.structural_rules import require_structural_rules
 from engine.document.text.decoding import decode_document
 from engine.document.text.mistakes import MAX_MISTAKES
@@ -138,7 +136,8 @@ class _Reading:
         self._goes_around = mistakes is not None
         self._done: dict[Path, Behavior] = {}
         self._failed: set[Path] = set()
-        self._expanded: dict[str, int] = {}
+        self._expanded: dict[int, int] = {}
+        """By the id of each behavior that was read: its nodes, with its references expanded."""
 
     def read(self, file: Path, chain: tuple[Path, ...]) -> Behavior:
         known = self._done.get(_identity(file))
@@ -152,7 +151,7 @@ class _Reading:
         return behavior
 
     def build(self, source: DocumentSource, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        behavior = Behavior(document=decode_document(source, BehaviorDocument), file=file, meaning="", source=source)
+        behavior = Behavior(document=decode_document(source, BehaviorDocument), file=file, source=source)
         require_structural_rules(behavior)
         return self._complete(behavior, file, chain)
 
@@ -181,18 +180,16 @@ class _Reading:
         self._refuse(f"`{written}` leads out of the project", position, hint)
 
     def _complete(self, behavior: Behavior, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        references = self._references(behavior, (*chain, _identity(file)))
-        meanings = {written: referred.meaning for written, referred in references.items()}
-        meaning = compute_semantic_hash(behavior.document, meanings)
-        self._expanded[meaning] = self._count_expanded(behavior, meanings)
-        return replace(behavior, references=references, meaning=meaning)
+        made = replace(behavior, references=self._references(behavior, (*chain, _identity(file))))
+        self._expanded[id(made)] = self._count_expanded(made)
+        return made
 
-    def _count_expanded(self, behavior: Behavior, meanings: Mapping[str, str]) -> int:
+    def _count_expanded(self, behavior: Behavior) -> int:
         """Count the nodes of a behavior with all references expanded."""
         count = 0
         for path, node in behavior.nodes():
-            meaning = meanings.get(node.behavior) if node.behavior is not None else None
-            count += 1 + (self._expanded[meaning] if meaning is not None else 0)
+            referred = behavior.references.get(node.behavior) if node.behavior is not None else None
+            count += 1 + (self._expanded[id(referred)] if referred is not None else 0)
             if count > MAX_EXPANDED_NODES:
                 message = f"with its references expanded the behavior has more than {MAX_EXPANDED_NODES} nodes"
                 raise DocumentError(message, where=behavior.position(path), hint="refer to fewer behaviors")

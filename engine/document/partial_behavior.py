@@ -84,7 +84,7 @@ def _follows(mistake: DocumentMistake, left_out: Collection[DataPath]) -> bool:
 
 def _behavior(data: Plain, source: DocumentSource, file: Path) -> Behavior:
     document = msgspec.convert(data, BehaviorDocument)
-    return Behavior(document=document, file=file, meaning="", source=replace(source, data=data))
+    return Behavior(document=document, file=file, source=replace(source, data=data))
 
 
 def _with_kind(kept: Plain) -> Plain:

@@ -70,22 +70,26 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         where = behavior.key_position("root", "transitions")
         error = DocumentError("the root has no transitions", where=where, hint="its outcomes are those of the behavior")
         yield RuleViolation(path="root", error=error, excess=("transitions",))
-    in_tree: dict[str, bool] = {"": False}
-    for path, node in behavior.nodes():
-        parent = path.rpartition("/")[0]
-        if parent not in in_tree:
-            continue
-        rules = _RULES_OF_TREES if in_tree[parent] else _RULES_OUTSIDE
+    due = [("root", behavior.root, False)]
+    while due:
+        path, node, in_tree = due.pop()
+        rules = _RULES_OF_TREES if in_tree else _RULES_OUTSIDE
         if rules not in node.clear_of:
             kinds = _one_kind(behavior, path, node)
-            found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+            found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree))
             yield from found
             if not found:
                 node.clear_of.add(rules)
             if any(violation.excess is None for violation in found):
                 continue
         # Inside a machine that is a leaf of a tree, machine rules apply again.
-        in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in _PARTS)
+        inside = node.tree is not None or (in_tree and node.kind in _PARTS)
+        rules = _RULES_OF_TREES if inside else _RULES_OUTSIDE
+        due += [
+            (f"{path}/{name}", child, inside)
+            for name, child in reversed(list(node.children.items()))
+            if child.state is None or rules not in child.clear_of
+        ]
 
 
 def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:

@@ -37,6 +37,8 @@ class _CachedDraft:
     graph: DrawnGraph
     outline: Outline
     draft: Draft | None
+    entries: int
+    """Number of entries in the text, counted by their separators."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,8 +58,8 @@ class DraftCache:
 
     @property
     def kept_entries(self) -> int:
-        """Number of entries in the cached texts, counted by their separators."""
-        return sum(text.count("\n") + text.count(",") for _, text in self._cache)
+        """Number of entries in the cached texts."""
+        return sum(each.entries for each in self._cache.values())
 
     def draw(self, text: str, *, file: Path, context: ProjectContext, check: bool = False) -> DocumentAnalysis:
         """Parse a text and build its graph; the check runs if asked for, and if the text cannot be read."""
@@ -148,9 +150,11 @@ class DraftCache:
         drawn, graph = draw_document(draft, outline, file=file, context=context, before=before)
         if check:
             drawn = with_findings(drawn, graph, draft.given, file=file, context=context, read=(draft, outline))
+        text = draft.given
+        made = _CachedDraft(graph, outline, draft, text.count("\n") + text.count(","))
         with self._lock:
-            self._cache[file, draft.given] = _CachedDraft(graph, outline, draft)
-            self._cache.move_to_end((file, draft.given))
+            self._cache[file, text] = made
+            self._cache.move_to_end((file, text))
             while len(self._cache) > 1 and self._too_much():
                 self._cache.popitem(last=False)
         return drawn, graph

@@ -120,7 +120,7 @@ class CellNameCheck:
         return f"{use.owner}/{value}" if exists else None
 
     def _origin(self, subject: AnalyzedBehavior, use: _Use) -> str:
-        found = subject.given_to(use.placed).get(str(use.keys[1])) if len(use.keys) > 1 else None
+        found = use.placed.given.get(str(use.keys[1])) if len(use.keys) > 1 else None
         if not isinstance(found, Template) or found.constant:
             return ""
         is_given = any(name in self.parameters for name in found.names)
@@ -132,14 +132,14 @@ class CellNameCheck:
             signature = subject.signature(placed.node)
             referred = subject.referred(placed.node)
             if signature is not None:
-                yield from _of_state(subject, placed, signature, known)
+                yield from _of_state(placed, signature, known)
             elif referred is not None:
                 yield from self._of_reference(subject, placed, referred, known)
 
     def _of_reference(
         self, subject: AnalyzedBehavior, placed: NodeAt, referred: AnalyzedBehavior, known: Mapping[str, object]
     ) -> Iterator[_Use]:
-        given = subject.given_to(placed)
+        given = placed.given
         defaults = default_values(referred)
         for name, due in self._parameters(referred).items():
             if name in given:
@@ -169,10 +169,8 @@ class CellNameCheck:
         return self._added[0]
 
 
-def _of_state(
-    subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature, known: Mapping[str, object]
-) -> Iterator[_Use]:
-    given = subject.given_to(placed)
+def _of_state(placed: NodeAt, signature: StateSignature, known: Mapping[str, object]) -> Iterator[_Use]:
+    given = placed.given
     for name, parameter in signature.parameters.items():
         if not is_annotated(parameter.type):
             continue
@@ -207,7 +205,7 @@ def _added(subject: AnalyzedBehavior) -> Iterator[object]:
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
         for name, parameter in signature.parameters.items() if signature is not None else ():
-            found = subject.given_to(placed).get(name)
+            found = placed.given.get(name)
             for part in annotated_values(parameter.type, known_part(found, {})) if found is not None else ():
                 if "new_cell_name" in part.says:
                     yield part.value

@@ -39,7 +39,7 @@ def _written(subject: AnalyzedBehavior) -> Iterator[tuple[str, str]]:
     defaults = default_values(subject)
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
-        given = subject.given_to(placed)
+        given = placed.given
         for name, parameter in signature.parameters.items() if signature is not None else ():
             for part in annotated_values(parameter.type, known_part(given[name], defaults)) if name in given else ():
                 of = str(part.says.get("new_entry_of", ""))
@@ -53,7 +53,7 @@ def check_entries(subject: AnalyzedBehavior, entries: Entries) -> Iterator[Findi
     defaults = default_values(subject)
     for placed in subject.nodes.values():
         signature = subject.signature(placed.node)
-        for name, found in subject.given_to(placed).items():
+        for name, found in placed.given.items():
             known, value = value_by_default(found, defaults)
             if known and isinstance(value, dict | str) and signature is not None and name in signature.parameters:
                 # A field `entry` without a declared kind may name an entry of any kind.

@@ -38,36 +38,25 @@ class KeyRead:
 
 def key_reads(subject: AnalyzedBehavior) -> Iterator[KeyRead]:
     """Yield all reads, in document order."""
-    for placed in subject.nodes.values():
-        signature = subject.signature(placed.node)
-        search = (key_reads, signature.state if signature is not None else None)
-        if search in placed.node.clear_of:
-            continue
-        found = list(_reads_of(subject, placed))
-        if not found and signature is not None:
-            placed.node.clear_of.add(search)
-        yield from found
+    for placed in subject.due:
+        yield from _inputs(subject, placed)
+        for keys, found in expressions(placed):
+            for name in sorted(found.names):
+                yield KeyRead(placed=placed, key=name, by="expression", name=name, keys=keys)
+        for keys, assigned in assignments(placed).items():
+            for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
+                yield KeyRead(placed=placed, key=name, by="post", name=name, keys=keys)
+        if placed.node.foreach is not None:
+            for key in placed.node.foreach.collect:
+                yield KeyRead(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
+        if placed.node.concurrency is not None:
+            for index, key in enumerate(placed.node.concurrency.shared):
+                yield KeyRead(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
 
 
-def _reads_of(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[KeyRead]:
-    yield from _inputs(subject, placed)
-    for keys, found in expressions(subject, placed):
-        for name in sorted(found.names):
-            yield KeyRead(placed=placed, key=name, by="expression", name=name, keys=keys)
-    for keys, assigned in assignments(placed).items():
-        for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
-            yield KeyRead(placed=placed, key=name, by="post", name=name, keys=keys)
-    if placed.node.foreach is not None:
-        for key in placed.node.foreach.collect:
-            yield KeyRead(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
-    if placed.node.concurrency is not None:
-        for index, key in enumerate(placed.node.concurrency.shared):
-            yield KeyRead(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
-
-
-def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tuple[str | int, ...], Template]]:
+def expressions(placed: NodeAt) -> Iterator[tuple[tuple[str | int, ...], Template]]:
     """Yield the values of a node that contain expressions, with the keys that lead to them."""
-    for name, found in subject.given_to(placed).items():
+    for name, found in placed.given.items():
         if isinstance(found, Template) and not found.constant:
             yield ("with", name), found
     for keys, found in conditions(placed).items():

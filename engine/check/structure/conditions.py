@@ -26,7 +26,7 @@ _PREEMPTED = ""
 
 def check_conditions(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find unknown children and outcomes, children that cannot be preempted, and uncovered combinations."""
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         if placed.node.concurrency is not None:
             names = list(_check_names(subject, placed))
             yield from names

@@ -36,7 +36,7 @@ def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
     reached = subject.possible(subject.nodes["root"])
     if reached is None:
         return
-    destinations = {*reached, *subject.targets["root"].values()}
+    destinations = {*reached, *subject.nodes["root"].targets.values()}
     for index, outcome in enumerate(declared):
         if outcome not in destinations:
             position = subject.behavior.source.position(("outcomes", index))

@@ -28,7 +28,7 @@ def check_loops(subject: AnalyzedBehavior, read: Iterable[KeyRead]) -> Iterator[
     keys: dict[str, set[str]] = {}
     for each in read:
         keys.setdefault(each.placed.path, set()).add(each.key)
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         if placed.node.sequential is not None:
             yield from _check_machine(subject, placed, instant, keys)
 
@@ -41,9 +41,11 @@ class InstantOutcomes:
         self._others = others if others is not None else {}
         self.ends: dict[str, frozenset[str]] = {}
         self.any = False
+        takes_time = {name for name, signature in subject.signatures.items() if not signature.instant}
         for placed in subject.postorder:
-            found = self.ends[placed.path] = self._own(placed)
-            self.any = self.any or bool(found) or placed.node.guard is not None
+            node = placed.node
+            found = self.ends[placed.path] = _NEVER if node.state in takes_time else self._own(placed)
+            self.any = self.any or bool(found) or node.guard is not None
 
     def instant_targets(self, placed: NodeAt) -> tuple[str, ...]:
         """Return the targets that a child of a machine can reach in the same instant."""
@@ -133,10 +135,12 @@ def _check_machine(
     subject: AnalyzedBehavior, placed: NodeAt, instant: InstantOutcomes, keys: Mapping[str, set[str]]
 ) -> Iterator[Finding]:
     children = subject.children(placed)
+    if not any(instant.ends[child.path] or child.node.guard is not None for child in children):
+        return
     by_name = {child.name: child for child in children}
     ranks = {child.name: rank for rank, child in enumerate(children)}
     leads = {child.name: [to for to in instant.instant_targets(child) if to in by_name] for child in children}
-    for loop in _loops(leads) if any(leads.values()) else ():
+    for loop in _loops(leads):
         inside = [by_name[name] for name in loop]
         if _can_change(subject, inside, keys):
             continue

@@ -17,7 +17,7 @@ _RESUME = ("rerun", "ask")
 
 def check_policies(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find settings that have no effect, block a run, or are invalid."""
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         node = placed.node
         if node.retry is not None and node.retry.child is None and not node.retry.errors and not node.retry.outcomes:
             message = "this `retry` has no effect: it names no `outcomes`, and `errors` is false"

@@ -11,7 +11,7 @@ from engine.suggestions import did_you_mean
 
 def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find missing initial states, unreachable states, and states from which no outcome is reachable."""
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         machine = placed.node.sequential
         if machine is None:
             continue
@@ -20,11 +20,16 @@ def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:
             hint = did_you_mean(machine.initial, machine.states)
             yield subject.finding("missing-initial", message, placed.path, placed.node.kind, "initial", hint=hint)
             continue
-        yield from _check_machine(subject, placed, machine.initial)
+        if check_reachability in placed.node.clear_of:
+            continue
+        found = list(_check_machine(subject, placed, machine.initial))
+        if not found:
+            placed.node.clear_of.add(check_reachability)
+        yield from found
 
 
 def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> Iterator[Finding]:
-    leads = {child.name: tuple(subject.targets[child.path].values()) for child in subject.children(placed)}
+    leads = {child.name: tuple(child.targets.values()) for child in subject.children(placed)}
     reached = _reachable([initial], leads)
     for name in leads:
         if name not in reached:

@@ -18,10 +18,10 @@ _MOST_USES = 20_000
 
 def check_resources(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find resources that two branches of a concurrency or parallel use, as far as they are constant."""
-    if not any(placed.kind in _SIDE_BY_SIDE for placed in subject.nodes.values()):
+    if not any(placed.kind in _SIDE_BY_SIDE for placed in subject.due):
         return
     used = _Resources().used(subject, dict.fromkeys(subject.behavior.parameters, UNKNOWN_PLACEHOLDER))
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         if placed.kind not in _SIDE_BY_SIDE:
             continue
         owners: dict[str, NodeAt] = {}
@@ -61,13 +61,13 @@ class _Resources:
             # Most states command no device: only classes that declare resources are instantiated.
             if not signature.commands_hardware:
                 return _NONE
-            return _resources_of(signature, given_values(subject, placed, known))
+            return _resources_of(signature, given_values(placed, known))
         referred = subject.referred(placed.node)
         if referred is None or self._uses > _MOST_USES:
             return frozenset()
         inner = {
             **dict.fromkeys(referred.behavior.parameters, UNKNOWN_PLACEHOLDER),
-            **given_values(subject, placed, known),
+            **given_values(placed, known),
         }
         key = (id(referred), repr(sorted(inner.items())))
         if key not in self._of_references:

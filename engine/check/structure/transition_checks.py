@@ -13,7 +13,7 @@ from engine.suggestions import did_you_mean
 
 def check_transitions(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find unknown states, outcomes and targets, and outcomes without a target."""
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         node = placed.node
         if node.state is not None and node.state in subject.unknown:
             yield _unknown(subject, placed, node.state, subject.unknown[node.state])
@@ -89,7 +89,7 @@ def _machine_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Collection[s
 def _check_targets(
     subject: AnalyzedBehavior, child: NodeAt, siblings: Mapping[str, NodeSpec], outcomes: Collection[str] | None
 ) -> Iterator[Finding]:
-    for keys, target in subject.targets[child.path].items():
+    for keys, target in child.targets.items():
         if outcomes is None or target in siblings or target in outcomes:
             continue
         message = f"`{target}` is neither a state nor an outcome of this machine"
@@ -122,7 +122,7 @@ def _reported_inside(node: NodeSpec) -> bool:
 def _check_root(subject: AnalyzedBehavior) -> Iterator[Finding]:
     root = subject.nodes["root"]
     declared = subject.behavior.outcomes
-    for keys, target in subject.targets["root"].items():
+    for keys, target in root.targets.items():
         if target not in declared:
             message = f"`{target}` is not an outcome of this behavior"
             yield subject.finding("unknown-target", message, "root", *keys, hint=did_you_mean(target, declared))

@@ -18,7 +18,7 @@ from engine.suggestions import did_you_mean
 
 def check_trees(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find defects of trees that are known before the first tick."""
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         if placed.in_tree and placed.is_part:
             yield from _check_dead_children(subject, placed)
             yield from _check_end(subject, placed)
@@ -95,14 +95,14 @@ def _check_watching(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Findi
             message = f"`{child.name}` is {what}, so `every` has no effect"
             hint = "it applies to checks before an action in a `sequence` or `selector` without memory, or in `while`"
             yield subject.finding("idle-every", message, child.path, "every", hint=hint, at_key=True)
-        elif in_front and not is_action and not _is_repeated(subject, child, signature):
+        elif in_front and not is_action and not _is_repeated(child, signature):
             message = f"the check `{child.name}` is not repeated while the nodes after it run"
             hint = f"set a period, `every: 200 ms`, or declare `observes` in the class of `{signature.name}`"
             yield subject.finding("unwatched-check", message, child.path, "state", hint=hint)
 
 
-def _is_repeated(subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature) -> bool:
-    reads = any(isinstance(given, Template) and given.names for given in subject.given_to(placed).values())
+def _is_repeated(placed: NodeAt, signature: StateSignature) -> bool:
+    reads = any(isinstance(given, Template) and given.names for given in placed.given.values())
     return signature.instant or signature.observes or placed.node.every is not None or reads or bool(signature.inputs)
 
 

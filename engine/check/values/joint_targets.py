@@ -40,7 +40,7 @@ def _check_state(
     ranges: JointRanges,
     known: Mapping[str, object],
 ) -> Iterator[Finding]:
-    given = subject.given_to(placed)
+    given = placed.given
     for name, found in given.items():
         declared = signature.parameters.get(name)
         if declared is None or not is_annotated(declared.type):

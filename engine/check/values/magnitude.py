@@ -94,12 +94,12 @@ def check_magnitudes(subject: AnalyzedBehavior) -> Iterator[Finding]:
         if found is not None:
             position = subject.behavior.source.position(("parameters", name, "default"))
             yield new_finding("suspect-unit", found.message, path=subject.base, position=position, hint=found.hint)
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         signature = subject.signature(placed.node)
         check = (check_magnitudes, signature.state if signature is not None else None)
         if check in placed.node.clear_of:
             continue
-        suspicions = [(name, found) for name in subject.given_to(placed) for found in _given(subject, placed, name)]
+        suspicions = [(name, found) for name in placed.given for found in _given(subject, placed, name)]
         if not suspicions and signature is not None:
             placed.node.clear_of.add(check)
         for name, found in suspicions:
@@ -108,7 +108,7 @@ def check_magnitudes(subject: AnalyzedBehavior) -> Iterator[Finding]:
 
 
 def _given(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> Iterator[UnitSuspicion]:
-    given = subject.given_to(placed)[name]
+    given = placed.given[name]
     signature, referred = subject.signature(placed.node), subject.referred(placed.node)
     if signature is not None and name in signature.parameters:
         declared = signature.parameters[name].type

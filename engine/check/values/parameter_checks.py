@@ -22,7 +22,7 @@ from engine.suggestions import did_you_mean
 def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find unknown parameters and keys, invalid values, and malformed expressions."""
     defaults = default_values(subject)
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         signature = subject.signature(placed.node)
         if signature is None:
             yield from _check_node(subject, placed, defaults)
@@ -32,7 +32,7 @@ def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
             continue
         found = list(_check_node(subject, placed, defaults))
         # Expressions depend on the parameters of the behavior.
-        if not found and is_constant(subject.given_to(placed)):
+        if not found and is_constant(placed.given):
             placed.node.clear_of.add(check)
         yield from found
 
@@ -77,7 +77,7 @@ def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, o
 
 
 def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
-    for name, found in subject.given_to(placed).items():
+    for name, found in placed.given.items():
         if isinstance(found, ExpressionError):
             yield subject.finding("bad-expression", found.message, placed.path, "with", name, hint=found.hint or "")
     for several in (conditions(placed), assignments(placed)):
@@ -112,7 +112,7 @@ def _check_state(
 ) -> Iterator[Finding]:
     values: dict[str, object] = {}
     faults = 0
-    given = subject.given_to(placed)
+    given = placed.given
     for name, found in given.items():
         known, value = value_by_default(found, defaults)
         if not known or name not in signature.parameters:
@@ -173,7 +173,7 @@ def _steps(inner: str) -> tuple[str | int, ...]:
 def _check_behavior(
     subject: AnalyzedBehavior, placed: NodeAt, declared: Mapping[str, ParameterSpec], defaults: Mapping[str, object]
 ) -> Iterator[Finding]:
-    for name, found in subject.given_to(placed).items():
+    for name, found in placed.given.items():
         known, value = value_by_default(found, defaults)
         problem = declared[name].problem(value) if known and name in declared else None
         if problem:

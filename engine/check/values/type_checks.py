@@ -49,7 +49,7 @@ class _Use:
 def check_types(subject: AnalyzedBehavior, resolver: TypeInference) -> Iterator[Finding]:
     """Find inputs, parameters, guards and lists that get values of a wrong type."""
     check = _Kinds(subject, resolver)
-    for placed in subject.nodes.values():
+    for placed in subject.due:
         if placed.path in resolver.flow.before:
             yield from check.node(placed)
 
@@ -62,14 +62,7 @@ class _Kinds:
         self._refused: dict[int, dict[str, _Refusal]] = {}
 
     def node(self, placed: NodeAt) -> Iterator[Finding]:
-        signature = self._subject.signature(placed.node)
-        search = (check_types, signature.state if signature is not None else None)
-        if search in placed.node.clear_of:
-            return
-        uses = list(_uses(self._subject, placed))
-        if not uses and signature is not None:
-            placed.node.clear_of.add(search)
-        for use in uses:
+        for use in _uses(self._subject, placed):
             try:
                 reaching = _reaching(self._resolver, use)
             except ExpressionError as error:
@@ -152,7 +145,7 @@ def _uses(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[_Use]:
             keys = ("in", name) if name in node.inputs else ()
             what = f"the input `{name}` of `{node.state}`"
             yield _Use(placed, keys, what, key.type, node.inputs.get(name, name))
-    for keys, found in expressions(subject, placed):
+    for keys, found in expressions(placed):
         due: Any = None
         what = f"`{keys[-1]}`"
         if keys[0] == "guard":

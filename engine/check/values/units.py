@@ -32,8 +32,8 @@ def check_units(subject: AnalyzedBehavior) -> Iterator[Finding]:
     declared = subject.behavior.parameters
     if not declared:
         return
-    for placed in subject.nodes.values():
-        for name, found in subject.given_to(placed).items():
+    for placed in subject.due:
+        for name, found in placed.given.items():
             source = only_name(found)
             if source is None or source not in declared or declared[source].type not in _NUMERIC:
                 continue

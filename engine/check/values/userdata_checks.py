@@ -49,7 +49,7 @@ class _Keys:
                 yield self._perhaps_undefined(read, with_route=routes <= _MOST_ROUTES)
 
     def check_branches(self) -> Iterator[Finding]:
-        for placed in self.subject.nodes.values():
+        for placed in self.subject.due:
             if placed.kind in _SIDE_BY_SIDE and placed.path in self.flow.inside:
                 writers = self._writers(placed)
                 for key in sorted(writers.keys() - set(shared_keys(placed.node))):

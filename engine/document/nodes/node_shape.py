@@ -67,11 +67,16 @@ class NodeShape(StrictModel, frozen=True, kw_only=True, dict=True):
     def _derived(self) -> dict[object, object]:
         return {}
 
-    @cached_property
+    @property
     def nodes_as_root(self) -> tuple[tuple[str, Self], ...]:
         """The nodes of a document whose root it is, with their paths, outer ones first."""
+        return (("root", self), *self._below_root)
+
+    # Without the node itself: it would stay in memory until the collector comes by.
+    @cached_property
+    def _below_root(self) -> tuple[tuple[str, Self], ...]:
         found: list[tuple[str, Self]] = []
-        due = [("root", self)]
+        due = [(f"root/{name}", child) for name, child in reversed(list(self.children.items()))]
         while due:
             path, node = due.pop()
             found.append((path, node))

@@ -222,31 +222,31 @@ def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
             if ended:
                 break
     except yaml.MarkedYAMLError as error:
-        mark = cast("_Mark | None", error.problem_mark or error.context_mark)
-        line, column = (mark.line, mark.column) if mark is not None else (0, 0)
-        refusal = _syntax_error(error, file, line, column, text)
-        # An unclosed block is detected only where another one begins.
-        begins = error.context_mark if (error.context or "").startswith(_OPENING) else None
-        refusal.line = begins.line if begins is not None else line
-        raise refusal from None
+        # In no variable here, which would keep this frame and those of all callers in memory.
+        raise _syntax_error(error, file, text) from None
     except yaml.YAMLError as error:
         raise DocumentError(str(error).splitlines()[0], where=Position(file=file, line=1, column=1)) from None
     finally:
         parser.dispose()
 
 
-def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int, text: str) -> LineMistake:
+def _syntax_error(error: yaml.MarkedYAMLError, file: str, text: str) -> LineMistake:
+    mark = cast("_Mark | None", error.problem_mark or error.context_mark)
+    line, column = (mark.line, mark.column) if mark is not None else (0, 0)
     lines = text.split("\n", line + 1)
     here = lines[line][column : column + 1] if line < len(lines) else ""
-    message = error.problem or "this is not YAML"
-    hint = error.context
+    message, hint = error.problem or "this is not YAML", error.context
     if here == "\t":
         message, hint = "YAML requires spaces here, not a tab", "indent with spaces"
     elif here in ("{", "}") or "expected ',' or '}'" in message:
         message, hint = "unmatched brace", "put text with `${…}` in quotes"
     elif "mapping values are not allowed" in message:
         message, hint = "a second `:` on this line", "put the text in quotes"
-    return LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
+    refusal = LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
+    # An unclosed block is detected only where another one begins.
+    begins = error.context_mark if (error.context or "").startswith(_OPENING) else None
+    refusal.line = begins.line if begins is not None else line
+    return refusal
 
 
 class _Builder:

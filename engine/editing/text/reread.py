@@ -98,10 +98,10 @@ class _Rereading:
     file: str
     sources: dict[int, Collection]
     changed: frozenset[Collection]
-    _shifts: dict[int, list[int | None]] = field(default_factory=dict[int, "list[int | None]"])
-    """By the id of a new collection around kept members: how far each of them moved; None for a new one."""
-    _homes: dict[int, Collection] = field(default_factory=dict[int, Collection])
-    """By the id of such a collection: the one that it replaces."""
+    _shifts: dict[Collection, list[int | None]] = field(default_factory=dict[Collection, "list[int | None]"])
+    """By new collection around kept members: how far each of them moved; None for a new one."""
+    _homes: dict[Collection, Collection] = field(default_factory=dict[Collection, Collection])
+    """By such a collection: the one that it replaces."""
     _gone: list[Collection] = field(default_factory=list[Collection])
     """Collections of the old tree without a part in the new one."""
     _nodes: int = 0
@@ -128,8 +128,8 @@ class _Rereading:
         first = members[0].at + (shifts[0] or 0)
         begin = block_start(self.origin.text, first, home.column)
         made = Collection(self.origin, begin, begin, False, home.column, {}, members)
-        self._shifts[id(made)] = shifts
-        self._homes[id(made)] = home
+        self._shifts[made] = shifts
+        self._homes[made] = home
         return made
 
     def _entries(self, home: Collection, old_end: int, start: int, end: int) -> tuple[list[Member], list[int | None]]:
@@ -263,12 +263,12 @@ class _Rereading:
             self._expressions += content.expressions
             self._expression_text += content.expression_text
             return
-        shifts = self._shifts.get(id(found))
+        shifts = self._shifts.get(found)
         if depth > MAX_DEPTH or (shifts is None and value is not found.data) or type(value) is not type(found.data):
             raise _Unlike
         data = found.data = value
         was = self.sources.get(id(data), found)
-        if (was is not found and was is not self._homes.get(id(found))) or len(data) != len(found.entries):
+        if (was is not found and was is not self._homes.get(found)) or len(data) != len(found.entries):
             raise _Unlike
         self.sources[id(data)] = found
         self._nodes += 1
@@ -290,7 +290,7 @@ class _Rereading:
 
     def data_of(self, found: Collection) -> Plain | list[object]:
         """Return the data of a collection; that of kept and new parts is the one that was read."""
-        if id(found) not in self._shifts:
+        if found not in self._shifts:
             return found.data
         parts = ((cast("Scalar", member.key).value, member.value) for member in found.entries)
         return {str(key): self.data_of(part) if isinstance(part, Collection) else part.value for key, part in parts}
@@ -324,7 +324,7 @@ class _Rereading:
                 else:
                     self._value(value, inner, depth, by=shift)
             elif isinstance(member.value, Collection):
-                if id(member.value) not in self._shifts:
+                if member.value not in self._shifts:
                     self._adopt(member.value, data, key)
                 self.take(member.value, data[key], 0, depth + 1)
             else:
