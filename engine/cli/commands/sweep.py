@@ -38,14 +38,13 @@ from engine.sweep import (
 from engine.sweep.case_file import case_document
 from engine.sweep.report import markdown, report
 from engine.sweep.search import execute_search, saved_search, summarize_search
-from engine.sweep.shrinking import same_cause, same_outcome
-from engine.sweep.shrinking import shrink as shrink_failure
+from engine.sweep.shrinking import SameAs
 from engine.sweep.sweep_table import DEFAULT_RESULTS
 from engine.sweep.trial_execution import DEFAULT_MEMORY_BYTES, ProcessLimits
+from engine.sweep.trial_shrinking import MOST_RUNS, shrink_trial
 
 _MEBIBYTE = 2**20
 _DEFAULT = "run"
-_SAME = {"outcome": same_outcome, "cause": same_cause}
 
 
 class _RunByDefault(TyperGroup):
@@ -311,10 +310,10 @@ def shrink(
     parameter: Parameter = None,
     results: Results = DEFAULT_RESULTS,
     same: Annotated[
-        Literal["outcome", "cause"],
+        SameAs,
         typer.Option(help="What must stay the same: how the run ends, or its root cause too."),
     ] = "outcome",
-    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = 200,
+    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = MOST_RUNS,
     record: Annotated[Path | None, typer.Option(help="Record the smallest failing run to this MCAP file.")] = None,
     case: Annotated[
         Path | None, typer.Option(help="Write it as a sweep of one run that requires success: a regression test.")
@@ -333,25 +332,14 @@ def shrink(
         method=method,
     )
     subject, failing = chosen_result(file, overrides, results, number)
-    noisy = Trials(subject)
-    quiet = Trials(subject.without_placement_noise()) if subject.sweep.document.placement_noise else None
-    found = shrink_failure(
-        failing,
-        subject.sweep.document.factors,
-        subject.nominal,
-        noisy.run,
-        quiet=quiet.run if quiet is not None else None,
-        same=_SAME[same],
-        most_runs=most,
-        show=show_shrinking,
-    )
+    found = shrink_trial(subject, failing, same=same, most_runs=most, show=show_shrinking)
     sys.stdout.write(shrunk_text(found))
     if record is not None:
-        (noisy if found.placement_noise or quiet is None else quiet).run(found.result.configuration, record=record)
+        executed = subject if found.placement_noise else subject.without_placement_noise()
+        Trials(executed).run(found.result.configuration, record=record)
         sys.stdout.write(f"recorded to {record}\n")
     if case is not None:
-        noise = found.placement_noise and quiet is not None
-        write(case, case_document(subject.sweep, found.result, case, placement_noise=noise))
+        write(case, case_document(subject.sweep, found.result, case, placement_noise=found.placement_noise))
         sys.stdout.write(f"`flexcell sweep {case}` fails until it is mended\n")
 
 
