@@ -5,7 +5,7 @@ const VERSION = { version: 'abc', runs: 20, successes: 15, changed: ['behavior',
 
 it('names a baseline by when it was executed, how it did, what differs and where it is', () => {
   const kept = baselineName({ results: '.flexcell/sweeps.db', version: VERSION })
-  expect(kept).toMatch(/^Nov 2\d, 2026, .* · 15 of 20 succeeded · other behavior, mujoco$/)
+  expect(kept).toMatch(/^Nov 2\d, 2026, .* · 15 of 20 succeeded · differs in behavior, mujoco$/)
   expect(baselineName({ results: 'results/old.db', version: { ...VERSION, changed: [] } })).toMatch(/succeeded · results\/old.db$/)
 })
 

@@ -7,7 +7,7 @@ export function baselineName({ results, version }: Baseline): string {
   const { runs, successes, changed, saved_unix_s: saved } = version
   const when = new Date(1000 * saved).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' })
   const parts = [when, `${successes} of ${runs} succeeded`]
-  if (changed.length > 0) parts.push(`other ${changed.join(', ')}`)
+  if (changed.length > 0) parts.push(`differs in ${changed.join(', ')}`)
   if (!results.startsWith('.flexcell/')) parts.push(results)
   return parts.join(' · ')
 }
