@@ -4,8 +4,9 @@
 
 `dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
 planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path, `editor` a
-behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches. Needs the extras
-`all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
+behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches, `sweep` what the first
+runs of a sweep have shown, which are executed before. Needs the extras `all` and `test` and a Chromium. Without a
+graphics card the 3D view takes seconds a picture.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ class Picture:
     address: str
     size: tuple[int, int]
     prepare: Callable[[Page], None]
+    before: Callable[[], None] = lambda: None
+    """What is done before it is served."""
 
 
 @contextmanager
@@ -62,6 +65,14 @@ def served(cell: str) -> Generator[str]:
         finally:
             server.terminate()
             server.wait(timeout=60)
+
+
+def sweep_runs() -> None:
+    """Execute the first runs of the sweep of the pick and place; those that are saved are not executed again."""
+    program = Path(sys.executable).with_name("flexcell")
+    command = [program, "sweep", ROOT / SWEEP, "--runs", str(SWEEP_RUNS), "--quiet"]
+    # The exit code is the verdict.
+    subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL)
 
 
 def drawn(page: Page) -> None:
@@ -137,6 +148,13 @@ def taught(page: Page) -> None:
     drawn(page)
 
 
+def swept(page: Page) -> None:
+    """As it opens."""
+    expect(page.get_by_role("img", name="Success rate after each")).to_be_visible(timeout=LIMIT_MS)
+
+
+SWEEP = "behaviors/sweeps/pick_and_place.yaml"
+SWEEP_RUNS = 40
 CONFIRM = "/behaviors/behaviors/pick_and_place/confirmed_move.yaml"
 TRANSFER = "/behaviors/behaviors/reconcycle/two_arm_transfer.yaml"
 EDITOR = "/edit/behaviors/reconcycle/two_arm_transfer.yaml#root/transfer/left/grasp"
@@ -151,6 +169,7 @@ PICTURES = (
     Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESKTOP, prepare=looked_back),
     Picture(name="teach", cell="dual_panda", address="/teach", size=DESKTOP, prepare=taught),
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
+    Picture(name="sweep", cell="ur10", address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),
 )
 
 
@@ -179,6 +198,7 @@ def main() -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         for picture in chosen:
+            picture.before()
             for scheme in schemes:
                 # A cell of its own for each: what one leaves behind is not in the next.
                 with served(picture.cell) as login:

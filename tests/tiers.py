@@ -37,7 +37,8 @@ FOLDERS = {
 # They call what starts npm and other tools.
 FILES = {
     "tests/editor_web/test_frontend.py": "process",
-    # It executes a sweep by its workers.
+    # They execute sweeps by their workers.
+    "tests/engine/sweep_library/test_searches.py": "process",
     "tests/engine/sweep_library/test_sweep_reader.py": "process",
     "tests/house/test_audit.py": "process",
     # Its last example opens the cell of the two Pandas.

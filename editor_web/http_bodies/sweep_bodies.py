@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
@@ -22,6 +22,18 @@ class SweepStartBody(RequestBody, frozen=True, kw_only=True):
     """A request to execute what is left of a sweep; `again` also what crashed or hung before."""
 
     again: bool = False
+
+
+class ShrinkBody(RequestBody, frozen=True, kw_only=True):
+    """A request to shrink a failing run; `same` is what must stay the same: how it ends, or its root cause too."""
+
+    same: Literal["outcome", "cause"] = "outcome"
+
+
+class SaveCaseBody(RequestBody, frozen=True, kw_only=True):
+    """A request to save what a run was shrunk to as a test case: a sweep document at `id`, a path in the project."""
+
+    id: Annotated[str, Meta(max_length=200)]
 
 
 class SweepIdBody(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,19 +7,25 @@ from typing import Annotated
 from fastapi import Path, Query, Response
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.sweep_bodies import NewSweepBody, SweepIdBody, SweepStartBody
+from editor_web.http_bodies.sweep_bodies import NewSweepBody, SaveCaseBody, ShrinkBody, SweepIdBody, SweepStartBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.sweep import TrialResult
 from engine.sweep_library import (
+    Baseline,
+    CompareSweep,
     CreateSweep,
     FactorChoice,
+    FindBaselines,
     ListSweeps,
     OfferFactors,
     ReadRuns,
     ReadSweep,
     ReadTrial,
     RecordedTrial,
+    SearchView,
+    Shrinking,
+    SweepComparison,
     SweepList,
     SweepRuns,
     SweepView,
@@ -87,9 +93,53 @@ async def record_sweep_run(sweep_id: str, number: Number, services: ServicesOf) 
     return _json(await services.sweeps.record(sweep_id, number))
 
 
-@router.get("/sweeps/{sweep_id:path}", responses=_found(SweepView))
+@router.get("/sweeps/{sweep_id:path}/runs/{number}/shrinking")
+async def get_shrinking(sweep_id: str, number: Number, services: ServicesOf) -> Shrinking:
+    """Return how far a failing run is shrunk to the smallest change from nominal, and what came of it."""
+    return services.sweeps.shrinkings.of(sweep_id, number)
+
+
+@router.post("/sweeps/{sweep_id:path}/runs/{number}/shrinking", status_code=202, responses=_PROBLEMS)
+async def start_shrinking(sweep_id: str, number: Number, body: ShrinkBody, services: ServicesOf) -> None:
+    """Begin to shrink a failing run, in a process with a low priority."""
+    await services.sweeps.shrinkings.start(sweep_id, number, same=body.same)
+
+
+@router.post("/sweeps/{sweep_id:path}/runs/{number}/shrinking/stop", status_code=202, responses=_PROBLEMS)
+async def stop_shrinking(sweep_id: str, number: Number, services: ServicesOf) -> None:
+    """End it with the smallest change found so far."""
+    services.sweeps.shrinkings.stop(sweep_id, number)
+
+
+@router.post("/sweeps/{sweep_id:path}/runs/{number}/shrinking/case", status_code=201, responses=_PROBLEMS)
+async def save_case(sweep_id: str, number: Number, body: SaveCaseBody, services: ServicesOf) -> SweepIdBody:
+    """Save the smallest change as a test case: a sweep of one run that requires success."""
+    await services.sweeps.save_case(sweep_id, number, body.id)
+    return SweepIdBody(id=body.id)
+
+
+@router.get("/sweeps/{sweep_id:path}/baselines", responses=_found(tuple[Baseline, ...]))
+async def list_baselines(sweep_id: str, services: ServicesOf) -> Response:
+    """List the other versions that have executed configurations of a sweep, the newest first."""
+    return _json(await services.sweeps.ask(FindBaselines(sweep=sweep_id)))
+
+
+@router.get("/sweeps/{sweep_id:path}/comparison", responses=_found(SweepComparison))
+async def compare_sweep(
+    sweep_id: str,
+    results: Annotated[str, Query(max_length=1000)],
+    version: Annotated[str, Query(max_length=100)],
+    services: ServicesOf,
+    margin: Annotated[float | None, Query(ge=0, le=1)] = None,
+) -> Response:
+    """Compare a sweep with a baseline: whether its success rate is lower, and by no more than the margin."""
+    request = CompareSweep(sweep=sweep_id, results=results, version=version, margin=margin)
+    return _json(await services.sweeps.ask(request))
+
+
+@router.get("/sweeps/{sweep_id:path}", responses=_found(SweepView | SearchView))
 async def get_sweep(sweep_id: str, services: ServicesOf) -> Response:
-    """Return everything that a sweep has shown."""
+    """Return everything that a sweep has shown, or a search for failures has found."""
     return _json(await services.sweeps.ask(ReadSweep(sweep=sweep_id)))
 
 

@@ -13,7 +13,7 @@ from typing import Self
 import msgspec
 
 from engine.errors import FlexcellError
-from engine.host.sqlite_file import advice, open_sqlite
+from engine.host.sqlite_file import advice, open_sqlite, read_sqlite
 from engine.host.sqlite_migrations import SqliteMigrations
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_result import TrialResult
@@ -60,6 +60,18 @@ class SweepResults:
         except (sqlite3.Error, OSError) as error:
             raise _fault("opened", path, error) from error
 
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Open an existing file for reading only; any other file stays as it is.
+
+        Raises:
+            FlexcellError: it is missing, or is not a file of results.
+        """
+        try:
+            return cls(path, read_sqlite(path, schema=_SCHEMA))
+        except sqlite3.Error as error:
+            raise _fault("opened", path, error) from error
+
     def __enter__(self) -> Self:
         return self
 
@@ -91,6 +103,11 @@ class SweepResults:
         """Return the versions of each subject by its hash."""
         rows = self._read("SELECT hash, versions FROM subjects ORDER BY hash")
         return {str(row[0]): msgspec.json.decode(str(row[1]), type=dict[str, str]) for row in rows}
+
+    def saved_unix_s(self, subject: str) -> float:
+        """Return when the last result of a subject was saved, in Unix time; 0 without any."""
+        ((newest,),) = self._read("SELECT max(saved_unix_s) FROM results WHERE subject = ?", subject)
+        return float(str(newest or 0.0))
 
     def of(self, subject: str, keys: Iterable[str]) -> dict[str, TrialResult]:
         """Return the saved results of a subject that have one of these keys.

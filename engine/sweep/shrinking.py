@@ -11,7 +11,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import msgspec
 
@@ -30,6 +31,8 @@ _DECIMALS = 9
 _NOMINAL_SEED = 0
 Execute = Callable[[Configuration], TrialResult]
 Same = Callable[[TrialResult, TrialResult], bool]
+SameAs = Literal["outcome", "cause"]
+"""What must stay the same: how a run ends, or its root cause too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +50,8 @@ class Shrunk:
     """Whether it fails with its seed and not with the nominal one."""
     placement_noise: bool = True
     """Whether it is executed with placement noise."""
+    interrupted: bool = False
+    """Whether it was ended before nothing smaller was left to try."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +77,7 @@ def shrink(
     most_runs: int = 200,
     show: Callable[[ShrinkProgress], None] = lambda _progress: None,
 ) -> Shrunk:
-    """Return the smallest change from nominal that still fails like a run.
+    """Return the smallest change from nominal that still fails like a run; Ctrl-C ends it with that found so far.
 
     Args:
         failing: A run that did not succeed.
@@ -94,10 +99,13 @@ def shrink(
             hint="choose one that fails: `flexcell sweep report` lists them",
         )
     shrinker = _Shrinker(failing, factors, nominal, execute, same or same_outcome, most_runs, show)
-    shrinker.take_chance_out(quiet)
-    shrinker.set_back()
-    shrinker.move_back()
-    shrinker.round_off()
+    try:
+        shrinker.take_chance_out(quiet)
+        shrinker.set_back()
+        shrinker.move_back()
+        shrinker.round_off()
+    except KeyboardInterrupt:
+        return replace(shrinker.found(), interrupted=True)
     return shrinker.found()
 
 

@@ -8,8 +8,11 @@ server itself loads no statistics, checks no document, and keeps no copy of a re
 from engine.lazy_face import lazy_face
 
 _HOMES = {
+    "Baseline": "engine.sweep_library.baselines",
+    "CompareSweep": "engine.sweep_library.sweep_requests",
     "CreateSweep": "engine.sweep_library.sweep_requests",
     "FactorChoice": "engine.sweep_library.sweep_view",
+    "FindBaselines": "engine.sweep_library.sweep_requests",
     "ListSweeps": "engine.sweep_library.sweep_requests",
     "NoSuchSweep": "engine.sweep_library.sweep_files",
     "OfferFactors": "engine.sweep_library.sweep_requests",
@@ -17,6 +20,9 @@ _HOMES = {
     "ReadSweep": "engine.sweep_library.sweep_requests",
     "ReadTrial": "engine.sweep_library.sweep_requests",
     "RecordedTrial": "engine.sweep_library.sweep_view",
+    "SearchView": "engine.sweep_library.search_view",
+    "Shrinking": "engine.sweep_library.shrink_view",
+    "SweepComparison": "engine.sweep_library.baselines",
     "SweepList": "engine.sweep_library.sweep_view",
     "SweepLive": "engine.sweep_library.sweep_view",
     "SweepRuns": "engine.sweep_library.sweep_view",

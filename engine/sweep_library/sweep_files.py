@@ -65,6 +65,19 @@ def new_sweep_text(project: Path, sweep_id: str, document: SweepDocument) -> tup
     Raises:
         DocumentError: the name is taken or not a name for it, a path leads out of the project, or it is not valid.
     """
+    file = new_document_file(project, sweep_id)
+    moved = _moved(document, project.resolve(), file.parent)
+    text = write_yaml(cast("dict[str, Any]", _written(moved)))
+    sweep_of_source(parse_source(text, file=str(file)), file=file)
+    return file, text
+
+
+def new_document_file(project: Path, sweep_id: str) -> Path:
+    """Return the file of a new sweep document.
+
+    Raises:
+        DocumentError: the name is taken or not a name for it.
+    """
     root = project.resolve()
     file = root / sweep_id
     if not _NEW_ID.fullmatch(sweep_id) or len(sweep_id) > 200 or not file.resolve().is_relative_to(root):
@@ -72,10 +85,7 @@ def new_sweep_text(project: Path, sweep_id: str, document: SweepDocument) -> tup
         raise DocumentError(f"{sweep_id[:120]!r} is not a name for a sweep", where="id", hint=hint)
     if file.exists():
         raise DocumentError(f"there is a file {sweep_id} already", where="id", hint="choose another name")
-    moved = _moved(document, root, file.parent)
-    text = write_yaml(cast("dict[str, Any]", _written(moved)))
-    sweep_of_source(parse_source(text, file=str(file)), file=file)
-    return file, text
+    return file
 
 
 def _files(root: Path) -> Iterator[tuple[str, os.stat_result]]:

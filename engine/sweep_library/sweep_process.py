@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 import msgspec
@@ -16,8 +17,10 @@ from engine.sweep_library.sweep_files import NoSuchSweep
 from engine.sweep_library.sweep_reader import SweepReader
 from engine.sweep_library.sweep_requests import (
     Answered,
+    CompareSweep,
     CreateSweep,
     ExecuteSweep,
+    FindBaselines,
     ListSweeps,
     OfferFactors,
     Proceeding,
@@ -27,11 +30,16 @@ from engine.sweep_library.sweep_requests import (
     RecordTrial,
     RefusalKind,
     Refused,
+    SaveCase,
+    ShrinkProceeding,
+    ShrinkTrial,
     SweepAnswer,
+    SweepProgressAnswer,
     SweepRequest,
 )
 
 _NICER_BY = 10
+Send = Callable[[SweepProgressAnswer], None]
 
 
 def main(descriptor: int) -> None:
@@ -56,7 +64,7 @@ def main(descriptor: int) -> None:
             send(answer(reader, msgspec.json.decode(line, type=SweepRequest), send))
 
 
-def answer(reader: SweepReader, request: SweepRequest, send: Callable[[Proceeding], None]) -> Answered | Refused:
+def answer(reader: SweepReader, request: SweepRequest, send: Send) -> Answered | Refused:
     """Return the answer to a request; `send` is called with how far it is."""
     try:
         return Answered(body=msgspec.Raw(msgspec.json.encode(_answered(reader, request, send))))
@@ -68,7 +76,7 @@ def answer(reader: SweepReader, request: SweepRequest, send: Callable[[Proceedin
         return Refused(kind="state", words=(f"sweeps need a package: {error}", "", hint))
 
 
-def _answered(reader: SweepReader, request: SweepRequest, send: Callable[[Proceeding], None]) -> object:
+def _answered(reader: SweepReader, request: SweepRequest, send: Send) -> object:
     match request:
         case ListSweeps():
             return reader.list()
@@ -84,12 +92,35 @@ def _answered(reader: SweepReader, request: SweepRequest, send: Callable[[Procee
             return reader.create(request.sweep, request.document)
         case RecordTrial():
             return reader.record(request.sweep, request.number)
+        case SaveCase():
+            return reader.save_case(request.sweep, request.case, request.found)
+        case FindBaselines():
+            return reader.baselines(request.sweep)
+        case CompareSweep():
+            return reader.compare(
+                request.sweep, results=request.results, version=request.version, margin=request.margin
+            )
         case ExecuteSweep():
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-            try:
+            with _interruptible():
                 return reader.execute(request.sweep, again=request.again, show=lambda live: send(Proceeding(live=live)))
-            finally:
-                signal.signal(signal.SIGINT, signal.SIG_IGN)
+        case ShrinkTrial():
+            with _interruptible():
+                return reader.shrink(
+                    request.sweep,
+                    request.number,
+                    same=request.same,
+                    show=lambda progress: send(ShrinkProceeding(progress=progress)),
+                )
+
+
+@contextmanager
+def _interruptible() -> Generator[None]:
+    """Let Ctrl-C end what is executed."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _kind(error: FlexcellError) -> RefusalKind:

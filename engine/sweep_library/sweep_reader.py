@@ -15,20 +15,34 @@ from engine.document.sweep import PointsFile, Sweep, SweepDocument, load_sweep, 
 from engine.editing.versions import write_atomically
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.host.state_folder_names import STATE_FOLDER
+from engine.sweep.case_file import case_document
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.design.designs import configurations
 from engine.sweep.execution.trial import Trials
 from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.execution.worker_pool import WorkerOptions
 from engine.sweep.results import SweepResults
+from engine.sweep.search import SearchProgress, execute_search, saved_search
+from engine.sweep.shrinking import SameAs, ShrinkProgress
 from engine.sweep.statistics import rate_interval
 from engine.sweep.subject.sweep_subject import SweepSubject
 from engine.sweep.summary import summarize
 from engine.sweep.sweep_execution import SweepEnd, SweepProgress, execute_sweep, saved_sweep
 from engine.sweep.sweep_table import DEFAULT_RESULTS, available_processors
-from engine.sweep.verdict.success_count import SuccessCount
+from engine.sweep.trial_shrinking import shrink_trial
+from engine.sweep_library.baselines import Baseline, SweepComparison, baselines, compared
 from engine.sweep_library.factor_choices import factor_choices
-from engine.sweep_library.sweep_files import NoSuchSweep, Stamps, new_sweep_text, project_stamps, sweep_file, sweep_ids
+from engine.sweep_library.search_view import search_live_of, search_view_of, searching
+from engine.sweep_library.shrink_view import ShrunkTrial
+from engine.sweep_library.sweep_files import (
+    NoSuchSweep,
+    Stamps,
+    new_document_file,
+    new_sweep_text,
+    project_stamps,
+    sweep_file,
+    sweep_ids,
+)
 from engine.sweep_library.sweep_view import (
     CurvePoint,
     FactorChoice,
@@ -38,10 +52,10 @@ from engine.sweep_library.sweep_view import (
     SweepList,
     SweepLive,
     SweepRuns,
-    UndescribedResults,
     live_of,
     view_of,
 )
+from engine.sweep_library.undescribed_results import undescribed_results
 
 MOST_RUNS = 2000
 """Runs that are listed at once."""
@@ -56,6 +70,11 @@ _PERIOD_S = 0.2
 class _Loaded:
     subject: SweepSubject
     configurations: Sequence[Configuration]
+    """Those of its design; a search has none before it is executed."""
+
+    @property
+    def is_search(self) -> bool:
+        return self.subject.sweep.document.search is not None
 
 
 class SweepReader:
@@ -80,12 +99,18 @@ class SweepReader:
         stamps = self._refresh()
         with SweepResults.open(self.results) as results:
             lines = tuple(self._line(each, results) for each in sweep_ids(self.project, stamps))
-            others = tuple(self._others(results, stamps))
+            asked = {each.subject.hash for each in self._loaded.values()}
+            others = tuple(undescribed_results(self.project, stamps, results, asked))
         return SweepList(sweeps=lines, others=others)
 
     def view(self, sweep_id: str) -> msgspec.Struct:
         """Return everything that a sweep has shown, a `SweepView`."""
-        end = self._saved(sweep_id)
+        loaded = self._load(sweep_id)
+        if loaded.is_search:
+            with SweepResults.open(self.results) as results:
+                search = saved_search(loaded.subject, results)
+            return search_view_of(self._line_of(sweep_id, loaded.subject.sweep, search_live_of(search)), search)
+        end = self._saved(loaded)
         document = end.subject.sweep.document
         head = SweepHead(
             line=self._line_of(sweep_id, end.subject.sweep, live_of(end.count)),
@@ -96,7 +121,7 @@ class SweepReader:
 
     def runs(self, sweep_id: str, most: int = MOST_RUNS) -> SweepRuns:
         """Return its runs, failing ones first."""
-        results = self._saved(sweep_id).results
+        results = self._ended(self._load(sweep_id))
         alike: dict[tuple[str, str], list[int]] = {}
         for each in results:
             if not each.success:
@@ -115,11 +140,15 @@ class SweepReader:
             NoSuchSweep: there is none.
         """
         loaded = self._load(sweep_id)
-        if number < len(loaded.configurations):
+        if loaded.is_search:
+            ended = self._ended(loaded)[number : number + 1]
+        else:
             with SweepResults.open(self.results) as results:
-                found = results.of_design(loaded.subject.hash, [loaded.configurations[number]])
-            if number in found:
-                return found[number]
+                ended = list(
+                    results.of_design(loaded.subject.hash, loaded.configurations[number : number + 1]).values()
+                )
+        if ended:
+            return ended[0]
         raise NoSuchSweep(f"run {number} has no result", where=sweep_id, hint="its documents may have changed since")
 
     def factors(self, behavior_id: str) -> list[FactorChoice]:
@@ -143,12 +172,7 @@ class SweepReader:
         """
         file, text = new_sweep_text(self.project, sweep_id, document)
         require_simulated(SweepSubject.load(parse_sweep(text, file=file)))
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            write_atomically(file, text)
-        except OSError as error:
-            raise FlexcellError(f"the sweep cannot be written: {error.strerror}", where=sweep_id) from error
-        return sweep_id
+        return _written(file, text, sweep_id)
 
     def execute(self, sweep_id: str, *, again: bool, show: Callable[[SweepLive], None]) -> SweepLive:
         """Execute what is left of a sweep; an interrupt ends it, and keeps what has ended.
@@ -164,10 +188,19 @@ class SweepReader:
         options = WorkerOptions(workers=max(1, available_processors() - 1), timeout_s=seconds(document.timeout))
         shown_s = -_PERIOD_S
 
-        def report(progress: SweepProgress) -> None:
+        def is_due(elapsed_s: float) -> bool:
             nonlocal shown_s
-            if progress.elapsed_s - shown_s >= _PERIOD_S:
-                shown_s = progress.elapsed_s
+            if elapsed_s - shown_s < _PERIOD_S:
+                return False
+            shown_s = elapsed_s
+            return True
+
+        def report_search(progress: SearchProgress) -> None:
+            if is_due(progress.elapsed_s):
+                show(searching(progress))
+
+        def report(progress: SweepProgress) -> None:
+            if is_due(progress.elapsed_s):
                 show(
                     msgspec.structs.replace(
                         live_of(progress.count),
@@ -178,6 +211,9 @@ class SweepReader:
                 )
 
         with SweepResults.open(self.results) as results:
+            if loaded.is_search:
+                show(msgspec.structs.replace(search_live_of(saved_search(loaded.subject, results)), status="running"))
+                return search_live_of(execute_search(loaded.subject, results, options, again=again, show=report_search))
             before = saved_sweep(loaded.subject, loaded.configurations, results)
             show(msgspec.structs.replace(live_of(before.count), status="running"))
             end = execute_sweep(loaded.subject, loaded.configurations, results, options, again=again, show=report)
@@ -198,6 +234,57 @@ class SweepReader:
             saved=saved,
         )
 
+    def shrink(
+        self, sweep_id: str, number: int, *, same: SameAs, show: Callable[[ShrinkProgress], None]
+    ) -> ShrunkTrial:
+        """Shrink a failing run of a sweep in this process; an interrupt ends it with the smallest found so far.
+
+        Args:
+            sweep_id: The sweep.
+            number: The number of the run.
+            same: What must stay the same.
+            show: Called after each run.
+
+        Raises:
+            ControlError: the run succeeded.
+        """
+        failing = self.trial(sweep_id, number)
+        subject = self._load(sweep_id).subject
+        shrunk = shrink_trial(subject, failing, same=same, show=show)
+        return ShrunkTrial(subject=subject.hash, failing=failing.configuration, shrunk=shrunk)
+
+    def save_case(self, sweep_id: str, case: str, found: ShrunkTrial) -> str:
+        """Write a run that was shrunk as a sweep of one run that requires success, and return its path in the project.
+
+        Raises:
+            FlexcellError: the sweep is another one since, or there is such a file already; nothing is written.
+        """
+        subject = self._load(sweep_id).subject
+        if subject.hash != found.subject:
+            hint = "execute the sweep again, and shrink a run of it"
+            raise ControlError("the behavior, its cell or a package has changed since", where=sweep_id, hint=hint)
+        file = new_document_file(self.project, case)
+        shrunk = found.shrunk
+        text = case_document(subject.sweep, shrunk.result, file, placement_noise=shrunk.placement_noise)
+        return _written(file, text.decode(), case)
+
+    def baselines(self, sweep_id: str) -> Sequence[Baseline]:
+        """Return the versions that a sweep can be compared with; none of a search."""
+        loaded = self._load(sweep_id)
+        return [] if loaded.is_search else baselines(self.project, self._stamps, self._saved(loaded))
+
+    def compare(self, sweep_id: str, *, results: str, version: str, margin: float | None) -> SweepComparison:
+        """Compare a sweep with a version in a file of results of the project.
+
+        Raises:
+            FlexcellError: there is none, or it is a search, whose runs were chosen to fail.
+        """
+        loaded = self._load(sweep_id)
+        if loaded.is_search:
+            raise ControlError("a search has no baseline: its runs were chosen to fail", where=sweep_id)
+        end = self._saved(loaded)
+        return compared(self.project, self._stamps, end, results=results, version=version, margin=margin)
+
     def _refresh(self) -> Stamps:
         """Forget what was loaded once any file of the project has changed: which ones a sweep reads is not known."""
         stamps = project_stamps(self.project)
@@ -211,22 +298,27 @@ class SweepReader:
         known = self._loaded.get(sweep_id)
         if known is None:
             sweep = load_sweep(sweep_file(self.project, sweep_id))
-            known = _Loaded(subject=SweepSubject.load(sweep), configurations=configurations(sweep))
+            planned = configurations(sweep) if sweep.document.search is None else ()
+            known = _Loaded(subject=SweepSubject.load(sweep), configurations=planned)
             require_simulated(known.subject)
-            require_design(sweep)
             self._loaded[sweep_id] = known
         return known
 
-    def _saved(self, sweep_id: str) -> SweepEnd:
-        loaded = self._load(sweep_id)
+    def _saved(self, loaded: _Loaded) -> SweepEnd:
         with SweepResults.open(self.results) as results:
             return saved_sweep(loaded.subject, loaded.configurations, results)
+
+    def _ended(self, loaded: _Loaded) -> Sequence[TrialResult]:
+        """Return the runs of a sweep or search that have ended, in the order of their numbers."""
+        if not loaded.is_search:
+            return self._saved(loaded).results
+        with SweepResults.open(self.results) as results:
+            return [step.result for step in saved_search(loaded.subject, results).steps]
 
     def _line(self, sweep_id: str, results: SweepResults) -> SweepLine:
         try:
             loaded = self._load(sweep_id)
-            live = live_of(_count(loaded, results))
-            return self._line_of(sweep_id, loaded.subject.sweep, live)
+            return self._line_of(sweep_id, loaded.subject.sweep, _live(loaded, results))
         except FlexcellError as error:
             # One sweep that cannot be executed does not hide the others.
             return SweepLine(id=sweep_id, problem=str(error).replace(f"{self.project}/", ""))
@@ -240,35 +332,11 @@ class SweepReader:
             description=document.description,
             behavior=behavior.relative_to(self.project).as_posix() if inside else document.behavior,
             design=document.design.csv if isinstance(document.design, PointsFile) else document.design,
-            require="; ".join(each.text for each in document.requirements),
+            require="; ".join(each.text for each in document.requirements) if document.search is None else "",
+            towards=document.search.towards if document.search is not None else "",
             factors=tuple(document.factors),
             live=live,
         )
-
-    def _others(self, results: SweepResults, stamps: Stamps) -> list[UndescribedResults]:
-        asked = {each.subject.hash for each in self._loaded.values()}
-        meanings: dict[str, str] | None = None
-        found: list[UndescribedResults] = []
-        for subject, versions in results.subjects().items():
-            ended = results.all_of(subject) if subject not in asked else []
-            if ended:
-                meanings = self._meanings(stamps) if meanings is None else meanings
-                behavior = meanings.get(versions.get("behavior", ""), "")
-                good = sum(each.success for each in ended)
-                found.append(UndescribedResults(subject=subject, behavior=behavior, runs=len(ended), successes=good))
-        return found
-
-    def _meanings(self, stamps: Stamps) -> dict[str, str]:
-        """Return the behaviors of the project by their semantic hash."""
-        found: dict[str, str] = {}
-        for name in stamps:
-            if name.startswith("behaviors/") and not name.endswith((".py", ".csv", ".db")):
-                try:
-                    found[load_behavior(self.project / name).meaning] = name
-                except DocumentError:
-                    # No behavior, or one with mistakes: it cannot be what was executed.
-                    continue
-        return found
 
 
 def rate_curve(ordered: Sequence[TrialResult], document: SweepDocument) -> tuple[CurvePoint, ...]:
@@ -290,8 +358,20 @@ def rate_curve(ordered: Sequence[TrialResult], document: SweepDocument) -> tuple
     return tuple(points)
 
 
-def _count(loaded: _Loaded, results: SweepResults) -> SuccessCount:
-    return saved_sweep(loaded.subject, loaded.configurations, results).count
+def _live(loaded: _Loaded, results: SweepResults) -> SweepLive:
+    if loaded.is_search:
+        return search_live_of(saved_search(loaded.subject, results))
+    return live_of(saved_sweep(loaded.subject, loaded.configurations, results).count)
+
+
+def _written(file: Path, text: str, document_id: str) -> str:
+    """Write a new document and return its path in the project."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(file, text)
+    except OSError as error:
+        raise FlexcellError(f"this document cannot be written: {error.strerror}", where=document_id) from error
+    return document_id
 
 
 def require_simulated(subject: SweepSubject) -> None:
@@ -308,20 +388,6 @@ def require_simulated(subject: SweepSubject) -> None:
                 where=cell.file if cell is not None else None,
                 hint="give the sweep a `cell` whose robots have `driver: sim`",
             )
-
-
-def require_design(sweep: Sweep) -> None:
-    """Refuse a search for failures, whose runs were chosen to fail: their share is no rate.
-
-    Raises:
-        ControlError: the document has a search.
-    """
-    if sweep.document.search is not None:
-        raise ControlError(
-            "a search for failures has no page yet",
-            where=sweep.source.position(("search",), of_key=True),
-            hint=f"flexcell sweep {sweep.file.name} --report search.html; `--search none` executes its design",
-        )
 
 
 def _forget_oldest(folder: Path) -> None:

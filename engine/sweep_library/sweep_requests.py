@@ -7,6 +7,8 @@ from typing import Literal
 import msgspec
 
 from engine.document.sweep import SweepDocument
+from engine.sweep.shrinking import SameAs, ShrinkProgress
+from engine.sweep_library.shrink_view import ShrunkTrial
 from engine.sweep_library.sweep_view import SweepLive
 
 CODE = "import sys; from engine.sweep_library.sweep_process import main; main(int(sys.argv[1]))"
@@ -65,7 +67,51 @@ class RecordTrial(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     number: int
 
 
-SweepRequest = ListSweeps | ReadSweep | ReadRuns | ReadTrial | OfferFactors | CreateSweep | ExecuteSweep | RecordTrial
+class ShrinkTrial(msgspec.Struct, frozen=True, kw_only=True, tag=True):
+    """Shrink a failing run of a sweep: a `ShrinkProgress` after each run, and a `ShrunkTrial` at the end."""
+
+    sweep: str
+    number: int
+    same: SameAs = "outcome"
+
+
+class SaveCase(msgspec.Struct, frozen=True, kw_only=True, tag=True):
+    """Write a run that was shrunk as a test case to `case`, a path in the project: that path."""
+
+    sweep: str
+    case: str
+    found: ShrunkTrial
+
+
+class FindBaselines(msgspec.Struct, frozen=True, kw_only=True, tag=True):
+    """What a sweep can be compared with: a list of `Baseline`."""
+
+    sweep: str
+
+
+class CompareSweep(msgspec.Struct, frozen=True, kw_only=True, tag=True):
+    """Compare a sweep with a baseline: a `SweepComparison`."""
+
+    sweep: str
+    results: str
+    version: str
+    margin: float | None = None
+
+
+SweepRequest = (
+    ListSweeps
+    | ReadSweep
+    | ReadRuns
+    | ReadTrial
+    | OfferFactors
+    | CreateSweep
+    | ExecuteSweep
+    | RecordTrial
+    | ShrinkTrial
+    | SaveCase
+    | FindBaselines
+    | CompareSweep
+)
 
 
 class Answered(msgspec.Struct, frozen=True, kw_only=True, tag=True):
@@ -88,4 +134,11 @@ class Proceeding(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     live: SweepLive
 
 
-SweepAnswer = Answered | Refused | Proceeding
+class ShrinkProceeding(msgspec.Struct, frozen=True, kw_only=True, tag=True):
+    """How far a run is shrunk, before its answer."""
+
+    progress: ShrinkProgress
+
+
+SweepProgressAnswer = Proceeding | ShrinkProceeding
+SweepAnswer = Answered | Refused | SweepProgressAnswer

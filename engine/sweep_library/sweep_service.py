@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import signal
-import socket
-import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import msgspec
 
-from engine.errors import ControlError, DocumentError, FlexcellError, RobotError
-from engine.host.child_process import describe_exit, start_child
-from engine.sweep_library.sweep_files import NoSuchSweep, sweep_file
+from engine.errors import ControlError, RobotError
+from engine.sweep_library.shrinkings import Shrinkings
+from engine.sweep_library.sweep_files import sweep_file
+from engine.sweep_library.sweep_process_link import SweepProcessLink, refusal
 from engine.sweep_library.sweep_requests import (
-    CODE,
     Answered,
     ExecuteSweep,
     Proceeding,
     RecordTrial,
     Refused,
+    SaveCase,
+    ShrinkProceeding,
     SweepAnswer,
     SweepRequest,
 )
@@ -32,8 +31,6 @@ LIMIT_S = 120.0
 RECORD_LIMIT_S = 900.0
 STOP_LIMIT_S = 10.0
 """Time that a sweep has for its end; then its process is killed. What has ended is saved already."""
-_LONGEST_LINE = 64_000_000
-_WHAT = "the sweep process"
 _log = logging.getLogger("flexcell.sweeps")
 LiveCallback = Callable[[str, SweepLive], None]
 
@@ -51,14 +48,16 @@ class SweepService:
     def __init__(self, project: Path, *, changed: LiveCallback = lambda _sweep, _live: None) -> None:
         self._project = project.resolve()
         self._changed = changed
-        self._reader: _SweepProcess | None = None
+        self._reader: SweepProcessLink | None = None
         self._reading = asyncio.Lock()
         self._recording = asyncio.Lock()
         self._starting = asyncio.Lock()
-        self._recorder: _SweepProcess | None = None
-        self._executor: _SweepProcess | None = None
+        self._recorder: SweepProcessLink | None = None
+        self._executor: SweepProcessLink | None = None
         self._following: asyncio.Task[None] | None = None
         self._live: dict[str, SweepLive] = {}
+        self.shrinkings = Shrinkings(project)
+        """The runs that are shrunk."""
 
     @property
     def live(self) -> Mapping[str, SweepLive]:
@@ -74,7 +73,7 @@ class SweepService:
         """
         async with self._reading:
             if self._reader is None:
-                self._reader = await _SweepProcess.start(self._project)
+                self._reader = await SweepProcessLink.start(self._project)
             try:
                 return await self._reader.answer(request, limit_s=LIMIT_S)
             except (RobotError, asyncio.CancelledError):
@@ -99,12 +98,12 @@ class SweepService:
         if self._live or self._executor is not None:
             running = next(iter(self._live), "another sweep")
             raise ControlError("a sweep is being executed already", where=running, hint="stop it, or wait for its end")
-        process = self._executor = await _SweepProcess.start(self._project)
+        process = self._executor = await SweepProcessLink.start(self._project)
         try:
             await process.send(ExecuteSweep(sweep=sweep_id, again=again))
             first = await process.receive(limit_s=LIMIT_S)
             if isinstance(first, Refused):
-                raise _refusal(first)
+                raise refusal(first)
         except BaseException:
             self._executor = None
             process.close()
@@ -133,15 +132,29 @@ class SweepService:
         """
         await asyncio.to_thread(sweep_file, self._project, sweep_id)
         async with self._recording:
-            process = self._recorder = await _SweepProcess.start(self._project)
+            process = self._recorder = await SweepProcessLink.start(self._project)
             try:
                 return await process.answer(RecordTrial(sweep=sweep_id, number=number), limit_s=RECORD_LIMIT_S)
             finally:
                 self._recorder = None
                 process.close()
 
+    async def save_case(self, sweep_id: str, number: int, case: str) -> None:
+        """Save a run that was shrunk as a test case, a sweep document at a path in the project.
+
+        Raises:
+            ControlError: it was not shrunk, or the behavior has changed since.
+            DocumentError: the path is taken or leads out of the project.
+        """
+        found = self.shrinkings.of(sweep_id, number).found
+        if found is None:
+            raise ControlError("this run was not shrunk", where=f"run {number} of {sweep_id}", hint="shrink it first")
+        await self.ask(SaveCase(sweep=sweep_id, case=case, found=found))
+        self.shrinkings.note_case(sweep_id, number, case)
+
     async def close(self) -> None:
         """End all processes; a sweep that is being executed can go on later."""
+        await self.shrinkings.close()
         for process in (self._reader, self._recorder, self._executor):
             if process is not None:
                 process.close()
@@ -149,7 +162,7 @@ class SweepService:
         if self._following is not None:
             await asyncio.wait({self._following})
 
-    async def _follow(self, sweep_id: str, process: _SweepProcess) -> None:
+    async def _follow(self, sweep_id: str, process: SweepProcessLink) -> None:
         problem = ""
         last = self._live.get(sweep_id, SweepLive())
         try:
@@ -168,6 +181,8 @@ class SweepService:
                         message, where, _ = received.words
                         problem = f"{where}: {message}" if where else message
                         break
+                    case ShrinkProceeding():
+                        pass
         except RobotError as error:
             problem = error.message if self._live[sweep_id].status != "stopping" else ""
             _log.info("the execution of the sweep %s has ended: %s", sweep_id, error.message)
@@ -186,81 +201,6 @@ class SweepService:
         self._changed(sweep_id, live)
 
 
-class _SweepProcess:
-    """A sweep process with its socket."""
-
-    def __init__(
-        self, process: subprocess.Popen[bytes], reader: asyncio.StreamReader, writer: asyncio.StreamWriter
-    ) -> None:
-        self._process = process
-        self._reader = reader
-        self._writer = writer
-
-    @classmethod
-    async def start(cls, project: Path) -> _SweepProcess:
-        """Start a process; raises RobotError."""
-        ours, theirs = socket.socketpair()
-        try:
-            process = start_child(CODE, (theirs.fileno(),), what=_WHAT)
-            reader, writer = await asyncio.open_connection(sock=ours, limit=_LONGEST_LINE)
-        except BaseException:
-            ours.close()
-            raise
-        finally:
-            theirs.close()
-        writer.write(f"{project}\n".encode())
-        return cls(process, reader, writer)
-
-    async def answer(self, request: SweepRequest, *, limit_s: float) -> bytes:
-        """Return the answer to a request; raises FlexcellError where it is refused, RobotError without an answer."""
-        await self.send(request)
-        received = await self.receive(limit_s=limit_s)
-        match received:
-            case Answered():
-                return bytes(received.body)
-            case Refused():
-                raise _refusal(received)
-            case Proceeding():
-                raise RobotError(f"{_WHAT} has answered something else")
-
-    async def send(self, request: SweepRequest) -> None:
-        """Send a request."""
-        try:
-            self._writer.write(msgspec.json.encode(request) + b"\n")
-            await self._writer.drain()
-        except ConnectionError as error:
-            raise RobotError(describe_exit(self._process, what=_WHAT)) from error
-
-    async def receive(self, *, limit_s: float | None) -> SweepAnswer:
-        """Return its next answer; raises RobotError without one."""
-        try:
-            async with asyncio.timeout(limit_s):
-                line = await self._reader.readline()
-        except TimeoutError as error:
-            raise RobotError(f"{_WHAT} has not answered within {limit_s:g} s") from error
-        except (ConnectionError, ValueError) as error:
-            raise RobotError(f"{_WHAT} cannot be read: {error}") from error
-        if not line:
-            raise RobotError(await asyncio.to_thread(describe_exit, self._process, what=_WHAT))
-        return msgspec.json.decode(line, type=SweepAnswer)
-
-    def interrupt(self) -> None:
-        """Ask it to end what it executes."""
-        self._process.send_signal(signal.SIGINT)
-
-    def close(self) -> None:
-        """End it: it has nothing that could be lost."""
-        self._writer.close()
-        self._process.kill()
-        self._process.wait()
-
-
 def _idle(answered: SweepAnswer) -> SweepLive:
     assert isinstance(answered, Answered)
     return msgspec.json.decode(answered.body, type=SweepLive)
-
-
-def _refusal(refused: Refused) -> FlexcellError:
-    kinds = {"missing": NoSuchSweep, "state": ControlError, "invalid": DocumentError}
-    message, where, hint = refused.words
-    return kinds[refused.kind](message, where=where or None, hint=hint or None)

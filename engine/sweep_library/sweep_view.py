@@ -19,6 +19,16 @@ _APART = frozenset({"sweep", "results"})
 """What is of_head otherwise: the document of a sweep as it is, its results by `SweepRuns`."""
 
 
+class SearchLive(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a search for failures is."""
+
+    failures: int
+    nearest: float | None
+    """The number that is searched for, of the success that is nearest to failure."""
+    is_satisfied: bool = False
+    """Whether as many failures are found as it is for."""
+
+
 class SweepLive(msgspec.Struct, frozen=True, kw_only=True):
     """How far a sweep is. `looked_at` counts the runs without a gap before them: rate and interval are of those."""
 
@@ -33,6 +43,8 @@ class SweepLive(msgspec.Struct, frozen=True, kw_only=True):
     """Runs per second of wall time, while it is running."""
     remaining_s: float | None = None
     """Wall time that the runs that are left take; a decided sweep ends before."""
+    search: SearchLive | None = None
+    """Of a search; it has no rate, as its runs were chosen."""
     problem: str = ""
     """Why its execution has ended, where that was not as it should be."""
 
@@ -47,6 +59,8 @@ class SweepLine(msgspec.Struct, frozen=True, kw_only=True):
     design: str = ""
     require: str = ""
     """What is required, separated by semicolons."""
+    towards: str = ""
+    """What a search goes towards; empty for a design."""
     factors: tuple[str, ...] = ()
     live: SweepLive = SweepLive()
     problem: str = ""

@@ -51,6 +51,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "LoopBlocked ~ LoopStall": "the event of a state that blocks; a block by anything, also outside a run",
     "MagnetResult ~ MagnetState": "how an action ended; a measurement",
     "Pose ~ PoseTarget": "a pose; a pose or the name of an entry",
+    "SearchSummary ~ SearchView": "made from its fields, so that a page gets each of them; no field is written twice",
     "SetTransition ~ TransitionTaken": "an edit of a document; that a run took a transition",
     "SweepSummary ~ SweepView": "made from its fields, so that a page gets each of them; no field is written twice",
 }

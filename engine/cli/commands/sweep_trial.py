@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -16,11 +16,9 @@ from engine.cli.sweep_choice import chosen_result
 from engine.cli.sweep_options import SweepOverrides
 from engine.sweep import Trials
 from engine.sweep.case_file import case_document
-from engine.sweep.shrinking import same_cause, same_outcome
-from engine.sweep.shrinking import shrink as shrink_failure
+from engine.sweep.shrinking import SameAs
 from engine.sweep.sweep_table import DEFAULT_RESULTS
-
-_SAME = {"outcome": same_outcome, "cause": same_cause}
+from engine.sweep.trial_shrinking import MOST_RUNS, shrink_trial
 
 
 def rerun(
@@ -70,10 +68,10 @@ def shrink(
     parameter: Parameter = None,
     results: Results = DEFAULT_RESULTS,
     same: Annotated[
-        Literal["outcome", "cause"],
+        SameAs,
         typer.Option(help="What must stay the same: how the run ends, or its root cause too."),
     ] = "outcome",
-    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = 200,
+    most: Annotated[int, typer.Option(help="Runs at most.", min=1)] = MOST_RUNS,
     record: Annotated[Path | None, typer.Option(help="Record the smallest failing run to this MCAP file.")] = None,
     case: Annotated[
         Path | None, typer.Option(help="Write it as a sweep of one run that requires success: a regression test.")
@@ -92,23 +90,12 @@ def shrink(
         method=method,
     )
     subject, failing = chosen_result(file, overrides, results, number)
-    noisy = Trials(subject)
-    quiet = Trials(subject.without_placement_noise()) if subject.sweep.document.placement_noise else None
-    found = shrink_failure(
-        failing,
-        subject.sweep.document.factors,
-        subject.nominal,
-        noisy.run,
-        quiet=quiet.run if quiet is not None else None,
-        same=_SAME[same],
-        most_runs=most,
-        show=show_shrinking,
-    )
+    found = shrink_trial(subject, failing, same=same, most_runs=most, show=show_shrinking)
     sys.stdout.write(shrunk_text(found))
     if record is not None:
-        (noisy if found.placement_noise or quiet is None else quiet).run(found.result.configuration, record=record)
+        executed = subject if found.placement_noise else subject.without_placement_noise()
+        Trials(executed).run(found.result.configuration, record=record)
         sys.stdout.write(f"recorded to {record}\n")
     if case is not None:
-        noise = found.placement_noise and quiet is not None
-        write(case, case_document(subject.sweep, found.result, case, placement_noise=noise))
+        write(case, case_document(subject.sweep, found.result, case, placement_noise=found.placement_noise))
         sys.stdout.write(f"`flexcell sweep {case}` fails until it is mended\n")

@@ -31,5 +31,5 @@ def shrunk_text(found: Shrunk) -> str:
     chance = f"seed {seed}: with the nominal one it does not fail so" if found.seed_matters else f"seed {seed}"
     noise = "with" if found.placement_noise else "without"
     lines.append(f"  {chance}; {noise} placement noise")
-    lines.append(f"found in {found.runs} runs")
+    lines.append(f"{'interrupted after' if found.interrupted else 'found in'} {found.runs} runs")
     return "\n".join(lines) + "\n"

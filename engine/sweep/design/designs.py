@@ -9,9 +9,9 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
+from typing import Literal
 
 import msgspec
-from scipy.stats import qmc
 
 from engine.document.sweep import Factor, PointsFile, Sweep, require_address
 from engine.errors import DocumentError
@@ -39,12 +39,8 @@ def configurations(sweep: Sweep) -> Sequence[Configuration]:
             points = [random_shares(document.seed, number, len(factors)) for number in range(document.runs)]
         case "grid":
             return [configuration_of(document.seed, number, row) for number, row in _grid(factors, document.runs)]
-        case "latin_hypercube":
-            points = _quasi_random(qmc.LatinHypercube(max(len(factors), 1), rng=document.seed), document.runs)
-        case "sobol":
-            engine = qmc.Sobol(max(len(factors), 1), scramble=True, rng=document.seed)
-            # Drawn by the power of two, as its balance needs it: a longer sweep then starts with a shorter one.
-            points = _quasi_random(engine, 2 ** math.ceil(math.log2(document.runs)))[: document.runs]
+        case "latin_hypercube" | "sobol":
+            points = _even_points(document.design, max(len(factors), 1), document.runs, document.seed)
     return [
         configuration_of(
             document.seed,
@@ -73,8 +69,17 @@ def configuration_of(sweep_seed: int, number: int, values: Mapping[str, object])
     return Configuration(number=number, seed=seed, values=values)
 
 
-def _quasi_random(engine: qmc.QMCEngine, count: int) -> list[list[float]]:
-    return engine.random(count).tolist()
+def _even_points(
+    design: Literal["latin_hypercube", "sobol"], dimensions: int, count: int, seed: int
+) -> list[list[float]]:
+    # It takes a second to load, which no other design needs.
+    from scipy.stats import qmc
+
+    if design == "latin_hypercube":
+        return qmc.LatinHypercube(dimensions, rng=seed).random(count).tolist()
+    # Drawn by the power of two, as its balance needs it: a longer sweep then starts with a shorter one.
+    engine = qmc.Sobol(dimensions, scramble=True, rng=seed)
+    return engine.random(2 ** math.ceil(math.log2(count))).tolist()[:count]
 
 
 def _grid(factors: Mapping[str, Factor], runs: int) -> Iterator[tuple[int, dict[str, object]]]:

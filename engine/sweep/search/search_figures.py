@@ -30,13 +30,14 @@ def margin_trace(summary: SearchSummary) -> str:
     marks: list[str] = []
     for index, result in enumerate(results):
         x = place_x((index + 0.5) / total)
+        run = f'data-run="{result.configuration.number}"'
         title = f"<title>#{result.configuration.number}: {escape(result.label)}</title>"
         value = target.value(result) if result.success else None
         if is_failure(result):
             y = place_y(0.04)
-            marks.append(f'<path class="bad" d="M{x - _MARK:.1f} {y - _MARK:.1f}l8 8m0 -8l-8 8">{title}</path>')
+            marks.append(f'<path class="bad" {run} d="M{x - _MARK:.1f} {y - _MARK:.1f}l8 8m0 -8l-8 8">{title}</path>')
         elif value is not None:
-            marks.append(f'<circle class="good" cx="{x:.1f}" cy="{height(value):.1f}" r="3">{title}</circle>')
+            marks.append(f'<circle class="good" {run} cx="{x:.1f}" cy="{height(value):.1f}" r="3">{title}</circle>')
     line: list[str] = []
     done = 0
     for batch in summary.batches:

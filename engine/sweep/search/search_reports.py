@@ -67,6 +67,13 @@ def found_text(summary: SearchSummary) -> str:
             return f"{text}."
 
 
+def method_text(summary: SearchSummary) -> str:
+    """Return by which method the search went towards what, in one sentence."""
+    name = "cross-entropy" if summary.spec.method == "cross_entropy" else "optuna"
+    towards = f"{summary.target.text} of runs that succeed" if summary.target.guides else "failures alone"
+    return f"Searched by {name} towards {towards}, in {len(summary.batches)} batches."
+
+
 def probability_text(summary: SearchSummary) -> str:
     """Return what the search says about how likely failures are, in one or two sentences."""
     found = summary.probability
@@ -86,7 +93,7 @@ def probability_text(summary: SearchSummary) -> str:
 def _lines(summary: SearchSummary) -> Iterator[str]:
     yield f"# Failure search in {summary.sweep.document.behavior}"
     yield ""
-    yield f"{found_text(summary)} {_method(summary)}"
+    yield f"{found_text(summary)} {method_text(summary)}"
     yield ""
     yield probability_text(summary)
     for cluster in summary.clusters:
@@ -110,7 +117,7 @@ def _sections(summary: SearchSummary, title: str) -> Iterator[str]:
     yield f"<h1>{escape(title)}</h1>"
     if summary.sweep.document.description:
         yield f"<p>{escape(summary.sweep.document.description)}</p>"
-    yield f"<p>{escape(found_text(summary))} {escape(_method(summary))}</p>"
+    yield f"<p>{escape(found_text(summary))} {escape(method_text(summary))}</p>"
     yield f"<p>{escape(probability_text(summary))}</p>"
     if summary.steps:
         yield f"<h2>How near to failure</h2><figure>{margin_trace(summary)}</figure>"
@@ -158,12 +165,6 @@ def _row(result: TrialResult, addresses: list[str]) -> tuple[object, ...]:
     configuration = result.configuration
     values = (value_text(configuration.values[address]) for address in addresses)
     return f"#{configuration.number}", configuration.seed, *values
-
-
-def _method(summary: SearchSummary) -> str:
-    name = "cross-entropy" if summary.spec.method == "cross_entropy" else "optuna"
-    towards = f"{summary.target.text} of runs that succeed" if summary.target.guides else "failures alone"
-    return f"Searched by {name} towards {towards}, in {len(summary.batches)} batches."
 
 
 def _cause(cluster: FailureCluster) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -85,6 +86,25 @@ async def test_a_sweep_is_made_executed_stopped_and_a_failing_run_opened(serve: 
         assert (project.path / recorded["recording"]).is_file()
         assert (await http.get("/api/v1/sweeps/gone.yaml")).status_code == 404
 
+        run = f"{SWEEP}/runs/{number}/shrinking"
+        assert (await http.get(run)).json()["status"] == "idle"
+        unsaved = await http.post(f"{run}/case", json={"id": "tests/cases/luck.yaml"})
+        assert (unsaved.status_code, unsaved.json()["message"]) == (409, "this run was not shrunk")
+        assert (await http.post(run, json={"same": "cause"})).status_code == 202
+        assert (await http.post(run, json={})).json()["message"] == "a run is being shrunk already"
+        # Both are read while it is shrunk: there is nothing to compare with.
+        assert (await http.get(f"{SWEEP}/baselines")).json() == []
+        unknown = await http.get(f"{SWEEP}/comparison", params={"results": "gone.db", "version": "0"})
+        assert unknown.status_code == 404
+        while (shrinking := (await http.get(run)).json())["status"] == "running":  # noqa: ASYNC110 - untold
+            await asyncio.sleep(0.1)
+        assert shrinking["found"]["failing"] == failing["configuration"]
+        assert list(shrinking["found"]["shrunk"]["changed"]) == ["parameters.luck"]
+        saved = await http.post(f"{run}/case", json={"id": "tests/cases/luck.yaml"})
+        assert (saved.status_code, saved.json()) == (201, {"id": "tests/cases/luck.yaml"})
+        assert load_sweep(project.path / "tests" / "cases" / "luck.yaml").document.require == "success >= 1"
+        assert (await http.get(run)).json()["saved_as"] == "tests/cases/luck.yaml"
+
 
 @pytest.mark.parametrize("address", ["/sweeps", "/sweeps/sweeps/a.yaml"])
 async def test_the_page_is_served_at_its_addresses(serve: Serve, address: str) -> None:
@@ -100,6 +120,8 @@ async def test_a_viewer_starts_nothing(serve: Serve, project: LuckProject) -> No
         async with httpx.AsyncClient(base_url=served.running.url, headers=headers, trust_env=False) as viewer:
             assert (await viewer.post(f"{SWEEP}/start", json={})).status_code == 403
             assert (await viewer.post(f"{SWEEP}/runs/0/recording")).status_code == 403
+            assert (await viewer.post(f"{SWEEP}/runs/0/shrinking", json={})).status_code == 403
+            assert (await viewer.post(f"{SWEEP}/runs/0/shrinking/case", json={"id": "a.yaml"})).status_code == 403
 
 
 async def test_a_process_that_dies_is_named(serve: Serve, project: LuckProject) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import time
 from pathlib import Path
 
 import msgspec
@@ -157,3 +158,20 @@ def test_a_damaged_result_is_named(tmp_path: Path, text: str) -> None:
 def test_a_result_survives_json(tmp_path: Path) -> None:
     result = _result(3)
     assert msgspec.json.decode(msgspec.json.encode(result), type=TrialResult) == result
+
+
+def test_a_file_that_is_read_only_is_no_other_one_and_stays_as_it_is(tmp_path: Path) -> None:
+    before = time.time()
+    with SweepResults.read(_file(tmp_path / "a.db", _result(0))) as saved:
+        assert [each.outcome for each in saved.all_of("a")] == ["done"]
+        assert before <= saved.saved_unix_s("a") <= time.time()
+        assert saved.saved_unix_s("b") == 0.0
+    for content in (b"", b"no results"):
+        other = tmp_path / "other.db"
+        other.write_bytes(content)
+        with pytest.raises(FlexcellError), SweepResults.read(other) as saved:
+            saved.subjects()
+        assert other.read_bytes() == content
+    with pytest.raises(FlexcellError):
+        SweepResults.read(tmp_path / "gone.db")
+    assert not (tmp_path / "gone.db").exists()

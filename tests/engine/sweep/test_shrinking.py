@@ -214,6 +214,21 @@ def test_the_budget_ends_it_with_the_smallest_one_so_far() -> None:
     assert not found.result.success
 
 
+def test_an_interrupt_keeps_the_smallest_found_so_far() -> None:
+    runs: list[Configuration] = []
+    execute = _executes(lambda v: _number(v, "cell.parts.bolt.mass_kg") > 1.4, runs)
+
+    def interrupted(configuration: Configuration) -> TrialResult:
+        if len(runs) == 4:
+            raise KeyboardInterrupt
+        return execute(configuration)
+
+    found = shrink(_failing(FAR), FACTORS, NOMINAL, interrupted)
+    assert (found.interrupted, found.runs) == (True, 5)
+    assert "cell.parts.bolt.mass_kg" in found.changed
+    assert len(found.changed) < len(FAR)
+
+
 def test_a_run_that_succeeds_is_refused() -> None:
     good = TrialResult(configuration=Configuration(number=2, seed=1, values={}), status="finished", success=True)
     with pytest.raises(ControlError, match="configuration 2 succeeds"):

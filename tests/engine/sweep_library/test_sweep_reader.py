@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
@@ -14,10 +13,8 @@ from engine.document.sweep import Factor, SweepDocument, load_sweep
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.sweep import SweepResults, SweepSubject, Trials, configurations
 from engine.sweep_library.sweep_files import NoSuchSweep
-from engine.sweep_library.sweep_process import answer
 from engine.sweep_library.sweep_reader import SweepReader, require_simulated
 from engine.sweep_library.sweep_requests import (
-    Answered,
     CreateSweep,
     ListSweeps,
     OfferFactors,
@@ -25,13 +22,11 @@ from engine.sweep_library.sweep_requests import (
     ReadSweep,
     ReadTrial,
     RecordTrial,
-    Refused,
-    SweepRequest,
 )
 from engine.sweep_library.sweep_view import SweepLive
 from tests.engine.sweep.luck_project import LuckProject
+from tests.engine.sweep_library.saved_sweeps import ID, execute_runs, read, refused
 
-ID = "sweep.yaml"
 REAL = "flexcell: 1\ncell: real\nrobots: {arm: {model: panda, driver: {kind: other}}}\n"
 
 
@@ -43,37 +38,12 @@ def project(tmp_path: Path) -> LuckProject:
     return made
 
 
-def executed(project: LuckProject, runs: int) -> None:
-    """Execute the first runs of the sweep in this process."""
-    sweep = load_sweep(project.path / ID)
-    subject = SweepSubject.load(sweep)
-    trials = Trials(subject)
-    with SweepResults.open(SweepReader(project.path).results) as results:
-        results.describe(subject.hash, subject.versions)
-        for each in configurations(sweep)[:runs]:
-            results.save(each.key(subject.hash), subject.hash, trials.run(each))
-
-
-def read(project: LuckProject, request: SweepRequest) -> Any:
-    """What the page gets."""
-    found = answer(SweepReader(project.path), request, lambda _: None)
-    assert isinstance(found, Answered), found
-    return msgspec.json.decode(found.body)
-
-
-def refused(project: LuckProject, request: SweepRequest) -> Refused:
-    """Why the page gets nothing."""
-    found = answer(SweepReader(project.path), request, lambda _: None)
-    assert isinstance(found, Refused)
-    return found
-
-
 def test_sweeps_are_found_with_how_far_they_are(project: LuckProject) -> None:
-    executed(project, 3)
+    execute_runs(project.path, 3)
     (project.path / "sweeps").mkdir()
     (project.path / "sweeps" / "broken.yaml").write_text("flexcell: 1\nbehavior: ../gone.yaml\n")
     (project.path / "other.yaml").write_text("flexcell: 1\nbehavior_note: no sweep\n")
-    first, broken = read(project, ListSweeps())["sweeps"]
+    first, broken = read(project.path, ListSweeps())["sweeps"]
     live = first.pop("live")
     assert first == {
         "id": ID,
@@ -81,6 +51,7 @@ def test_sweeps_are_found_with_how_far_they_are(project: LuckProject) -> None:
         "behavior": "luck.yaml",
         "design": "random",
         "require": "success >= 0.9",
+        "towards": "",
         "factors": ["parameters.luck"],
         "problem": "",
     }
@@ -91,19 +62,19 @@ def test_sweeps_are_found_with_how_far_they_are(project: LuckProject) -> None:
 
 
 def test_results_that_no_document_asks_for_are_listed_with_their_behavior(project: LuckProject) -> None:
-    executed(project, 2)
+    execute_runs(project.path, 2)
     project.write(runs=10, parameters={"otherwise": "miss"})
     behaviors = project.path / "behaviors"
     behaviors.mkdir(exist_ok=True)
     (behaviors / "luck.yaml").write_bytes(project.behavior.read_bytes())
-    (other,) = read(project, ListSweeps())["others"]
+    (other,) = read(project.path, ListSweeps())["others"]
     assert (other["behavior"], other["runs"]) == ("behaviors/luck.yaml", 2)
 
 
 def test_a_sweep_is_shown_with_its_summary_and_how_the_interval_narrowed(project: LuckProject) -> None:
-    executed(project, 10)
-    view = read(project, ReadSweep(sweep=ID))
-    runs = read(project, ReadRuns(sweep=ID))
+    execute_runs(project.path, 10)
+    view = read(project.path, ReadSweep(sweep=ID))
+    runs = read(project.path, ReadRuns(sweep=ID))
     good = sum(each["success"] for each in runs["runs"])
     assert (view["done"], view["planned"], view["successes"]) == (10, 10, good)
     assert view["document"]["require"] == "success >= 0.9"
@@ -117,21 +88,21 @@ def test_a_sweep_is_shown_with_its_summary_and_how_the_interval_narrowed(project
 
 
 def test_failing_runs_come_first_and_are_grouped_by_cause(project: LuckProject) -> None:
-    executed(project, 10)
-    shown = read(project, ReadRuns(sweep=ID))
+    execute_runs(project.path, 10)
+    shown = read(project.path, ReadRuns(sweep=ID))
     runs = shown["runs"]
     assert [each["success"] for each in runs] == sorted(each["success"] for each in runs)
     failing = [each["configuration"]["number"] for each in runs if not each["success"]]
     assert 0 < len(failing) < 10
     assert shown["alike"] == [failing]
     assert all(each["nodes"] == {} for each in runs)
-    whole = read(project, ReadTrial(sweep=ID, number=failing[0]))
+    whole = read(project.path, ReadTrial(sweep=ID, number=failing[0]))
     assert whole["nodes"]["root/only"]["visits"] == 1
 
 
 def test_a_run_without_a_result_is_no_run(project: LuckProject) -> None:
-    assert refused(project, ReadTrial(sweep=ID, number=3)).kind == "missing"
-    assert refused(project, ReadTrial(sweep=ID, number=300)).kind == "missing"
+    assert refused(project.path, ReadTrial(sweep=ID, number=3)).kind == "missing"
+    assert refused(project.path, ReadTrial(sweep=ID, number=300)).kind == "missing"
 
 
 @pytest.mark.parametrize(
@@ -139,13 +110,13 @@ def test_a_run_without_a_result_is_no_run(project: LuckProject) -> None:
 )
 def test_only_sweeps_of_the_project_are_read(project: LuckProject, name: str) -> None:
     (project.path.parent / "sweep.yaml").write_bytes(project.text())
-    assert refused(project, ReadSweep(sweep=name)).kind == "missing"
-    assert refused(project, OfferFactors(behavior=f"../{name}")).kind == "invalid"
+    assert refused(project.path, ReadSweep(sweep=name)).kind == "missing"
+    assert refused(project.path, OfferFactors(behavior=f"../{name}")).kind == "invalid"
 
 
 def test_a_run_is_recorded_again_and_compared(project: LuckProject) -> None:
-    executed(project, 4)
-    recorded = read(project, RecordTrial(sweep=ID, number=2))
+    execute_runs(project.path, 4)
+    recorded = read(project.path, RecordTrial(sweep=ID, number=2))
     assert recorded["same"]
     assert recorded["result"]["events_sha256"] == recorded["saved"]["events_sha256"] != ""
     assert (project.path / recorded["recording"]).is_file()
@@ -159,7 +130,7 @@ def test_a_run_that_ends_otherwise_is_not_the_same(project: LuckProject) -> None
         results.describe(subject.hash, subject.versions)
         other = msgspec.structs.replace(Trials(subject).run(first), events_sha256="0" * 64)
         results.save(first.key(subject.hash), subject.hash, other)
-    assert not read(project, RecordTrial(sweep=ID, number=0))["same"]
+    assert not read(project.path, RecordTrial(sweep=ID, number=0))["same"]
 
 
 def test_a_sweep_with_a_real_robot_is_refused(project: LuckProject) -> None:
@@ -171,7 +142,7 @@ def test_a_sweep_with_a_real_robot_is_refused(project: LuckProject) -> None:
 
 
 def test_parameters_are_offered_as_factors(project: LuckProject) -> None:
-    luck, rate, otherwise = read(project, OfferFactors(behavior="luck.yaml"))
+    luck, rate, otherwise = read(project.path, OfferFactors(behavior="luck.yaml"))
     assert (luck["address"], luck["nominal"], luck["least"], luck["most"]) == ("parameters.luck", 0.0, 0.0, 1.0)
     assert (rate["description"], otherwise["nominal"]) == ("Of success", "miss")
 
@@ -184,28 +155,29 @@ def test_a_new_sweep_is_written_as_short_as_it_can_be(project: LuckProject) -> N
         runs=20,
         require="success >= 0.5",
     )
-    assert read(project, CreateSweep(sweep="sweeps/new.yaml", document=document)) == "sweeps/new.yaml"
+    assert read(project.path, CreateSweep(sweep="sweeps/new.yaml", document=document)) == "sweeps/new.yaml"
     written = project.path / "sweeps" / "new.yaml"
     assert load_sweep(written).document == msgspec.structs.replace(document, behavior="../luck.yaml")
     assert "placement_noise" not in written.read_text()
-    taken = refused(project, CreateSweep(sweep="sweeps/new.yaml", document=document))
+    taken = refused(project.path, CreateSweep(sweep="sweeps/new.yaml", document=document))
     assert (taken.kind, taken.words[0]) == ("invalid", "there is a file sweeps/new.yaml already")
 
 
 @pytest.mark.parametrize("name", ["../out.yaml", "/tmp/out.yaml", "no-suffix", ".hidden/x.yaml", "a/../../b.yaml", ""])
 def test_a_new_sweep_stays_in_the_project(project: LuckProject, name: str) -> None:
     document = SweepDocument(flexcell=1, behavior="luck.yaml")
-    assert refused(project, CreateSweep(sweep=name, document=document)).words[0].endswith("is not a name for a sweep")
+    told = refused(project.path, CreateSweep(sweep=name, document=document))
+    assert told.words[0].endswith("is not a name for a sweep")
 
 
 def test_a_new_sweep_names_no_file_outside(project: LuckProject) -> None:
     document = SweepDocument(flexcell=1, behavior="luck.yaml", store="../secret.db")
-    assert "leads out of the project" in refused(project, CreateSweep(sweep="a.yaml", document=document)).words[0]
+    assert "leads out of the project" in refused(project.path, CreateSweep(sweep="a.yaml", document=document)).words[0]
 
 
 def test_a_new_sweep_that_cannot_be_executed_is_not_written(project: LuckProject) -> None:
     document = SweepDocument(flexcell=1, behavior="luck.yaml", factors={"parameters.lack": Factor(values=(1,))})
-    assert "no parameter `lack`" in refused(project, CreateSweep(sweep="a.yaml", document=document)).words[0]
+    assert "no parameter `lack`" in refused(project.path, CreateSweep(sweep="a.yaml", document=document)).words[0]
     assert not (project.path / "a.yaml").exists()
 
 
@@ -229,11 +201,3 @@ def test_a_sweep_is_executed_in_the_end(project: LuckProject) -> None:
         SweepReader(project.path).execute("gone.yaml", again=False, show=shown.append)
     with pytest.raises(NoSuchSweep):
         SweepReader(project.path).runs("gone.yaml")
-
-
-def test_a_search_for_failures_says_where_it_is_executed(project: LuckProject) -> None:
-    project.write(runs=10, search={"towards": "most duration_s"})
-    (line,) = read(project, ListSweeps())["sweeps"]
-    assert "a search for failures has no page yet" in line["problem"]
-    assert "flexcell sweep sweep.yaml --report search.html" in line["problem"]
-    assert refused(project, ReadSweep(sweep=ID)).kind == "state"

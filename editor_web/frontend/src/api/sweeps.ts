@@ -2,11 +2,11 @@
 import { create } from 'zustand'
 import type { Dict } from '../document/dict'
 import { call, idPath, post } from './client'
-import type { FactorChoice, NewSweepBody, RecordedTrial, SweepIdBody, SweepList, SweepRuns, SweepView, TrialResult } from './types'
+import type { Baseline, FactorChoice, NewSweepBody, RecordedTrial, SearchView, ShrinkBody, Shrinking, SweepComparison, SweepIdBody, SweepList, SweepRuns, SweepView, TrialResult } from './types'
 
 export const sweepsApi = {
   list: () => call<SweepList>('/sweeps'),
-  view: (id: string) => call<SweepView>(`/sweeps/${idPath(id)}`),
+  view: (id: string) => call<SweepView | SearchView>(`/sweeps/${idPath(id)}`),
   runs: (id: string) => call<SweepRuns>(`/sweeps/${idPath(id)}/runs`),
   run: (id: string, number: number) => call<TrialResult>(`/sweeps/${idPath(id)}/runs/${number}`),
   factors: (behavior: string) => call<readonly FactorChoice[]>(`/sweep-factors?behavior=${encodeURIComponent(behavior)}`),
@@ -14,6 +14,20 @@ export const sweepsApi = {
   start: (id: string, again = false) => post<void>(`/sweeps/${idPath(id)}/start`, { again }),
   stop: (id: string) => post<void>(`/sweeps/${idPath(id)}/stop`, {}),
   record: (id: string, number: number) => post<RecordedTrial>(`/sweeps/${idPath(id)}/runs/${number}/recording`, {}),
+  shrinking: (id: string, number: number) => call<Shrinking>(shrinkingPath(id, number)),
+  shrink: (id: string, number: number, body: ShrinkBody) => post<void>(shrinkingPath(id, number), body),
+  stopShrinking: (id: string, number: number) => post<void>(`${shrinkingPath(id, number)}/stop`, {}),
+  saveCase: (id: string, number: number, file: string) => post<SweepIdBody>(`${shrinkingPath(id, number)}/case`, { id: file }),
+  baselines: (id: string) => call<readonly Baseline[]>(`/sweeps/${idPath(id)}/baselines`),
+  comparison: (id: string, { results, version }: Baseline, margin: number | undefined) => call<SweepComparison>(`/sweeps/${idPath(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
+}
+
+function shrinkingPath(id: string, number: number): string {
+  return `/sweeps/${idPath(id)}/runs/${number}/shrinking`
+}
+
+function comparisonQuery(results: string, version: string, margin: number | undefined): string {
+  return String(new URLSearchParams({ results, version, ...(margin !== undefined && { margin: String(margin) }) }))
 }
 
 /** A run of a sweep that was executed again, with what came of it. */

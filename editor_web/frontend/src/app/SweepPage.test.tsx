@@ -10,8 +10,8 @@ import { SweepsPage } from './SweepsPage'
 
 const ID = 'behaviors/sweeps/transfer.yaml'
 const AT = `/sweeps/${ID}`
-const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 2, interval: [0.12, 0.88], verdict: 'undecided', rate_hz: 0, remaining_s: null, problem: '' }
-const LINE: SweepLine = { id: ID, description: 'Both arms', behavior: 'behaviors/transfer.yaml', design: 'random', require: 'success >= 0.9', factors: ['parameters.speed', 'parameters.force'], live: LIVE, problem: '' }
+const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 2, interval: [0.12, 0.88], verdict: 'undecided', rate_hz: 0, remaining_s: null, search: null, problem: '' }
+const LINE: SweepLine = { id: ID, description: 'Both arms', behavior: 'behaviors/transfer.yaml', design: 'random', require: 'success >= 0.9', towards: '', factors: ['parameters.speed', 'parameters.force'], live: LIVE, problem: '' }
 const ROW = { name: 'root/pick', runs: 4, least: 1, middle: 2, p95: 3, most: 4 }
 const opened = vi.fn()
 
@@ -75,7 +75,10 @@ beforeEach(() => {
   opened.mockReset()
   history.replaceState(null, '', AT)
   server().on(`GET ${AT}`, VIEW).on(`GET ${AT}/runs`, RUNS)
-  for (const each of RUNS.runs) server().on(`GET ${AT}/runs/${each.configuration.number}`, each)
+  for (const each of RUNS.runs) {
+    const at = `GET ${AT}/runs/${each.configuration.number}`
+    server().on(at, each).on(`${at}/shrinking`, { status: 'idle', progress: null, found: null, saved_as: '', problem: '' })
+  }
 })
 
 async function page() {
@@ -227,5 +230,36 @@ it('makes and starts a sweep of what the form says', async () => {
   expect(server().bodies('POST /sweeps').at(-1)).toEqual({
     id: 'behaviors/sweeps/transfer_2.yaml',
     document: { flexcell: 1, behavior: 'behaviors/transfer.yaml', runs: 100, require: 'success >= 0.95', factors: { 'parameters.speed': { uniform: [0.1, 1] } } },
+  })
+})
+
+it('makes a search for failures of what the form says', async () => {
+  server()
+    .on('GET /sweeps', { sweeps: [], others: [] })
+    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0 }])
+    .on('GET /sweep-factors', [])
+    .on('POST /sweeps', { id: ID })
+  live()
+  const user = show(<SweepsPage onOpen={opened} />)
+  await user.click(await screen.findByRole('button', { name: 'New sweep' }))
+  await user.selectOptions(await screen.findByRole('combobox', { name: 'Behavior' }), await screen.findByRole('option', { name: 'transfer.yaml' }))
+  await user.selectOptions(screen.getByRole('combobox', { name: 'To find out' }), 'how it fails: a search for failures')
+  expect(screen.queryByLabelText('Required success rate, %')).toBeNull()
+  await user.selectOptions(screen.getByRole('combobox', { name: 'Towards' }), 'the least of a number')
+  await user.click(screen.getByLabelText('Number'))
+  await user.paste('left.gripper.force_min_n')
+  await user.click(screen.getByLabelText('Stop after, failures'))
+  await user.paste('3')
+  await user.click(screen.getByRole('button', { name: 'Add a factor' }))
+  await user.click(screen.getByLabelText('What is varied'))
+  await user.paste('parameters.speed')
+  await user.click(screen.getByLabelText('Least value of parameters.speed'))
+  await user.paste('0.1')
+  await user.click(screen.getByLabelText('Greatest value of parameters.speed'))
+  await user.paste('1')
+  await user.click(screen.getByRole('button', { name: 'Make only' }))
+  await waitFor(() => expect(opened.mock.calls).toEqual([[AT]]))
+  expect(server().bodies('POST /sweeps')[0]).toMatchObject({
+    document: { factors: { 'parameters.speed': { uniform: [0.1, 1] } }, search: { towards: 'least left.gripper.force_min_n', method: 'cross_entropy', runs: 100, stop_after: 3 } },
   })
 })

@@ -3,11 +3,14 @@ import '../features/sweeps/sweeps.css'
 import { useEffect, useState } from 'react'
 import { useLive } from '../api/live'
 import { sweepsApi } from '../api/sweeps'
-import type { SweepRuns, SweepView } from '../api/types'
+import type { SearchView, SweepRuns, SweepView } from '../api/types'
 import { Empty } from '../components/Empty'
 import { PageLink } from '../components/PageLink'
 import { lookup } from '../document/dict'
+import { designText, isSearch } from '../document/searches'
 import { currentLive, sweepName } from '../document/sweeps'
+import { FailureCount } from '../features/sweeps/FailureCount'
+import { SearchReport } from '../features/sweeps/SearchReport'
 import { SuccessRate, SweepControls, SweepProgress } from '../features/sweeps/SweepControls'
 import { SweepReport } from '../features/sweeps/SweepReport'
 import { VerdictBadge } from '../features/sweeps/VerdictBadge'
@@ -41,12 +44,17 @@ export function SweepPage({ id, onOpen }: SweepPageProps) {
   return <Opened view={value.view} runs={value.runs} onOpen={onOpen} />
 }
 
-async function read(id: string): Promise<{ readonly view: SweepView; readonly runs: SweepRuns }> {
+interface Shown {
+  readonly view: SweepView | SearchView
+  readonly runs: SweepRuns
+}
+
+async function read(id: string): Promise<Shown> {
   const [view, runs] = await Promise.all([sweepsApi.view(id), sweepsApi.runs(id)])
   return { view, runs }
 }
 
-function Opened({ view, runs, onOpen }: { readonly view: SweepView; readonly runs: SweepRuns; readonly onOpen: (href: string) => void }) {
+function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string) => void }) {
   const { line } = view
   const [selected, setSelected] = useState<number | undefined>(ofAddress)
   const live = currentLive(line, useLive((s) => lookup(s.sweeps, line.id)))
@@ -64,6 +72,7 @@ function Opened({ view, runs, onOpen }: { readonly view: SweepView; readonly run
     setSelected(run)
   }
 
+  const of = { mayOperate, selected, onSelect: select, onOpenRecording: (path: string) => onOpen(recordingHref(path)), onOpenSweep: (other: string) => onOpen(sweepHref(other)) }
   return (
     <div className="sweep-page">
       <header className="page-head">
@@ -77,7 +86,7 @@ function Opened({ view, runs, onOpen }: { readonly view: SweepView; readonly run
             <PageLink href={behaviorHref(line.behavior)} onOpen={() => onOpen(behaviorHref(line.behavior))}>
               {line.behavior}
             </PageLink>
-            , {line.design.replace('_', ' ')} design, <span className="mono">{line.id}</span>
+            , {designText(line)}, <span className="mono">{line.id}</span>
           </p>
         </div>
         <VerdictBadge live={live} require={line.require} />
@@ -85,11 +94,11 @@ function Opened({ view, runs, onOpen }: { readonly view: SweepView; readonly run
         <SweepControls sweep={line.id} live={live} mayOperate={mayOperate} broken={broken} />
       </header>
       <div className="sweep-summary">
-        <SuccessRate live={live} />
+        {live.search ? <FailureCount search={live.search} towards={line.towards} /> : <SuccessRate live={live} />}
         <SweepProgress live={live} />
       </div>
       {line.description && <p className="quiet sweep-description">{line.description}</p>}
-      <SweepReport view={view} runs={runs} mayOperate={mayOperate} selected={selected} onSelect={select} onOpenRecording={(path) => onOpen(recordingHref(path))} />
+      {isSearch(view) ? <SearchReport view={view} runs={runs} {...of} /> : <SweepReport view={view} runs={runs} {...of} />}
     </div>
   )
 }

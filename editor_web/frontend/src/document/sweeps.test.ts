@@ -18,10 +18,11 @@ import {
   scatterAxes,
   speedText,
   type FactorDraft,
+  type SearchDraft,
 } from './sweeps'
 
-const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 3, interval: [0.2, 0.9], verdict: null, rate_hz: 0, remaining_s: null, problem: '' }
-const LINE: SweepLine = { id: 's.yaml', description: '', behavior: 'b.yaml', design: 'random', require: '', factors: [], live: LIVE, problem: '' }
+const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 3, interval: [0.2, 0.9], verdict: null, rate_hz: 0, remaining_s: null, search: null, problem: '' }
+const LINE: SweepLine = { id: 's.yaml', description: '', behavior: 'b.yaml', design: 'random', require: '', towards: '', factors: [], live: LIVE, problem: '' }
 const CHOICE: FactorChoice = { address: 'parameters.speed', nominal: 0.5, unit: '', description: '', least: 0.05, most: 1, options: [] }
 const DRAFT: FactorDraft = { address: 'parameters.speed', kind: 'uniform', first: '0.1', second: '0.9', values: '' }
 
@@ -148,13 +149,25 @@ it.each([
 })
 
 it('makes the document of a form, or says what is wrong', () => {
-  const draft = { id: '', behavior: 'behaviors/a.yaml', runs: '20', required: '98', factors: [DRAFT] }
+  const draft = { id: '', behavior: 'behaviors/a.yaml', runs: '20', required: '98', factors: [DRAFT], search: undefined }
   expect(documentOf(draft)).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', runs: 20, require: 'success >= 0.98', factors: { 'parameters.speed': { uniform: [0.1, 0.9] } } })
   expect(documentOf({ ...draft, required: '', factors: [] })).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', runs: 20, factors: {} })
   expect(documentOf({ ...draft, behavior: '' })).toBe('Choose a behavior')
   expect(documentOf({ ...draft, runs: '1.5' })).toBe('Runs are a whole number, 1 at least')
   expect(documentOf({ ...draft, required: '101' })).toBe('The required success rate is 0 to 100 %')
   expect(documentOf({ ...draft, factors: [DRAFT, DRAFT] })).toBe('parameters.speed is there twice')
+})
+
+it('makes the document of a search, which requires no rate', () => {
+  const search: SearchDraft = { towards: 'most', name: ' duration_s ', method: 'cross_entropy', stopAfter: '3' }
+  const draft = { id: '', behavior: 'behaviors/a.yaml', runs: '20', required: '98', factors: [DRAFT], search }
+  const factors = { 'parameters.speed': { uniform: [0.1, 0.9] } }
+  const spec = { towards: 'most duration_s', method: 'cross_entropy', runs: 20, stop_after: 3 }
+  expect(documentOf(draft)).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', factors, search: spec })
+  expect(documentOf({ ...draft, search: { ...search, towards: 'failure', stopAfter: '' } })).toMatchObject({ search: { towards: 'failure', runs: 20 } })
+  expect(documentOf({ ...draft, search: { ...search, name: 'a b' } })).toBe('A search towards a number needs its name, without spaces')
+  expect(documentOf({ ...draft, search: { ...search, stopAfter: '0' } })).toBe('The failures after which it ends are a whole number, 1 at least')
+  expect(documentOf({ ...draft, factors: [] })).toBe('A search varies something: add a factor')
 })
 
 it('proposes a name that is free', () => {

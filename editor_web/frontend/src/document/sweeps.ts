@@ -1,5 +1,5 @@
 /** What a sweep has shown, in words, orders and scales. Pure. */
-import type { Factor, FactorChoice, FactorCoverage, Interval, JudgedRequirement, MeasureSpread, Quantiles, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
+import type { Factor, FactorChoice, FactorCoverage, Interval, JudgedRequirement, MeasureSpread, Quantiles, SearchSpec, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
 import { lookup } from './dict'
 import { numeral } from './values'
 
@@ -123,6 +123,11 @@ export function cellOf(run: TrialResult, column: string): unknown {
   }
 }
 
+/** A number of a run by its name: a measure, userdata at its end, or its duration. */
+export function numberOf(run: TrialResult, name: string): number | undefined {
+  return name === 'duration_s' ? run.duration_s : (lookup(run.measures, name) ?? lookup(run.outputs, name))
+}
+
 function compared(left: unknown, right: unknown): number {
   if (typeof left === 'number' && typeof right === 'number') return left - right
   return String(left ?? '').localeCompare(String(right ?? ''), 'en', { numeric: true })
@@ -219,6 +224,16 @@ function parsed(text: string): unknown {
   }
 }
 
+/** What a search goes towards and when it ends, as it is written in a form. */
+export interface SearchDraft {
+  readonly towards: 'failure' | 'least' | 'most'
+  /** The number whose least or largest value is searched for. */
+  readonly name: string
+  readonly method: 'cross_entropy' | 'optuna'
+  /** Failures; empty for all runs. */
+  readonly stopAfter: string
+}
+
 export interface SweepDraft {
   readonly id: string
   readonly behavior: string
@@ -226,6 +241,8 @@ export interface SweepDraft {
   /** In percent; empty for none. */
   readonly required: string
   readonly factors: readonly FactorDraft[]
+  /** None for a random design, which tells a rate. */
+  readonly search: SearchDraft | undefined
 }
 
 /** The document of a form, or what is wrong with it. */
@@ -243,7 +260,23 @@ export function documentOf(draft: SweepDraft): SweepDocument | string {
     if (factors.has(each.address)) return `${each.address} is there twice`
     factors.set(each.address, factor)
   }
-  return { flexcell: 1, behavior: draft.behavior, factors: Object.fromEntries(factors), runs, ...(isRequired && { require: `success >= ${Number((required / 100).toPrecision(10))}` }) }
+  const common = { flexcell: 1 as const, behavior: draft.behavior, factors: Object.fromEntries(factors) }
+  if (draft.search) {
+    if ([...factors.keys()].every((address) => address === 'seed')) return 'A search varies something: add a factor'
+    const search = searchOf(draft.search, runs)
+    return typeof search === 'string' ? search : { ...common, search }
+  }
+  return { ...common, runs, ...(isRequired && { require: `success >= ${Number((required / 100).toPrecision(10))}` }) }
+}
+
+/** The search of a document, or what is wrong with it. */
+function searchOf({ towards, name, method, stopAfter }: SearchDraft, runs: number): SearchSpec | string {
+  const number = name.trim()
+  if (towards !== 'failure' && !/^\S+$/.test(number)) return 'A search towards a number needs its name, without spaces'
+  const failures = Number(stopAfter)
+  const isEnding = stopAfter.trim() !== ''
+  if (isEnding && (!Number.isInteger(failures) || failures < 1)) return 'The failures after which it ends are a whole number, 1 at least'
+  return { towards: towards === 'failure' ? towards : `${towards} ${number}`, method, runs, ...(isEnding && { stop_after: failures }) }
 }
 
 /** A free name for the sweep of a behavior. */

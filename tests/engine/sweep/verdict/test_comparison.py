@@ -10,7 +10,7 @@ from engine.errors import FlexcellError
 from engine.sweep.design.configuration import Configuration
 from engine.sweep.execution.trial_result import TrialResult
 from engine.sweep.results import SweepResults
-from engine.sweep.verdict.comparison import Comparison, compare_with_baseline
+from engine.sweep.verdict.comparison import Comparison, baseline_versions, compare_with_baseline
 
 
 def _results(ends: str, *, first: int = 0) -> list[TrialResult]:
@@ -45,6 +45,17 @@ def test_runs_are_paired_by_configuration(tmp_path: Path) -> None:
 
 def test_the_version_with_most_of_the_configurations_is_taken(tmp_path: Path) -> None:
     assert _compare(tmp_path, {"older": "+", "old": "+-+"}, "+-+").baseline == "old"
+
+
+def test_another_version_can_be_chosen(tmp_path: Path) -> None:
+    _compare(tmp_path, {"older": "--", "old": "+-+"}, "+-+")
+    now = _results("+-+")
+    with SweepResults.read(tmp_path / "old.db") as saved:
+        known = baseline_versions(now, "new", {"mujoco": "5"}, saved)
+        found = compare_with_baseline(now, "new", {}, saved, confidence=0.95, version="older")
+    assert [(each.version, each.runs, each.successes) for each in known] == [("old", 3, 2), ("older", 2, 0)]
+    assert known[0].changed == ["behavior", "mujoco"]
+    assert (found.baseline, found.pair.only_second) == ("older", 1)
 
 
 def test_the_same_version_is_no_baseline(tmp_path: Path) -> None:

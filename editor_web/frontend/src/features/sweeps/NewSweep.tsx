@@ -7,6 +7,7 @@ import type { BehaviorSummary, FactorChoice } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { documentOf, proposedId, type FactorDraft, type SweepDraft } from '../../document/sweeps'
 import { FactorFields, NO_FACTOR } from './FactorFields'
+import { NEW_SEARCH, SearchFields } from './SearchFields'
 
 export interface NewSweepProps {
   /** The sweeps that there are. */
@@ -35,7 +36,7 @@ export function NewSweep({ taken, onMade }: NewSweepProps) {
 }
 
 export function NewSweepForm({ taken, onMade }: NewSweepProps) {
-  const [draft, setDraft] = useState<SweepDraft>({ id: '', behavior: '', runs: '100', required: '', factors: [] })
+  const [draft, setDraft] = useState<SweepDraft>({ id: '', behavior: '', runs: '100', required: '', factors: [], search: undefined })
   const [problem, setProblem] = useState('')
   const [step, setStep] = useState<'' | 'Checking …' | 'Starting …'>('')
   const isSending = step !== ''
@@ -91,16 +92,26 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
           ))}
         </select>
       </label>
+      <label>
+        To find out
+        <select className="new-input" value={draft.search ? 'search' : 'rate'} onChange={(event) => change({ search: event.currentTarget.value === 'search' ? NEW_SEARCH : undefined })}>
+          <option value="rate">how often it succeeds: random runs</option>
+          <option value="search">how it fails: a search for failures</option>
+        </select>
+      </label>
       <div className="sweep-form-row">
         <label>
           Runs
           <input className="new-input" inputMode="numeric" value={draft.runs} onChange={(event) => change({ runs: event.currentTarget.value })} />
         </label>
-        <label>
-          Required success rate, %
-          <input className="new-input" inputMode="decimal" placeholder="none" value={draft.required} onChange={(event) => change({ required: event.currentTarget.value })} />
-        </label>
+        {!draft.search && (
+          <label>
+            Required success rate, %
+            <input className="new-input" inputMode="decimal" placeholder="none" value={draft.required} onChange={(event) => change({ required: event.currentTarget.value })} />
+          </label>
+        )}
       </div>
+      {draft.search && <SearchFields search={draft.search} onChange={(search) => change({ search })} />}
       <fieldset className="sweep-factors">
         <legend>What is varied</legend>
         {draft.factors.map((factor, at) => (

@@ -55,23 +55,28 @@ export interface CauseListProps {
 export function CauseList({ causes, chosen, onChoose }: CauseListProps) {
   return (
     <ul className="plain-list sweep-causes" aria-label="Causes of failures">
-      {causes.map((each) => {
-        const example = each.examples[0]
-        const isChosen = chosen !== undefined && chosen === example
-        return (
-          <li key={`${each.at} ${each.message}`}>
-            <button type="button" className="sweep-cause" aria-pressed={isChosen} onClick={() => onChoose(isChosen ? undefined : example)}>
-              <span className="sweep-cause-runs">
-                {each.runs} {each.runs === 1 ? 'run' : 'runs'}
-              </span>
-              <span>
-                {each.message}
-                {each.at && <span className="quiet mono sweep-cause-at">{each.at}</span>}
-              </span>
-            </button>
-          </li>
-        )
-      })}
+      {causes.map((each) => (
+        <li key={`${each.at} ${each.message}`}>
+          <CauseButton cause={each} chosen={chosen} onChoose={onChoose} />
+        </li>
+      ))}
     </ul>
+  )
+}
+
+/** A cause, pressed where its runs are listed. */
+export function CauseButton({ cause, chosen, onChoose }: { readonly cause: CauseGroup } & Pick<CauseListProps, 'chosen' | 'onChoose'>) {
+  const example = cause.examples[0]
+  const isChosen = chosen !== undefined && chosen === example
+  return (
+    <button type="button" className="sweep-cause" aria-pressed={isChosen} onClick={() => onChoose(isChosen ? undefined : example)}>
+      <span className="sweep-cause-runs">
+        {cause.runs} {cause.runs === 1 ? 'run' : 'runs'}
+      </span>
+      <span>
+        {cause.message}
+        {cause.at && <span className="quiet mono sweep-cause-at">{cause.at}</span>}
+      </span>
+    </button>
   )
 }

@@ -7,18 +7,22 @@ import type { RecordedTrial, TrialResult } from '../../api/types'
 import { StatusBadge } from '../../components/StatusBadge'
 import { labelOf, short } from '../../document/sweeps'
 import { duration } from '../../document/time'
+import { ShrinkRun } from './ShrinkRun'
 
 const NODES = 8
 
 export interface RunDetailsProps {
   readonly sweep: string
   readonly number: number
+  /** The hash of the versions that were executed. */
+  readonly subject: string
   readonly mayOperate: boolean
   readonly onOpen: (recording: string) => void
+  readonly onOpenSweep: (id: string) => void
   readonly onClose: () => void
 }
 
-export function RunDetails({ sweep, number, mayOperate, onOpen, onClose }: RunDetailsProps) {
+export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenSweep, onClose }: RunDetailsProps) {
   const [run, setRun] = useState<TrialResult>()
   const [problem, setProblem] = useState('')
   const element = useRef<HTMLElement>(null)
@@ -55,12 +59,14 @@ export function RunDetails({ sweep, number, mayOperate, onOpen, onClose }: RunDe
         <>
           {run.cause && <p className="sweep-chain">{run.cause}</p>}
           {mayOperate && <Again sweep={sweep} run={run} onOpen={onOpen} />}
+          {!run.success && <ShrinkRun sweep={sweep} run={run} subject={subject} mayOperate={mayOperate} onOpenSweep={onOpenSweep} />}
           <Facts run={run} />
           <p className="quiet sweep-note">
             In a terminal: <code className="sweep-command">flexcell sweep rerun {sweep} {number}</code>
             {!run.success && (
               <>
-                ; the smallest change that fails: <code className="sweep-command">flexcell sweep shrink {sweep} {number}</code>
+                {' '}
+                and <code className="sweep-command">flexcell sweep shrink {sweep} {number}</code>
               </>
             )}
           </p>

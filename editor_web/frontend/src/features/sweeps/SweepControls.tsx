@@ -30,11 +30,12 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
     setStarting(false)
   }
 
-  const isDecided = live.verdict === 'passed' || live.verdict === 'failed'
+  const over = overText(live)
+  const isOver = over !== ''
   return (
     <>
       {mayOperate && live.status === 'idle' && left > 0 && (
-        <button type="button" className="command is-strong" aria-disabled={isStarting || isDecided || undefined} title={isDecided ? 'What is required is decided: no run would be executed' : undefined} onClick={() => !isStarting && !isDecided && void start(false)}>
+        <button type="button" className="command is-strong" aria-disabled={isStarting || isOver || undefined} title={isOver ? `${over}: no run would be executed` : undefined} onClick={() => !isStarting && !isOver && void start(false)}>
           <IconPlayerPlay size={15} aria-hidden />
           {isStarting ? 'Starting …' : live.done === 0 ? `Start ${left} runs` : `Go on with ${left} runs`}
         </button>
@@ -64,17 +65,23 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
   )
 }
 
+/** Why no more runs are needed; empty where they are. */
+function overText({ verdict, search }: SweepLive): string {
+  if (search?.is_satisfied) return 'as many failures are found as it is for'
+  return verdict === 'passed' || verdict === 'failed' ? 'what is required is decided' : ''
+}
+
 /** The bar with the runs that are done, and what they say until now. */
 export function SweepProgress({ live }: { readonly live: SweepLive }) {
   const speed = speedText(live)
-  const isDecided = live.status === 'idle' && live.done < live.planned && (live.verdict === 'passed' || live.verdict === 'failed')
+  const over = live.status === 'idle' && live.done < live.planned ? overText(live) : ''
   return (
     <div className="sweep-progress">
       <progress max={Math.max(live.planned, 1)} value={live.done} aria-label={`${live.done} of ${live.planned} runs are done`} />
       <p className="sweep-note" role={live.status === 'idle' ? undefined : 'status'}>
         {live.done} of {live.planned} runs
         {live.status !== 'idle' && speed && <span className="quiet"> · {speed}</span>}
-        {isDecided && <span className="quiet"> · decided: no more are needed</span>}
+        {over && <span className="quiet"> · {over}: no more are needed</span>}
         {live.status === 'running' && !speed && <span className="quiet"> · loading what the runs need</span>}
       </p>
     </div>

@@ -6,6 +6,7 @@ import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
+import { designText, failuresText } from '../../document/searches'
 import { currentLive, intervalText, percent, rateOf, speedText, sweepName } from '../../document/sweeps'
 import { VerdictBadge } from './VerdictBadge'
 
@@ -50,7 +51,7 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
         )}
         <VerdictBadge live={live} require={line.require} />
       </div>
-      <p className="quiet sweep-note">{[line.description, line.behavior, line.design && `${line.design.replace('_', ' ')} design`].filter(Boolean).join(' · ')}</p>
+      <p className="quiet sweep-note">{[line.description, line.behavior, designText(line)].filter(Boolean).join(' · ')}</p>
       {line.problem ? (
         <p className="is-failed sweep-note">{line.problem}</p>
       ) : (
@@ -58,6 +59,7 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
           <span>
             {live.done} of {live.planned} runs
           </span>
+          {live.search && live.done > 0 && <span>{failuresText(live.search)}</span>}
           {rate !== undefined && (
             <span>
               {percent(rate)} succeeded{live.interval && <span className="quiet"> ({intervalText(live.interval)})</span>}
