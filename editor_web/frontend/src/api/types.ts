@@ -86,6 +86,30 @@ export interface AutonomyBody {
   readonly level: "full" | "high" | "low" | "off"
 }
 
+/** A version to compare with; `results` is the path of its file in the project. */
+export interface Baseline {
+  readonly results: string
+  readonly version: BaselineVersion
+}
+
+/** Another version that has executed configurations of a sweep. */
+export interface BaselineVersion {
+  readonly version: string
+  readonly runs: number
+  readonly successes: number
+  readonly changed: readonly string[]
+  readonly saved_unix_s: number
+}
+
+/** What one batch has shown. */
+export interface BatchTrace {
+  readonly batch: number
+  readonly runs: number
+  readonly failures: number
+  readonly refused: number
+  readonly nearest: number | null
+}
+
 /** A new version of the document replaced the running one; `report` has a line for each change. `restarted` are the active nodes that are preempted and entered again, `removed` the removed branches of active concurrency containers; `preempt` is true when the operator allowed that. `replaced` are the nodes of the old version whose class or kind has changed. `documents` are the texts of the new version, when they can be stored, and `behavior` names the behavior among them. */
 export interface BehaviorChanged {
   readonly event: "behavior_changed"
@@ -339,6 +363,16 @@ export interface ClearTransition {
 export interface CompareBody {
   readonly before: string
   readonly after: string
+}
+
+/** Two versions on the same configurations: `pair.only_first` are the runs in which only the baseline succeeded. */
+export interface Comparison {
+  readonly baseline: string
+  readonly changed: readonly string[]
+  readonly pair: RatePair
+  readonly interval: Interval
+  readonly margin: number | null
+  readonly broken: readonly number[]
 }
 
 /** Holds when the children in `when` have ended with the outcome named for each: all, or any `at_least` of them. It decides the `outcome` of the container, or has an empty `outcome` and preempts the children in `preempt`. */
@@ -684,6 +718,29 @@ export interface FactorEffect {
   readonly with_success: number | null
   readonly with_duration: number | null
   readonly levels: readonly Level[]
+}
+
+/** The values of a factor with which runs failed alike; the search chose them, so that they are no random sample. */
+export interface FactorRegion {
+  readonly address: string
+  readonly listed: boolean
+  readonly failing: readonly unknown[]
+  readonly executed: readonly unknown[]
+  readonly share: number
+  readonly passed_inside: number
+}
+
+/** Failing runs with the same root cause, and where they are. */
+export interface FailureCluster {
+  readonly cause: CauseGroup
+  readonly regions: readonly FactorRegion[]
+}
+
+/** An estimate, and an interval that may be looked at at any time. */
+export interface FailureProbability {
+  readonly estimate: number
+  readonly interval: Interval
+  readonly effective_failures: number
 }
 
 /** A fault of the fault file was applied to a request. */
@@ -1604,6 +1661,14 @@ export interface Quantiles {
   readonly most: number
 }
 
+/** How two versions ended the same runs: numbers of runs by who succeeded. */
+export interface RatePair {
+  readonly both: number
+  readonly only_first: number
+  readonly only_second: number
+  readonly neither: number
+}
+
 /** A run of a sweep that was executed again and recorded to `recording`, a path in the project. */
 export interface RecordedTrial {
   readonly recording: string
@@ -1786,6 +1851,11 @@ export interface SaveCapture {
   readonly reason?: string
 }
 
+/** A request to save what a run was shrunk to as a test case: a sweep document at `id`, a path in the project. */
+export interface SaveCaseBody {
+  readonly id: string
+}
+
 /** The version that is on disk now. */
 export interface SaveResultBody {
   readonly hash: string
@@ -1799,6 +1869,13 @@ export interface ScopeView {
   readonly values: Dict<UserdataRecord>
 }
 
+/** How far a search for failures is. */
+export interface SearchLive {
+  readonly failures: number
+  readonly nearest: number | null
+  readonly is_satisfied: boolean
+}
+
 /** A search for failures instead of a design: what has ended decides which configurations are executed next. The first `batch` configurations are those of a random design; each later batch is drawn nearer to the runs that failed, or came nearest to it. `towards` names the number that tells how near a run that succeeded is; with `failure` none does. A run that fails is always nearer. The same seed finds the same configurations, with any number of workers. Of the method `cross_entropy`, `elite` is the share of a batch that the next one is drawn around, and `random_share` the share of each batch that is drawn at random all the same: it finds what the number does not point at, and bounds the weight of a run in the estimate of the failure probability. */
 export interface SearchSpec {
   readonly towards?: string
@@ -1808,6 +1885,36 @@ export interface SearchSpec {
   readonly stop_after?: number | null
   readonly elite?: number
   readonly random_share?: number
+}
+
+/** The number of a run whose least or largest value is searched for; a run that fails is beyond all of them. */
+export interface SearchTarget {
+  readonly name: string
+  readonly sign: number
+  readonly guides: boolean
+}
+
+export interface SearchView {
+  readonly line: SweepLine
+  readonly document: SweepDocument
+  readonly done: number
+  readonly failures: number
+  readonly towards: string
+  readonly found: string
+  readonly method: string
+  readonly likelihood: string
+  readonly figure: string
+  readonly subject: string
+  readonly versions: Dict<string>
+  readonly spec: SearchSpec
+  readonly target: SearchTarget
+  readonly ended_by: "failures" | "interrupted" | "runs" | "time"
+  readonly refused: number
+  readonly clusters: readonly FailureCluster[]
+  readonly nearest: readonly TrialResult[]
+  readonly batches: readonly BatchTrace[]
+  readonly probability: FailureProbability | null
+  readonly cpu_s: number
 }
 
 /** The service responded, or failed with `cause`. */
@@ -1897,6 +2004,46 @@ export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
+}
+
+/** A request to shrink a failing run; `same` is what must stay the same: how it ends, or its root cause too. */
+export interface ShrinkBody {
+  readonly same?: "cause" | "outcome"
+}
+
+/** How far a failing run is shrunk. */
+export interface ShrinkProgress {
+  readonly runs: number
+  readonly most_runs: number
+  readonly step: string
+  readonly changed: readonly string[]
+}
+
+/** How far a failing run is shrunk, and what came of it; kept as long as the server runs. */
+export interface Shrinking {
+  readonly status: "idle" | "running" | "stopping"
+  readonly progress: ShrinkProgress | null
+  readonly found: ShrunkTrial | null
+  readonly saved_as: string
+  readonly problem: string
+}
+
+/** A failing configuration with as few and as small changes from nominal as were found. */
+export interface Shrunk {
+  readonly result: TrialResult
+  readonly changed: Dict<readonly [unknown, unknown]>
+  readonly runs: number
+  readonly passes: Dict<unknown>
+  readonly seed_matters: boolean
+  readonly placement_noise: boolean
+  readonly interrupted: boolean
+}
+
+/** The smallest change from nominal with which a run still fails. */
+export interface ShrunkTrial {
+  readonly subject: string
+  readonly failing: Configuration
+  readonly shrunk: Shrunk
 }
 
 /** One numeric field of a topic: its path `position_rad.0`, its label `position_rad joint1`, its unit. */
@@ -2016,6 +2163,13 @@ export interface Supervision {
   readonly loss_timeout_s?: number
 }
 
+/** A sweep compared with a baseline. */
+export interface SweepComparison {
+  readonly comparison: Comparison
+  readonly verdict: "failed" | "passed" | "undecided" | null
+  readonly words: string
+}
+
 /** A sweep as written. `interval` of the success rate: `anytime` may be looked at after every run, and a sweep ends as soon as it decides what is required; `exact` is narrower, for the number of `runs` that is fixed before. Both are for runs that are drawn at random. In another design what is required is compared with the share of its runs. `require` is a success rate, `success >= 0.98`, the share of runs in which a number keeps a limit, `share(cell.contact_force_max_n <= 30) >= 0.95`, or a list of these. A number is a measure, userdata at the end, or `duration_s`; a run without it does not keep the limit. Each run has a seed of its own, derived from `seed` and its number; with `placement_noise` it also places the parts that have `jitter` in the cell. The budget is the number of `runs`, the wall `time` of the sweep, or the `width` of the interval of the success rate; whatever comes first ends it. `timeout` is the wall time of one run, `limit` its time on the clock of the run. With `search` the configurations are searched for, `search.runs` of them; what is required is then not decided. */
 export interface SweepDocument {
   readonly flexcell: 1
@@ -2054,6 +2208,7 @@ export interface SweepLine {
   readonly behavior: string
   readonly design: string
   readonly require: string
+  readonly towards: string
   readonly factors: readonly string[]
   readonly live: SweepLive
   readonly problem: string
@@ -2076,6 +2231,7 @@ export interface SweepLive {
   readonly verdict: "failed" | "passed" | "undecided" | null
   readonly rate_hz: number
   readonly remaining_s: number | null
+  readonly search: SearchLive | null
   readonly problem: string
 }
 
