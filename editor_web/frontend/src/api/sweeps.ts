@@ -33,7 +33,7 @@ function comparisonQuery(results: string, version: string, margin: number | unde
 /** A run of a sweep that was executed again, with what came of it. */
 export interface Rerun {
   readonly sweep: string
-  readonly told: RecordedTrial
+  readonly rerun: RecordedTrial
 }
 
 /** By the path of their recordings, as long as the page lives. */
@@ -41,7 +41,7 @@ export const useReruns = create<{ readonly byRecording: Dict<Rerun> }>(() => ({ 
 
 /** Execute a run again, and keep what came of it for the page of its recording. */
 export async function recordRun(sweep: string, number: number): Promise<RecordedTrial> {
-  const told = await sweepsApi.record(sweep, number)
-  useReruns.setState(({ byRecording }) => ({ byRecording: { ...byRecording, [told.recording]: { sweep, told } } }))
-  return told
+  const rerun = await sweepsApi.record(sweep, number)
+  useReruns.setState(({ byRecording }) => ({ byRecording: { ...byRecording, [rerun.recording]: { sweep, rerun } } }))
+  return rerun
 }

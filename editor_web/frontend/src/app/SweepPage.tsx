@@ -26,8 +26,8 @@ export interface SweepPageProps {
 }
 
 export function SweepPage({ id, onOpen }: SweepPageProps) {
-  const told = useLive((s) => lookup(s.sweeps, id))
-  const revision = useSlowly(`${told?.status} ${told?.done}`, told === undefined || told.status === 'idle')
+  const reported = useLive((s) => lookup(s.sweeps, id))
+  const revision = useSlowly(`${reported?.status} ${reported?.done}`, reported === undefined || reported.status === 'idle')
   const { value, problem } = useFetched(id, () => read(id), revision)
   if (problem) {
     return (

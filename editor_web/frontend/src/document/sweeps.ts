@@ -24,9 +24,9 @@ export function sweepName(id: string): string {
 }
 
 /** How far it is now: what the stream tells while it is executed, else what was read. */
-export function currentLive(line: SweepLine, told: SweepLive | undefined): SweepLive {
-  if (told && told.status !== 'idle') return told
-  return { ...line.live, problem: told?.problem ?? '' }
+export function currentLive(line: SweepLine, reported: SweepLive | undefined): SweepLive {
+  if (reported && reported.status !== 'idle') return reported
+  return { ...line.live, problem: reported?.problem ?? '' }
 }
 
 const VERDICTS = { passed: ['done', 'Passed'], failed: ['failed', 'Failed'], undecided: ['idle', 'Undecided'] } as const

@@ -15,7 +15,7 @@ export interface BaselineChoiceProps {
 
 interface Compared {
   readonly revision: number
-  readonly told: SweepComparison
+  readonly comparison: SweepComparison
 }
 
 export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProps) {
@@ -25,7 +25,7 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
   const [compared, setCompared] = useState<Compared>()
   const [problem, setProblem] = useState('')
   const [isAsking, setAsking] = useState(false)
-  const told = compared?.revision === revision ? compared.told : undefined
+  const comparison = compared?.revision === revision ? compared.comparison : undefined
 
   async function ask(asked: () => Promise<void>): Promise<void> {
     setAsking(true)
@@ -41,7 +41,7 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
   async function compare(baseline: Baseline | undefined): Promise<void> {
     const required = marginOf(margin)
     if (typeof required === 'string') throw new Error(required)
-    if (baseline) setCompared({ revision, told: await sweepsApi.comparison(sweep, baseline, required) })
+    if (baseline) setCompared({ revision, comparison: await sweepsApi.comparison(sweep, baseline, required) })
   }
 
   async function find(): Promise<void> {
@@ -102,7 +102,7 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
           {problem}
         </p>
       )}
-      {told && <ComparedRates told={told} onSelect={onSelect} />}
+      {comparison && <ComparedRates compared={comparison} onSelect={onSelect} />}
     </>
   )
 }

@@ -5,13 +5,13 @@ import { differenceScale, pointsIntervalText, pointsText, ratesOf, shareText } f
 import { verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 
-export function ComparedRates({ told: { comparison, verdict, words }, onSelect }: { readonly told: SweepComparison; readonly onSelect: (run: number) => void }) {
+export function ComparedRates({ compared: { comparison, verdict, words }, onSelect }: { readonly compared: SweepComparison; readonly onSelect: (run: number) => void }) {
   const { pair, interval, margin, broken, changed } = comparison
   const rates = ratesOf(pair)
   const runs = rates[0]?.runs ?? 0
   const difference = (pair.only_second - pair.only_first) / runs
   const place = differenceScale(interval, margin)
-  const told = verdictWords(verdict)
+  const badge = verdictWords(verdict)
   return (
     <>
       <div className="sweep-scroll" tabIndex={0} role="group" aria-label="Table of both versions">
@@ -51,10 +51,10 @@ export function ComparedRates({ told: { comparison, verdict, words }, onSelect }
         </table>
       </div>
       <p className="sweep-note">
-        {told && (
-          <span className={`badge is-${told[0]}`}>
-            <StatusIcon status={told[0]} size={13} />
-            {told[1]}
+        {badge && (
+          <span className={`badge is-${badge[0]}`}>
+            <StatusIcon status={badge[0]} size={13} />
+            {badge[1]}
           </span>
         )}{' '}
         This version is {words}.

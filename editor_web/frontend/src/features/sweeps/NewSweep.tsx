@@ -153,17 +153,17 @@ function useBehaviors(onProblem: (words: string) => void): readonly BehaviorSumm
 
 /** What a sweep of a behavior can vary; nothing before the server has told. */
 function useChoices(behavior: string, onProblem: (words: string) => void): readonly FactorChoice[] {
-  const [told, setTold] = useState<{ readonly of: string; readonly choices: readonly FactorChoice[] }>()
+  const [described, setDescribed] = useState<{ readonly of: string; readonly choices: readonly FactorChoice[] }>()
   useEffect(() => {
     if (!behavior) return
     let isCurrent = true
     sweepsApi.factors(behavior).then(
-      (choices) => isCurrent && setTold({ of: behavior, choices }),
+      (choices) => isCurrent && setDescribed({ of: behavior, choices }),
       (error: unknown) => isCurrent && onProblem(wordsOf(error)),
     )
     return () => {
       isCurrent = false
     }
   }, [behavior, onProblem])
-  return told?.of === behavior ? told.choices : []
+  return described?.of === behavior ? described.choices : []
 }

@@ -15,17 +15,17 @@ export interface RerunLineProps {
 export function RerunLine({ recording, href, onOpen }: RerunLineProps) {
   const rerun = useReruns((s) => lookup(s.byRecording, recording))
   if (!rerun) return null
-  const { sweep, told } = rerun
-  const { number } = told.saved.configuration
+  const { sweep, rerun: recorded } = rerun
+  const { number } = recorded.saved.configuration
   return (
     <p className="sweep-rerun" role="status">
-      <StatusIcon status={told.same ? 'done' : 'warning'} size={15} />
+      <StatusIcon status={recorded.same ? 'done' : 'warning'} size={15} />
       <span>
         <PageLink href={href(sweep, number)} onOpen={() => onOpen(sweep, number)}>
           Run {number} of {sweepName(sweep)}
         </PageLink>
-        , executed again: {told.same ? `the same ${told.saved.events} events as in the sweep` : `NOT the same events as in the sweep (${told.result.events}, then ${told.saved.events})`}{' '}
-        <span className="mono quiet">sha256 {told.result.events_sha256.slice(0, 12)}</span>
+        , executed again: {recorded.same ? `the same ${recorded.saved.events} events as in the sweep` : `NOT the same events as in the sweep (${recorded.result.events}, then ${recorded.saved.events})`}{' '}
+        <span className="mono quiet">sha256 {recorded.result.events_sha256.slice(0, 12)}</span>
       </span>
     </p>
   )

@@ -29,7 +29,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
   useEffect(() => {
     let isCurrent = true
     sweepsApi.run(sweep, number).then(
-      (told) => isCurrent && setRun(told),
+      (result) => isCurrent && setRun(result),
       (error: unknown) => isCurrent && setProblem(wordsOf(error)),
     )
     return () => {
@@ -112,7 +112,7 @@ function Fact({ name, value }: { readonly name: string; readonly value: string }
 /** Executes the run again with recording; the recording opens by itself where the run was the same. */
 function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: TrialResult; readonly onOpen: (recording: string) => void }) {
   const [isAsking, setAsking] = useState(false)
-  const [told, setTold] = useState<RecordedTrial>()
+  const [recorded, setRecorded] = useState<RecordedTrial>()
   const [problem, setProblem] = useState('')
 
   async function again(): Promise<void> {
@@ -120,7 +120,7 @@ function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: T
     setProblem('')
     try {
       const recorded = await recordRun(sweep, run.configuration.number)
-      setTold(recorded)
+      setRecorded(recorded)
       if (recorded.same && recorded.recording) onOpen(recorded.recording)
     } catch (error) {
       setProblem(wordsOf(error))
@@ -137,13 +137,13 @@ function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: T
       <p className="quiet sweep-note" role="status">
         {isAsking ? 'The run is executed again and recorded; it opens when it has ended.' : 'Executes this configuration again, and records it.'}
       </p>
-      {told && !told.same && (
+      {recorded && !recorded.same && (
         <p className="is-failed" role="alert">
-          It ended differently this time: {labelOf(told.result)} with {told.result.events} events, before {labelOf(told.saved)} with {told.saved.events}.
-          {told.recording && (
+          It ended differently this time: {labelOf(recorded.result)} with {recorded.result.events} events, before {labelOf(recorded.saved)} with {recorded.saved.events}.
+          {recorded.recording && (
             <>
               {' '}
-              <button type="button" className="link" onClick={() => onOpen(told.recording)}>
+              <button type="button" className="link" onClick={() => onOpen(recorded.recording)}>
                 Open it anyway
               </button>
             </>

@@ -34,8 +34,8 @@ export function SweepList({ listed, href, onOpen }: SweepListProps) {
 }
 
 function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href: string; readonly onOpen: () => void }) {
-  const told = useLive((s) => lookup(s.sweeps, line.id))
-  const live = currentLive(line, told)
+  const reported = useLive((s) => lookup(s.sweeps, line.id))
+  const live = currentLive(line, reported)
   const rate = rateOf(live)
   return (
     <li className="sweep-line">

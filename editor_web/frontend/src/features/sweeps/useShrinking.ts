@@ -21,7 +21,7 @@ export function useShrinking(sweep: string, number: number): RunShrinking {
   useEffect(() => {
     let isCurrent = true
     sweepsApi.shrinking(sweep, number).then(
-      (told) => isCurrent && setShrinking(told),
+      (current) => isCurrent && setShrinking(current),
       (error: unknown) => isCurrent && setProblem(wordsOf(error)),
     )
     return () => {
