@@ -125,7 +125,7 @@ def test_a_design_without_an_interval_compares_all_its_runs(design: str) -> None
     assert _counted(document, [99.0] * 2, planned=10).verdict == "failed"
 
 
-def test_a_number_that_no_run_has_is_told_with_similar_ones() -> None:
+def test_a_number_that_no_run_has_is_an_error_with_similar_names() -> None:
     sweep = _sweep("share(cell.contact_force_n <= 30) >= 0.9")
     expected = r"s.yaml:3:10: no run has a number `cell.contact_force_n` \(did you mean cell.contact_force_max_n\?\)"
     with pytest.raises(FlexcellError, match=expected):
