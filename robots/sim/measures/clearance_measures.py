@@ -8,7 +8,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from robots.port import Array
-from robots.sim.measures.clearance_kernels import least_row, take_moved
 from robots.sim.measures.clearance_pairs import ClearancePairs, ThingPair
 from robots.sim.measures.passing_distance import APART_M, PassingDistance
 from robots.sim.physics.cell_model import CellModel
@@ -66,6 +65,10 @@ class ClearanceMeasures:
         physics: Physics,
         step_s: float,
     ) -> None:
+        # It loads numba, which other parts of the package do without.
+        from robots.sim.measures import clearance_kernels
+
+        self._take_moved, self._least_row = clearance_kernels.take_moved, clearance_kernels.least_row
         self._values = values
         self._arms = arms
         self._cell_value = cell_value
@@ -140,7 +143,7 @@ class ClearanceMeasures:
     def _lower_bounds(self, step: int) -> float:
         """Take from the bounds what has moved since the last look, and return the largest speed."""
         physics = self._physics
-        moved_m = take_moved(
+        moved_m = self._take_moved(
             physics.geom_centres,
             physics.geom_rotations,
             self._xyz,
@@ -161,7 +164,7 @@ class ClearanceMeasures:
         """Measure a distance, and return how far one of the two may move until the next time."""
         bounds, distance_m = self._bounds, math.inf
         start, end = things.pair.start, things.pair.end
-        while bounds[row := least_row(bounds, start, end)] < min(distance_m, reach_m):
+        while bounds[row := self._least_row(bounds, start, end)] < min(distance_m, reach_m):
             bounds[row] = measured_m = self._physics.distance_m(*self._geoms[row])
             distance_m = min(distance_m, measured_m)
         owners = things.owners
