@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import re
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -112,10 +113,14 @@ def _members(kind: type) -> list[str]:
     """Return a row for each public member that the class itself documents."""
     rows: list[str] = []
     for name, member in vars(kind).items():
-        function: Any = getattr(member, "fget", None) or getattr(member, "__func__", member)
+        is_property = isinstance(member, property | cached_property)
+        # A property, a cached one, a class method, or a plain function.
+        function: Any = member
+        for attribute in ("fget", "func", "__func__"):
+            function = getattr(function, attribute, function)
         if name.startswith("_") or not inspect.isfunction(function) or not function.__doc__:
             continue
-        written = name if isinstance(member, property) else f"{name}({', '.join(_arguments(function))})"
+        written = name if is_property else f"{name}({', '.join(_arguments(function))})"
         rows.append(f"| `{written}` | {_summary(function)} |")
     return rows
 
