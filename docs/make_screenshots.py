@@ -40,7 +40,8 @@ class Picture:
     """One picture: what is served, which address is opened at which size, and what is done before it is taken."""
 
     name: str
-    cell: str
+    cell: str | None
+    """None where the page is served without one."""
     address: str
     size: tuple[int, int]
     prepare: Callable[[Page], None]
@@ -49,12 +50,12 @@ class Picture:
 
 
 @contextmanager
-def served(cell: str) -> Generator[str]:
+def served(cell: str | None) -> Generator[str]:
     """Run `flexcell serve` on a free port; gives the log-in address."""
     program = Path(sys.executable).with_name("flexcell")
-    document = ROOT / "behaviors" / "cells" / f"{cell}.yaml"
+    chosen = () if cell is None else ("--cell", ROOT / "behaviors" / "cells" / f"{cell}.yaml")
     with tempfile.TemporaryDirectory() as state:
-        command = [program, "serve", "--cell", document, "--port", "0", "--project", ROOT, "--state", state]
+        command = [program, "serve", *chosen, "--port", "0", "--project", ROOT, "--state", state]
         server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
         try:
             assert server.stdout is not None
@@ -169,7 +170,7 @@ PICTURES = (
     Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESKTOP, prepare=looked_back),
     Picture(name="teach", cell="dual_panda", address="/teach", size=DESKTOP, prepare=taught),
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
-    Picture(name="sweep", cell="ur10", address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),
+    Picture(name="sweep", cell=None, address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),
 )
 
 

@@ -5,7 +5,7 @@ import type { TrialResult } from '../../api/types'
 import { axisScale, cellOf, labelOf, scatterAxes, short } from '../../document/sweeps'
 
 const HEIGHT = 300
-const LEFT = 58
+const LEFT = 70
 const RIGHT = 18
 const TOP = 14
 const BOTTOM = 30
