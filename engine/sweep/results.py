@@ -106,8 +106,8 @@ class SweepResults:
 
     def saved_unix_s(self, subject: str) -> float:
         """Return when the last result of a subject was saved, in Unix time; 0 without any."""
-        ((newest,),) = self._read("SELECT max(saved_unix_s) FROM results WHERE subject = ?", subject)
-        return float(str(newest or 0.0))
+        ((latest,),) = self._read("SELECT max(saved_unix_s) FROM results WHERE subject = ?", subject)
+        return float(str(latest or 0.0))
 
     def of(self, subject: str, keys: Iterable[str]) -> dict[str, TrialResult]:
         """Return the saved results of a subject that have one of these keys.

@@ -25,7 +25,7 @@ def project(tmp_path: Path) -> LuckProject:
     return made
 
 
-def test_baselines_are_found_in_all_files_of_results_the_newest_first(project: LuckProject) -> None:
+def test_baselines_are_found_in_all_files_of_results_the_latest_first(project: LuckProject) -> None:
     (project.path / "store.db").write_bytes(b"no results")
     (project.path / "empty.db").touch()
     newest, oldest = read(project.path, FindBaselines(sweep=ID))

@@ -89,7 +89,7 @@ async def ended(known: Shrinkings) -> Shrinking:
     return now
 
 
-async def test_progress_is_told_and_what_was_found_is_kept(project: Path, process: ScriptedProcess) -> None:
+async def test_progress_is_reported_and_what_was_found_is_kept(project: Path, process: ScriptedProcess) -> None:
     known = Shrinkings(project)
     assert known.of(ID, 4) == Shrinking()
     await known.start(ID, 4, same="cause")
@@ -125,7 +125,7 @@ async def test_one_run_is_shrunk_at_a_time_and_stopped_once(project: Path, proce
     "answer",
     [RobotError("the process has ended"), Refused(kind="state", words=("the process has ended", "", ""))],
 )
-async def test_why_nothing_was_found_is_told(
+async def test_why_nothing_was_found_is_reported(
     project: Path, process: ScriptedProcess, answer: SweepAnswer | RobotError
 ) -> None:
     known = Shrinkings(project)
