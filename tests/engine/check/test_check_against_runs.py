@@ -109,3 +109,32 @@ def test_a_value_that_does_not_fit_in_a_run_was_found_before(document: Plain) ->
     for seed in SEEDS:
         wrong = [cause for cause in causes(events_of(document, seed)) if " fit" in cause.message]
         assert {cause.nodes[0].partition(" at ")[0] for cause in wrong} <= reported
+
+
+def test_a_condition_may_read_what_a_branch_has_just_written() -> None:
+    """The condition of a loop is ticked again before the end of the branch is seen."""
+    read: Plain = {"state": "data.Put", "with": {"value": "${m}"}, "out": {"value": "k"}}
+    write: Plain = {"state": "data.Put", "with": {"value": 1}, "out": {"value": "m"}}
+    choose: Plain = {"state": "data.Choose"}
+    condition: Plain = {"if_then_else": {"if": choose, "then": read, "else": choose}}
+    document: Plain = {
+        "flexcell": 1,
+        "name": "loop",
+        "outcomes": ["x", "y"],
+        "success": ["x"],
+        "root": {
+            "machine": {
+                "initial": "s",
+                "states": {
+                    "s": {
+                        "tree": {"while_do_else": {"while": condition, "do": choose, "else": write}},
+                        "transitions": {"success": "x", "failure": "y"},
+                    }
+                },
+            }
+        },
+    }
+    reader = "root/s/while_do_else/if_then_else/Put"
+    assert {f.code for f in checked(document) if f.path == reader} == {"maybe-undefined-key"}
+    ended = [isinstance(event, NodeExited) and event.path == reader for event in events_of(document, SEEDS[0])]
+    assert any(ended)
