@@ -142,8 +142,8 @@ def tree_graph(
         for number, child in enumerate(children)
     ]
     if placed.node.while_do_else is not None:
-        # The active branch may be halted at any time, when the condition changes; where it has just ended, the condition
-        # is ticked before that is seen.
+        # The active branch may be halted at any time, when the condition changes; where it has just ended, the
+        # condition is ticked before that is seen.
         arrows[1:] = [
             [*found, *((effect, 0) for effect, _ in found), (halted[child.path], 0)]
             for found, child in zip(arrows[1:], children[1:], strict=True)
