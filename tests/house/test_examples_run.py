@@ -172,9 +172,17 @@ def test_searches_are_taken_and_know_their_number(tmp_path: Path, text: str) -> 
     assert len(batch) == sweep.document.search.batch
 
 
+@shown("require:")
+def test_requirements_are_taken(tmp_path: Path, text: str) -> None:
+    factors = "factors: {parameters.speed: {uniform: [0.3, 1.0]}}\n"
+    behavior = BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml"
+    sweep = parse_sweep(f"flexcell: 1\nbehavior: {behavior}\n{factors}{text}", file=tmp_path / "s.yaml")
+    assert len(sweep.document.requirements) == text.count("\n  - ")
+
+
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
     kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS)
-    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:")
+    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:", "require:")
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []
