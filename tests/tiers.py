@@ -38,7 +38,7 @@ FOLDERS = {
 FILES = {
     "tests/editor_web/test_frontend.py": "process",
     # They execute sweeps by their workers.
-    "tests/engine/sweep_library/test_searches.py": "process",
+    "tests/engine/sweep_library/test_search_view.py": "process",
     "tests/engine/sweep_library/test_sweep_reader.py": "process",
     "tests/house/test_audit.py": "process",
     # Its last example opens the cell of the two Pandas.

@@ -51,6 +51,15 @@ def is_ready(kind: type[msgspec.Struct]) -> bool:
     return any(type(each).__name__ == "StructInfo" for each in gc.get_referents(kind))
 
 
+def is_refused(kind: type[msgspec.Struct]) -> bool:
+    """Whether msgspec never decodes a type, as it has a field of two classes of ours; then it keeps no record of it."""
+    try:
+        msgspec.json.Decoder(kind)
+    except TypeError:
+        return True
+    return False
+
+
 def structs(kind: type[msgspec.Struct] = msgspec.Struct) -> Iterator[type[msgspec.Struct]]:
     for each in kind.__subclasses__():
         yield each
@@ -65,7 +74,7 @@ def test_every_type_of_ours_is_ready_once_its_module_is_imported() -> None:
             importlib.import_module(module.name)
     ours = {kind for kind in structs() if kind.__module__.partition(".")[0] in PACKAGES}
     assert len(ours) > 400
-    assert [kind for kind in ours if not is_ready(kind)] == []
+    assert [kind for kind in ours if not is_ready(kind) and not is_refused(kind)] == []
 
 
 @pytest.mark.parametrize(

@@ -32,10 +32,12 @@ const BLANK = newLiveStore().getState()
 
 let current: FakeServer | undefined
 let disconnect: (() => void) | undefined
+let started = 0
 
 /** Begin with a server that knows nothing yet. */
 export function newServer(): void {
   current = new FakeServer()
+  started += 1
   current.on('GET /session', session())
 }
 
@@ -66,7 +68,7 @@ export function live(told: Partial<LiveSnapshot> = {}, role = 'operator'): FakeS
   disconnect = connect()
   const socket = server().socket('/live')
   socket.accept()
-  socket.tell({ k: 'hello', version: 1, epoch: 'e1', role, server_time_s: 1000 })
+  socket.tell({ k: 'hello', version: 1, epoch: `e${started}`, role, server_time_s: 1000 })
   socket.tell(snapshot(told))
   return socket
 }
@@ -102,7 +104,7 @@ export function session(told: Partial<SessionBody> = {}): SessionBody {
     role: 'operator',
     cell_name: 'bench',
     cell_view_port: null,
-    epoch: 'e1',
+    epoch: `e${started}`,
     cell: { connected: true, reason: '' },
     stop: null,
     ...told,
