@@ -151,6 +151,13 @@ def execute_sweep(
                 )
         except KeyboardInterrupt:
             ended_by = "interrupted"
+            # One that was saved may not have been counted yet.
+            for number, result in results.of_design(subject.hash, configurations).items():
+                if not (again and result.broken):
+                    found.setdefault(number, result)
+            count = SuccessCount(document, len(configurations))
+            for number in sorted(found):
+                count.add(found[number])
     return SweepEnd(
         subject=subject,
         configurations=configurations,

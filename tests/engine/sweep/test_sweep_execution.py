@@ -86,6 +86,20 @@ def test_saved_results_are_not_executed_again(project: LuckProject, tmp_path: Pa
     assert _execute(long, tmp_path / "r.db", options=ONE).executed == 0
 
 
+def test_a_result_that_was_saved_as_the_interrupt_came_is_counted(
+    project: LuckProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save = SweepResults.save
+
+    def save_and_stop(results: SweepResults, key: str, subject: str, result: TrialResult, *, replace: bool) -> None:
+        save(results, key, subject, result, replace=replace)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(SweepResults, "save", save_and_stop)
+    end = _execute(project.sweep(runs=4), tmp_path / "r.db", options=ONE)
+    assert (end.ended_by, len(end.results), end.count.done) == ("interrupted", 1, 1)
+
+
 def test_an_interrupted_sweep_keeps_what_has_ended_and_goes_on(project: LuckProject, tmp_path: Path) -> None:
     sweep = project.sweep(runs=8)
     first = _execute(sweep, tmp_path / "r.db", stop_after=3)
