@@ -124,8 +124,15 @@ class SweepResults:
             found |= {str(key): self._decoded(key, text) for key, text in self._read(query, subject, *some)}
         return found
 
-    def of_design(self, subject: str, configurations: Iterable[Configuration]) -> dict[int, TrialResult]:
+    def of_design(
+        self, subject: str, configurations: Iterable[Configuration], *, again: bool = False
+    ) -> dict[int, TrialResult]:
         """Return the saved results of configurations by the number that each has in its design.
+
+        Args:
+            subject: The hash of what they have in common.
+            configurations: The configurations.
+            again: Whether those whose process crashed or hung are left out, because they are to be executed again.
 
         Raises:
             FlexcellError: the file cannot be read or is damaged.
@@ -134,6 +141,7 @@ class SweepResults:
         return {
             keys[key].number: msgspec.structs.replace(result, configuration=keys[key])
             for key, result in self.of(subject, keys).items()
+            if not (again and result.broken)
         }
 
     def all_of(self, subject: str) -> list[TrialResult]:

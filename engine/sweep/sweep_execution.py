@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -68,9 +68,7 @@ class SweepEnd:
 def saved_sweep(subject: SweepSubject, configurations: Sequence[Configuration], results: SweepResults) -> SweepEnd:
     """Return what is saved of a sweep, without executing anything."""
     found = results.of_design(subject.hash, configurations)
-    count = SuccessCount(subject.sweep.document, len(configurations))
-    for number in sorted(found):
-        count.add(found[number])
+    count = _counted(found, subject, configurations)
     complete = len(found) == len(configurations)
     return SweepEnd(
         subject=subject,
@@ -108,14 +106,8 @@ def execute_sweep(
     part = shard or Shard()
     document = subject.sweep.document
     results.describe(subject.hash, subject.versions)
-    found = {
-        number: result
-        for number, result in results.of_design(subject.hash, configurations).items()
-        if not (again and result.broken)
-    }
-    count = SuccessCount(document, len(configurations))
-    for number in sorted(found):
-        count.add(found[number])
+    found = results.of_design(subject.hash, configurations, again=again)
+    count = _counted(found, subject, configurations)
     due = [each for each in configurations if each.number not in found and part.has(each)]
     started_s = time.monotonic()
     deadline_s = started_s + seconds(document.time) if document.time is not None else None
@@ -152,12 +144,8 @@ def execute_sweep(
         except KeyboardInterrupt:
             ended_by = "interrupted"
             # One that was saved may not have been counted yet.
-            for number, result in results.of_design(subject.hash, configurations).items():
-                if not (again and result.broken):
-                    found.setdefault(number, result)
-            count = SuccessCount(document, len(configurations))
-            for number in sorted(found):
-                count.add(found[number])
+            found |= results.of_design(subject.hash, configurations, again=again)
+            count = _counted(found, subject, configurations)
     return SweepEnd(
         subject=subject,
         configurations=configurations,
@@ -166,3 +154,12 @@ def execute_sweep(
         ended_by=ended_by,
         executed=executed,
     )
+
+
+def _counted(
+    found: Mapping[int, TrialResult], subject: SweepSubject, configurations: Sequence[Configuration]
+) -> SuccessCount:
+    count = SuccessCount(subject.sweep.document, len(configurations))
+    for number in sorted(found):
+        count.add(found[number])
+    return count

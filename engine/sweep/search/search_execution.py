@@ -119,6 +119,8 @@ def execute_search(
                     show(_progress(plan, batch, found, executed, started_s))
             except KeyboardInterrupt:
                 ended_by = "interrupted"
+                # One that was saved may not have been taken yet.
+                found |= _saved(subject, batch, results, again=again)
             plan.take(_without_gap(batch, found))
             if len(found) < len(batch):
                 break
@@ -146,8 +148,7 @@ def _saved(
     subject: SweepSubject, batch: Sequence[SearchPoint], results: SweepResults, *, again: bool = False
 ) -> dict[int, TrialResult]:
     """Return the saved results of a batch by number; a random design may have executed some of them."""
-    saved = results.of_design(subject.hash, [point.configuration for point in batch])
-    return {number: result for number, result in saved.items() if not (again and result.broken)}
+    return results.of_design(subject.hash, [point.configuration for point in batch], again=again)
 
 
 def _progress(

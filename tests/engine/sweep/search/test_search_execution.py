@@ -8,7 +8,7 @@ import pytest
 
 from engine.document.sweep import Sweep
 from engine.errors import FlexcellError
-from engine.sweep import SweepResults, SweepSubject, WorkerOptions, configurations, run_sweep
+from engine.sweep import SweepResults, SweepSubject, TrialResult, WorkerOptions, configurations, run_sweep
 from engine.sweep.search import SearchEnd, SearchProgress, execute_search, run_search, saved_search
 from tests.engine.sweep.luck_project import LuckProject
 from tests.engine.sweep.search.luck_search import ReversedPool, luck_result, luck_search
@@ -57,6 +57,21 @@ def test_an_interrupted_search_goes_on_where_it_was(project: LuckProject, tmp_pa
     assert (second.ended_by, second.executed) == ("runs", 36)
     assert second.steps == _execute(sweep, tmp_path / "undisturbed.db").steps
     assert second.steps[: len(first.steps)] == first.steps
+
+
+@pytest.mark.usefixtures("without_processes")
+def test_a_result_that_was_saved_as_the_interrupt_came_is_counted(
+    project: LuckProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save = SweepResults.save
+
+    def save_and_stop(results: SweepResults, key: str, subject: str, result: TrialResult, *, replace: bool) -> None:
+        save(results, key, subject, result, replace=replace)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(SweepResults, "save", save_and_stop)
+    end = _execute(luck_search(project), tmp_path / "r.db")
+    assert (end.ended_by, len(end.steps)) == ("interrupted", 1)
 
 
 @pytest.mark.usefixtures("without_processes")
