@@ -71,7 +71,7 @@ class DaskProcesses:
 
     def start_worker(self) -> None:
         """Start one more worker; its files do not lie where those of the tests are."""
-        place = self.folder / f"worker{len(self.workers)}"
+        place = self._place(len(self.workers))
         place.mkdir()
         self.workers.append(
             self._start(
@@ -87,6 +87,14 @@ class DaskProcesses:
     def processes_of_runs(self) -> list[int]:
         """Return the ids of the processes that workers execute runs in."""
         return [child for worker in self.workers for child in _children(worker.pid)]
+
+    def folders_of_runs(self) -> list[Path]:
+        """Return the folders of sweeps on workers that are there; one that was killed leaves its own behind."""
+        left = [self._place(number) for number, worker in enumerate(self.workers) if worker.poll() is None]
+        return [folder for place in left for folder in place.rglob("flexcell-sweep-*")]
+
+    def _place(self, number: int) -> Path:
+        return self.folder / f"worker{number}"
 
     def _start(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
         tls = ["--tls-ca-file", str(self.folder / "ca.pem"), "--tls-cert", str(self.folder / "cluster.pem")]

@@ -91,7 +91,7 @@ def test_an_interrupted_sweep_leaves_nothing_on_its_workers_and_goes_on(
     first = _execute(sweep, tmp_path / "r.db", cluster.options(timeout_s=300.0), stop_after=2)
     assert first.ended_by == "interrupted"
     assert [(each.configuration.number, each.status) for each in first.results] == [(0, "finished"), (1, "finished")]
-    wait_until(lambda: not cluster.processes_of_runs() and not list(cluster.folder.rglob("flexcell-sweep-*")))
+    wait_until(lambda: not cluster.processes_of_runs() and not cluster.folders_of_runs())
     second = _execute(sweep, tmp_path / "r.db", cluster.options(timeout_s=5.0))
     assert [each.status for each in second.results] == ["finished", "finished", "hung"]
     assert second.executed == 1
