@@ -36,7 +36,7 @@ def test_two_states_are_built_from_nothing_by_mouse_checked_saved_and_run(browse
     with opened_page(browser, shop.running, "/", size=LAPTOP) as page:
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("two_steps")
-        page.get_by_role("button", name="Make it").click()
+        page.get_by_role("button", name="Create").click()
         canvas = page.locator(".edit-canvas")
         expect(pill(page, "root", "finished")).to_be_visible()
         page.get_by_role("button", name="Add flow.Wait").drag_to(canvas, target_position={"x": 200, "y": 300})
@@ -134,7 +134,7 @@ def test_a_tree_and_a_concurrency_begin_from_nothing_too(browser: Browser, shop:
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("tries")
         page.get_by_label("Begins as").select_option("sequence")
-        page.get_by_role("button", name="Make it").click()
+        page.get_by_role("button", name="Create").click()
         expect(card(page, "root/sequence")).to_be_visible()
         for path in ("root/sequence/wait", "root/sequence/wait_2"):
             page.keyboard.press("a")
@@ -145,7 +145,7 @@ def test_a_tree_and_a_concurrency_begin_from_nothing_too(browser: Browser, shop:
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("both")
         page.get_by_label("Begins as").select_option("concurrency")
-        page.get_by_role("button", name="Make it").click()
+        page.get_by_role("button", name="Create").click()
         expect(page.get_by_text("Nothing here yet.")).to_be_visible()
         for path in ("root/log", "root/log_2"):
             page.keyboard.press("a")
@@ -163,7 +163,7 @@ def test_a_branching_is_built_by_keyboard_in_its_roles(browser: Browser, shop: W
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("choice")
         page.get_by_label("Begins as").select_option("sequence")
-        page.get_by_role("button", name="Make it").click()
+        page.get_by_role("button", name="Create").click()
         expect(card(page, "root/sequence")).to_be_visible()
         inside = "root/sequence/if_then_else"
         for typed, path in (

@@ -131,7 +131,7 @@ def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Works
         expect(asked.get_by_role("button", name="Agree: a").first).to_be_focused()
         page.keyboard.press("Enter")
         expect(asked.get_by_role("listitem")).to_have_count(1)
-        asked.get_by_role("button", name="Instead: b").click()
+        asked.get_by_role("button", name="Force outcome: b").click()
         expect(asked).to_have_count(0)
         expect(page.locator(".page-head .badge")).to_have_text("finished: bad")
     ends = {event.path: event.outcome for event in shop.events(run) if isinstance(event, NodeExited)}
@@ -144,7 +144,7 @@ def test_a_page_that_starts_a_run_below_full_autonomy_operates_it(browser: Brows
         page.get_by_role("button", name="Operation").click()
         page.get_by_role("combobox", name="Autonomy at the start").click()
         page.get_by_role("option", name="high").click()
-        expect(page.get_by_label("Operate it from this page")).to_be_checked()
+        expect(page.get_by_label("Take control of it from this page")).to_be_checked()
         page.get_by_role("combobox", name="When the operator is lost").click()
         page.get_by_role("option", name="stop the run").click()
         page.get_by_label("After").fill("7")

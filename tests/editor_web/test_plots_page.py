@@ -50,7 +50,7 @@ def at_plots(browser: Browser, shop: Workshop, *, size: Size = LAPTOP, scheme: S
     path = f"/behaviors/{SHIFT_ID}"
     with opened_page(browser, shop.running, path, size=size, scheme=scheme) as page:
         page.get_by_role("tab", name="Plots").click()
-        expect(page.get_by_text("Nothing is chosen")).to_be_visible()
+        expect(page.get_by_text("Nothing is selected")).to_be_visible()
         yield page
 
 

@@ -48,7 +48,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
             for name in ("Stop", "Start"):
                 expect(page.get_by_role("button", name=name, exact=True)).to_be_disabled()
             expect(page.get_by_role("button", name="Stop the cell")).to_be_enabled()
-            for name in ("Pause", "Operate"):
+            for name in ("Pause", "Take control"):
                 expect(page.get_by_role("button", name=name, exact=True)).to_have_attribute("aria-disabled", "true")
             with started("serve", "--host", loopback, "--port", str(served.port), cwd=tmp_path) as second:
                 dashboard_of(second, tmp_path / ".flexcell")
@@ -111,7 +111,7 @@ def test_a_killed_browser_is_an_operator_lost_and_another_takes_over(
             first = doomed.new_context().new_page()
             first.goto(shop.running.new_login_url())
             first.goto(f"{shop.running.url}runs/{run}")
-            first.get_by_role("button", name="Operate", exact=True).click()
+            first.get_by_role("button", name="Take control", exact=True).click()
             expect(first.get_by_text("You operate this run. If this page is lost, 0.3 s later")).to_be_visible()
             expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
             kill()
@@ -121,7 +121,7 @@ def test_a_killed_browser_is_an_operator_lost_and_another_takes_over(
             return
         expect(second.get_by_role("status", name="State of the run")).to_have_text(done)
         expect(second.get_by_text("The operator was lost: 0.3 s later the run is paused")).to_be_visible()
-        second.get_by_role("button", name="Operate", exact=True).click()
+        second.get_by_role("button", name="Take control", exact=True).click()
         expect(second.get_by_text("You operate this run.")).to_be_visible()
         second.get_by_role("button", name="Resume", exact=True).click()
         expect(second.get_by_role("status", name="State of the run")).to_have_text("Running")
@@ -195,7 +195,7 @@ def test_a_cut_wire_is_noticed_on_both_sides(
         through = f"http://127.0.0.1:{port}/"
         page.goto(f"{through}login?t={shop.running.sessions.new_link(OPERATOR)}")
         page.goto(f"{through}runs/{run}")
-        page.get_by_role("button", name="Operate", exact=True).click()
+        page.get_by_role("button", name="Take control", exact=True).click()
         expect(page.get_by_text("You operate this run.")).to_be_visible()
         wire.cut()
         expect(watching.get_by_role("log")).to_contain_text("operator lost")

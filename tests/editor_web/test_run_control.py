@@ -118,7 +118,7 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
             SHIFT.replace("value: 1}", "value: 2}").replace("set: {", "put: {").replace("a: set", "a: put"),
             encoding="utf-8",
         )
-        command(page, "Take file").click()
+        command(page, "Apply changes").click()
         report = page.get_by_role("dialog")
         expect(report).to_contain_text("root/put is added")
         expect(report).to_contain_text("root/set is removed")
@@ -129,7 +129,7 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
         file.write_text(
             SHIFT.replace("  machine:", "  priority:").replace("    initial: first\n", ""), encoding="utf-8"
         )
-        command(page, "Take file").click()
+        command(page, "Apply changes").click()
         expect(page.get_by_role("alert")).to_contain_text("Apply the current file was refused")
 
 
@@ -147,9 +147,9 @@ def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Brow
         given = '{state: test.Give, with: {after_s: "${dwell}"}, transitions: {a: set, b: bad, c: bad}}'
         assert given in slow
         file.write_text(slow.replace(given, other), encoding="utf-8")
-        command(page, "Take file").click()
+        command(page, "Apply changes").click()
         expect(page.get_by_role("alert")).to_contain_text("root/first is active as test.Give and becomes flow.Wait")
-        command(page, "Take file and preempt").click()
+        command(page, "Apply changes and preempt").click()
         expect(page.get_by_role("dialog")).to_contain_text("root/first is preempted and entered anew")
         page.get_by_role("button", name="Understood").click()
         command(page, "Resume").click()
@@ -201,8 +201,8 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
     """What one page commands, the other shows; an operating page is one again after its reload."""
     run = shop.start(supervision=RunOptions(start_paused=True, autonomy="low"))
     with at_shift(browser, shop) as first, at_shift(browser, shop) as second:
-        command(first, "Operate").click()
-        expect(command(first, "Operate")).to_have_attribute("aria-pressed", "true")
+        command(first, "Take control").click()
+        expect(command(first, "Take control")).to_have_attribute("aria-pressed", "true")
         expect(
             first.get_by_text("You operate this run. If this page is lost, 5 s later the run is paused.")
         ).to_be_visible()
@@ -210,13 +210,13 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
         command(first, "Step into").click()
         expect(second.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
         first.reload()
-        expect(command(first, "Operate")).to_have_attribute("aria-pressed", "true")
+        expect(command(first, "Take control")).to_have_attribute("aria-pressed", "true")
         expect(first.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
         expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
         command(second, "Resume").click()
         expect(first.locator(".page-head .badge")).to_have_text("running")
         expect(first.get_by_role("region", name="The run asks")).to_be_visible()
-        command(first, "Operate").click()
+        command(first, "Take control").click()
         expect(first.get_by_text("This run has no operator: it asks nothing.")).to_be_visible()
     changes = [event.status for event in shop.events(run) if isinstance(event, OperatorChanged)]
     assert changes == ["attached", "lost", "attached", "detached"]
@@ -227,7 +227,7 @@ def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> No
     shop.start(supervision=RunOptions(start_paused=True, loss_policy="stop", loss_timeout_s=0.2))
     with at_shift(browser, shop) as watching:
         with at_shift(browser, shop) as page:
-            command(page, "Operate").click()
+            command(page, "Take control").click()
             expect(page.get_by_text("If this page is lost, 0.2 s later the run is stopped.")).to_be_visible()
         expect(watching.get_by_role("log")).to_contain_text("operator lost")
         expect(watching.locator(".page-head .badge")).to_have_text("stopped")

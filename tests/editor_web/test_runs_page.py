@@ -87,9 +87,9 @@ def test_the_page_operates_one_run_at_a_time(browser: Browser, shop: Workshop) -
     with opened_page(browser, shop.running) as page:
         page.get_by_role("link", name="All active runs").click()
         nap, night = card(page, "nap"), card(page, "night")
-        command(nap, "Operate").click()
+        command(nap, "Take control").click()
         expect(nap).to_contain_text("You operate this run")
-        command(night, "Operate").click()
+        command(night, "Take control").click()
         expect(night).to_contain_text("You operate this run")
         expect(nap).to_contain_text("This run has no operator")
         night.get_by_role("link", name="night").click()

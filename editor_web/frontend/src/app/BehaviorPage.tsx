@@ -121,7 +121,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
 
   function withNode(words: string, command: Parameters<Commands['obstacle']>[0], act: (path: string) => void): void {
     const why = commands.obstacle(command)
-    if (why || !node) showRefusal(words, why ?? 'choose a node in the graph first')
+    if (why || !node) showRefusal(words, why ?? 'select a node in the graph first')
     else act(node.path)
   }
 
@@ -175,7 +175,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           <Selection node={node} />
         </>
       ) : (
-        <Empty title="No node is chosen">Click a node in the graph, or choose one in the outline.</Empty>
+        <Empty title="No node is selected">Click a node in the graph, or select one in the outline.</Empty>
       )}
     </div>
   )

@@ -1,4 +1,4 @@
-/** The way from the root to the chosen node. */
+/** The way from the root to the selected node. */
 import { pathsTo } from '../document/tree'
 
 export function Breadcrumb({ selected, onSelect }: { selected: string | undefined; onSelect: (path: string) => void }) {

@@ -96,7 +96,7 @@ it('tells a viewer of every run, and why each command is not for them', () => {
   socket.tell({ k: 'hello', version: 1, epoch: 'e1', role: 'viewer', server_time_s: 1000 })
   socket.tell(snapshot({ run: 'r2', runs: OPEN, control: control({ waiting: [ASKS, { ...ASKS, path: 'root/right' }] }) }))
   expect(card('shift').getByRole('status')).toHaveTextContent('Asks for 2 answers')
-  for (const name of ['Pause', 'Operate', 'Stop']) {
+  for (const name of ['Pause', 'Take control', 'Stop']) {
     expect(card('shift').getByRole('button', { name })).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
   }
   expect(card('shift').getAllByRole('button', { name: 'Agree: a' })[0]).toHaveAttribute('aria-disabled', 'true')
@@ -105,16 +105,16 @@ it('tells a viewer of every run, and why each command is not for them', () => {
 it('operates one run at a time', async () => {
   const user = shown()
   const page = FakeSocket.opened[0]
-  await user.click(card('nap').getByRole('button', { name: 'Operate' }))
+  await user.click(card('nap').getByRole('button', { name: 'Take control' }))
   expect(card('nap').getByText(/^You operate this run/)).toBeVisible()
-  await user.click(card('night').getByRole('button', { name: 'Operate' }))
+  await user.click(card('night').getByRole('button', { name: 'Take control' }))
   expect(card('night').getByText(/^You operate this run/)).toBeVisible()
   expect(card('nap').getByText(/^This run has no operator/)).toBeVisible()
   const operated = page?.sent.filter((sent) => (sent as { k: string }).k === 'operate')
   expect(operated).toEqual([{ k: 'operate', run: 'r1' }, { k: 'operate', run: 'r3' }])
 })
 
-it('shows two runs side by side, once two are chosen', async () => {
+it('shows two runs side by side, once two are selected', async () => {
   const user = shown()
   const aside = screen.getByRole('button', { name: 'Side by side' })
   await user.click(aside)

@@ -6,7 +6,7 @@ import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 
 export type Tab = 'parameters' | 'node' | 'outline' | 'holds' | 'problems'
 
-/** What can be done with the chosen node stands below the graph, for there is no room beside it. */
+/** What can be done with the selected node stands below the graph, for there is no room beside it. */
 export function NarrowGraph({ graph, card }: { graph: ReactNode; card: ReactNode }) {
   return (
     <div className="narrow-graph">

@@ -8,7 +8,7 @@ export interface DockProps {
   readonly behavior: BehaviorView
   /** The run that is shown, if any. */
   readonly run: RunView | undefined
-  /** Path of the chosen node, if any. */
+  /** Path of the selected node, if any. */
   readonly node: string | undefined
   readonly session: SessionBody | undefined
   /** Choose a node and bring it into view. */

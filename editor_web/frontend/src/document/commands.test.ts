@@ -29,7 +29,7 @@ describe('a command', () => {
     ['back', { control: { ...control, paused: true, stepping: true } }, 'the run is stepping'],
     ['change', {}, 'pause the run first'],
     ['change', { control: { ...control, locks: ['root'] } }, undefined],
-    ['lock', {}, 'choose a node in the graph first'],
+    ['lock', {}, 'select a node in the graph first'],
     ['lock', { node: 'root/a' }, undefined],
     ['force', { node: 'root/a' }, 'this node is not active'],
     ['force', { node: 'root/a', nodeStatus: 'active' }, undefined],

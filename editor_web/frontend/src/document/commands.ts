@@ -21,7 +21,7 @@ export interface Situation {
   readonly isConnected: boolean
   readonly run: RunView | undefined
   readonly control: ControlView | null
-  /** Path of the chosen node. */
+  /** Path of the selected node. */
   readonly node: string | undefined
   readonly nodeStatus: string
 }
@@ -31,7 +31,7 @@ export function disabledReason(command: Command, now: Situation): string | undef
   const { control, node, run } = now
   if (!now.isConnected) return 'the server does not answer'
   if (now.role !== 'operator') return 'you may look only; log in with the operator token'
-  if (command === 'breakpoint') return node ? undefined : 'choose a node in the graph first'
+  if (command === 'breakpoint') return node ? undefined : 'select a node in the graph first'
   if (!run || !isActive(run) || !control) return 'no run is active'
   if (run.status === 'stopping') return 'the run is stopping'
   switch (command) {
@@ -46,7 +46,7 @@ export function disabledReason(command: Command, now: Situation): string | undef
     case 'change':
       return control.paused || control.locks.length > 0 ? undefined : 'pause the run first'
     case 'lock':
-      return node ? undefined : 'choose a node in the graph first'
+      return node ? undefined : 'select a node in the graph first'
     case 'force':
     case 'repeat':
       return obstacleToOrder(now)
@@ -56,7 +56,7 @@ export function disabledReason(command: Command, now: Situation): string | undef
 }
 
 function obstacleToOrder({ control, node, nodeStatus }: Situation): string | undefined {
-  if (!node) return 'choose a node in the graph first'
+  if (!node) return 'select a node in the graph first'
   const waits = control?.waiting.some((each) => each.path === node)
   return waits || nodeStatus === 'active' ? undefined : 'this node is not active'
 }

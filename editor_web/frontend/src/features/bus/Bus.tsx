@@ -95,7 +95,7 @@ export function Bus({ session }: BusProps) {
     return (
       <div className={`bus-halves${name ? ' has-choice' : ''}`}>
         <EntryList key={kind} entries={entries} kind={kind} chosen={name} onChoose={choose} traffic={traffic?.topics} />
-        <div className="bus-detail" role="group" aria-label="What is chosen" tabIndex={0}>
+        <div className="bus-detail" role="group" aria-label="What is selected" tabIndex={0}>
           {detail(board)}
         </div>
       </div>
@@ -103,7 +103,7 @@ export function Bus({ session }: BusProps) {
   }
 
   function detail(known: BusListing) {
-    if (!name) return <Empty title="Nothing is chosen">Select an entry on the left to see its description, messages and requests.</Empty>
+    if (!name) return <Empty title="Nothing is selected">Select an entry on the left to see its description, messages and requests.</Empty>
     const shared = { mayChange, onBack: () => setChosen({ ...chosen, [kind]: undefined }) }
     const facts = known.topics.find((each) => each.name === name)
     if (kind === 'topics' && facts) {

@@ -79,7 +79,7 @@ function shareOf(feedback: unknown): number | undefined {
 const STATUS_WORDS: Readonly<Record<string, string>> = {
   sent: 'Sent',
   pending: 'Waits to be accepted',
-  active: 'Under way',
+  active: 'Active',
   held: 'Held',
   canceling: 'Comes to rest',
   succeeded: 'Done',

@@ -94,7 +94,7 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
         </p>
       )}
       <button type="submit" className="command is-strong">
-        Make it
+        Create
       </button>
     </form>
   )

@@ -15,7 +15,7 @@ export function Holds({ commands, onShow }: { commands: Commands; onShow: (path:
   if (breakpoints.length === 0 && !locks?.length) {
     return (
       <Empty icon={<IconBookmarkOff size={26} stroke={1.4} aria-hidden />} title="Nothing holds this behavior">
-        Click the dot at the corner of a node to pause there, or choose a node for conditions and locks.
+        Click the dot at the corner of a node to pause there, or select a node for conditions and locks.
       </Empty>
     )
   }

@@ -1,4 +1,4 @@
-/** What can be done with the chosen node: why it waits, breakpoints, lock, forced outcomes, run again. */
+/** What can be done with the selected node: why it waits, breakpoints, lock, forced outcomes, run again. */
 import { TextInput } from '@mantine/core'
 import { IconLock, IconLockOpen, IconRepeat } from '@tabler/icons-react'
 import { useState } from 'react'

@@ -29,7 +29,7 @@ it('shows each question with its ways', () => {
 
 it.each([
   ['Agree: a', 'answer', { path: 'root/left' }],
-  ['Instead: b', 'force', { path: 'root/left', outcome: 'b' }],
+  ['Force outcome: b', 'force', { path: 'root/left', outcome: 'b' }],
   ['Run again', 'repeat', { path: 'root/left' }],
 ])('answers with %s', async (name, command, body) => {
   server().on(`POST /runs/r1/control/${command}`, {})

@@ -65,7 +65,7 @@ function Request({ request, outcomes, commands, onShow }: RequestProps) {
       <span className="request-answers">
         <CommandButton {...common} label={`Agree: ${outcome}`} tone="strong" onPress={() => void commands.answer(path)} />
         {others.map((each) => (
-          <CommandButton key={each} {...common} label={`Instead: ${each}`} hint={`End it with ${each}`} onPress={() => void commands.force(path, each)} />
+          <CommandButton key={each} {...common} label={`Force outcome: ${each}`} hint={`End it with ${each}`} onPress={() => void commands.force(path, each)} />
         ))}
         <CommandButton {...common} label="Run again" hint="Run the node again from its start" onPress={() => void commands.repeat(path)} />
       </span>

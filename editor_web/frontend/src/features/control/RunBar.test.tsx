@@ -9,7 +9,7 @@ import { RefusalLine } from './RefusalLine'
 import { RunBar } from './RunBar'
 import { useCommands } from './useCommands'
 
-const COMMANDS = ['Pause', 'Step into', 'Step over', 'Step out', 'Step back', 'Operate', 'Take file', 'Take file and preempt']
+const COMMANDS = ['Pause', 'Step into', 'Step over', 'Step out', 'Step back', 'Take control', 'Apply changes', 'Apply changes and preempt']
 const RUN = run()
 const PAUSED: Partial<LiveSnapshot> = { run: 'r1', runs: [RUN], control: control({ paused: true, confirmed: true }) }
 
@@ -114,7 +114,7 @@ it('tells a viewer how the run stands, and why no command is for them', () => {
   live(PAUSED, 'viewer')
   show(<Bar of={RUN} />)
   expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Paused, everything rests')
-  for (const name of ['Resume', 'Step into', 'Operate', 'Take file']) {
+  for (const name of ['Resume', 'Step into', 'Take control', 'Apply changes']) {
     expect(button(name)).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
   }
 })
@@ -122,19 +122,19 @@ it('tells a viewer how the run stands, and why no command is for them', () => {
 it('operates the run of the page and leaves it again', async () => {
   const socket = live(PAUSED)
   const user = show(<Bar of={RUN} />)
-  await user.click(button('Operate'))
+  await user.click(button('Take control'))
   expect(socket.sent).toContainEqual({ k: 'operate', run: 'r1' })
   socket.tell(snapshot({ ...PAUSED, control: control({ paused: true, operator: 'attached' }) }))
-  expect(button('Operate')).toHaveAttribute('aria-pressed', 'true')
+  expect(button('Take control')).toHaveAttribute('aria-pressed', 'true')
   expect(screen.getByText('You operate this run. If this page is lost, 5 s later the run is paused.')).toBeVisible()
-  await user.click(button('Operate'))
+  await user.click(button('Take control'))
   expect(socket.sent.at(-1)).toEqual({ k: 'operate', run: '' })
   expect(screen.getByText('Another page or console operates this run.')).toBeVisible()
 })
 
 it.each([
-  ['Take file', false],
-  ['Take file and preempt', true],
+  ['Apply changes', false],
+  ['Apply changes and preempt', true],
 ])('reports what %s has changed', async (name, preempt) => {
   server().on('POST /runs/r1/control/change', { changes: ['root/put is added', 'root/set is removed'] })
   live(PAUSED)

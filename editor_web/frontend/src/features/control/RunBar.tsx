@@ -75,21 +75,21 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
           onCommit={(index) => commands.setAutonomy(LEVELS[index] ?? 'full')}
         />
         <CommandButton
-          {...bar('operate', 'Operate')}
+          {...bar('operate', 'Take control')}
           hint="Be asked for outcomes that are above the autonomy of the run; closing this page is then an operator lost"
           icon={<IconHeadset size={16} aria-hidden />}
           isPressed={isMine}
           onPress={commands.toggleOperating}
         />
         <CommandButton
-          {...bar('change', 'Take file')}
+          {...bar('change', 'Apply changes')}
           hint="Apply the current file, and show the changes"
           icon={<IconRefreshDot size={16} aria-hidden />}
           onPress={() => commands.change(false)}
         />
         <CommandButton
-          {...bar('change', 'Take file and preempt')}
-          hint="Like Take file; changed active states are preempted and entered again, removed branches are preempted"
+          {...bar('change', 'Apply changes and preempt')}
+          hint="Like Apply changes; changed active states are preempted and entered again, removed branches are preempted"
           icon={<IconRefreshAlert size={16} aria-hidden />}
           onPress={() => commands.change(true)}
         />

@@ -24,12 +24,12 @@ export function RunButtons({ run, commands, of }: { run: RunView; commands: Comm
           onPress={commands.pauseOrResume}
         />
         <CommandButton
-          label="Operate"
+          label="Take control"
           hint="Be asked for outcomes that are above the autonomy of the run. A page operates one run at a time"
           icon={<IconHeadset size={16} aria-hidden />}
           isPressed={isMine}
           obstacle={commands.obstacle('operate')}
-          onObstacle={() => commands.explain('operate', 'Operate')}
+          onObstacle={() => commands.explain('operate', 'Take control')}
           onPress={commands.toggleOperating}
         />
         <StopRun commands={commands} />

@@ -66,7 +66,7 @@ export function useCommands(run: RunView | undefined, node: string | undefined, 
       setAutonomy: async (level) => (await sendOf('Autonomy', () => api.autonomy(id, level))) !== undefined,
       toggleOperating: () => {
         const why = obstacle('operate')
-        if (why) showRefusal(of('Operate'), why)
+        if (why) showRefusal(of('Take control'), why)
         else operate(useLive.getState().operated === id ? '' : id)
       },
       change: (preempt) =>

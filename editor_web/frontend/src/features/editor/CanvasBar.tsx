@@ -57,7 +57,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       <Tool label="Notes on the canvas" isPressed={hasNotes} onPress={toggleNotes}>
         <IconNote size={17} />
       </Tool>
-      <Tool label="Lay out by itself (L)" onPress={() => void layOutAnew()}>
+      <Tool label="Auto-layout (L)" onPress={() => void layOutAnew()}>
         <IconHierarchy3 size={17} />
       </Tool>
       <Tool label="Overview" isPressed={hasMap} onPress={onMap}>

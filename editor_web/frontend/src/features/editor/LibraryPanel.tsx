@@ -153,9 +153,9 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
   )
 }
 
-/** Into the chosen container, or after the chosen node. */
+/** Into the selected container, or after the selected node. */
 function addHere(addition: Addition): void {
   const parent = placeForNew()
   if (parent) void add(addition, { parent: parent.path })
-  else showEditorRefusal('Add', 'nothing can be put in here', 'Choose a container.')
+  else showEditorRefusal('Add', 'nothing can be put in here', 'Select a container.')
 }

@@ -23,7 +23,7 @@ import { rootOf, setEditor, useEditor } from './store'
 
 export interface NodeFormProps {
   readonly node: EditNode
-  /** Nothing is chosen: this is what fills the canvas. */
+  /** Nothing is selected: this is what fills the canvas. */
   readonly isScope: boolean
   /** So many more are chosen. */
   readonly others: number
@@ -50,7 +50,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
             {[
               kindLabel(node.kind),
               isScope && node.path !== ROOT ? 'fills the canvas' : '',
-              others > 0 ? `and ${others} more chosen` : '',
+              others > 0 ? `and ${others} more selected` : '',
             ]
               .filter(Boolean)
               .join(', ')}

@@ -40,7 +40,7 @@ const FromCanvas = Annotation.define<boolean>()
 
 const markNode = StateEffect.define<{ from: number; to: number } | undefined>()
 
-/** The lines of the chosen node. */
+/** The lines of the selected node. */
 const nodeLines = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(lines, transaction) {

@@ -125,7 +125,7 @@ function own(paths: readonly string[], what: string): readonly string[] {
   const mine = root ? paths.filter((path) => !isForeign(root, path)) : []
   if (mine.length < paths.length)
     showEditorRefusal(what, 'this is part of another behavior', 'Open that behavior and change it there.')
-  else if (paths.length === 0) showEditorRefusal(what, 'nothing is chosen', 'Choose nodes on the canvas first.')
+  else if (paths.length === 0) showEditorRefusal(what, 'nothing is selected', 'Select nodes on the canvas first.')
   return mine
 }
 
@@ -296,7 +296,7 @@ export async function align(how: Alignment): Promise<void> {
     outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])),
   )
   if (chosen.size < 2) {
-    showEditorRefusal('Align', 'choose two nodes or more')
+    showEditorRefusal('Align', 'select two nodes or more')
     return
   }
   await place(aligned(chosen, how))

@@ -129,7 +129,7 @@ export const COMMANDS: readonly Command[] = [
   {
     id: 'connect',
     part: 'Build',
-    words: 'Connect an outcome of the chosen node',
+    words: 'Connect an outcome of the selected node',
     chords: [{ key: 'c' }],
     needs: 'node',
     run: openConnectPalette,
@@ -144,7 +144,7 @@ export const COMMANDS: readonly Command[] = [
   {
     id: 'initial',
     part: 'Build',
-    words: 'Let the machine begin with the chosen node',
+    words: 'Let the machine begin with the selected node',
     chords: [{ key: 'i' }],
     needs: 'node',
     run: () => void makeInitial(),
@@ -222,7 +222,7 @@ export const COMMANDS: readonly Command[] = [
     run: () => void ungroup(),
   },
 
-  { id: 'layout', part: 'Arrange', words: 'Lay out by itself', chords: [{ key: 'l' }], run: () => void layOutAnew() },
+  { id: 'layout', part: 'Arrange', words: 'Auto-layout', chords: [{ key: 'l' }], run: () => void layOutAnew() },
   { id: 'align-left', part: 'Arrange', words: 'Align left', chords: [], needs: 'nodes', run: () => void align('left') },
   { id: 'align-top', part: 'Arrange', words: 'Align top', chords: [], needs: 'nodes', run: () => void align('top') },
   { id: 'align-row', part: 'Arrange', words: 'Put in a row', chords: [], needs: 'nodes', run: () => void align('row') },
@@ -270,23 +270,23 @@ export const COMMANDS: readonly Command[] = [
   {
     id: 'all',
     part: 'Move around',
-    words: 'Choose everything here',
+    words: 'Select everything here',
     chords: [{ key: 'a', ctrl: true }],
     run: selectAll,
   },
   {
     id: 'enter',
     part: 'Move around',
-    words: 'Go into the chosen container or behavior, or to the form of a state',
+    words: 'Go into the selected container or behavior, or to the form of a state',
     chords: [{ key: 'Enter' }],
     needs: 'node',
     run: goIn,
   },
-  { id: 'leave', part: 'Move around', words: 'Go out, or choose nothing', chords: [{ key: 'Escape' }], run: goOut },
+  { id: 'leave', part: 'Move around', words: 'Go out, or select nothing', chords: [{ key: 'Escape' }], run: goOut },
   {
     id: 'open',
     part: 'Move around',
-    words: 'Open or close the chosen container in place',
+    words: 'Open or close the selected container in place',
     chords: [{ key: 'o' }],
     needs: 'node',
     run: openOrClose,
@@ -333,7 +333,7 @@ function goIn(): void {
   })
 }
 
-/** Put the keyboard on the first parameter of the chosen node, else on the first field of its form. */
+/** Put the keyboard on the first parameter of the selected node, else on the first field of its form. */
 function focusInspector(): void {
   setEditor({ tab: 'node' })
   requestAnimationFrame(() => {
@@ -371,7 +371,7 @@ export function disabledReason(command: Command): string | undefined {
   switch (command.needs) {
     case 'node':
     case 'nodes':
-      return state.selection.length === 0 ? 'choose a node first' : undefined
+      return state.selection.length === 0 ? 'select a node first' : undefined
     case 'undo':
       // What is on its way to the server now can be taken back as soon as it is there.
       return state.isBusy || canUndo(state.history) ? undefined : 'nothing was changed'

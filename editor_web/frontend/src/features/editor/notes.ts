@@ -14,7 +14,7 @@ export function toggleNotes(): void {
   useNotes.setState((state) => ({ isShown: !state.isShown, writing: undefined }))
 }
 
-/** Write a note on the chosen node; on what fills the canvas where none is chosen. */
+/** Write a note on the selected node; on what fills the canvas where none is chosen. */
 export function writeNote(path = chosenOf(editor())?.path ?? editor().scope): void {
   const root = rootOf(editor())
   if (!root || !nodeOf(root, path)) return

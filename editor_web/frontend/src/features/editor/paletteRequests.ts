@@ -11,7 +11,7 @@ import {
 import type { Point } from '../../document/geometry'
 import { chosenOf, editor, isOpenNow, showEditorRefusal, rootOf, scopeOf, setEditor } from './store'
 
-/** Where something new goes: into the chosen container where it is open or empty, else beside the chosen node; else into what fills the canvas. */
+/** Where something new goes: into the selected container where it is open or empty, else beside the selected node; else into what fills the canvas. */
 export function placeForNew(): EditNode | undefined {
   const state = editor()
   const root = rootOf(state)
@@ -32,7 +32,7 @@ function topOf(scope: EditNode | undefined): EditNode | undefined {
 export function openAddPalette(screen?: Point, at?: Point): void {
   const parent = placeForNew()
   if (!parent) {
-    showEditorRefusal('Add', 'nothing can be put in here', 'Choose a container.')
+    showEditorRefusal('Add', 'nothing can be put in here', 'Select a container.')
     return
   }
   setEditor({ palette: { kind: 'add', parent: parent.path, ...(screen ? { screen } : {}), ...(at ? { at } : {}) } })
@@ -64,13 +64,13 @@ export function openPortPalette(path: string, outcome: string, screen?: Point, a
   })
 }
 
-/** Ask which outcome of the chosen node to connect. */
+/** Ask which outcome of the selected node to connect. */
 export function openConnectPalette(): void {
   const root = rootOf(editor())
   const chosen = chosenOf(editor())
   const parent = chosen && root && nodeOf(root, parentPath(chosen.path))
   if (!chosen || !root || !parent || isForeign(root, chosen.path)) {
-    showEditorRefusal('Connect', 'no node is chosen', 'Choose a node inside a machine.')
+    showEditorRefusal('Connect', 'no node is selected', 'Select a node inside a machine.')
     return
   }
   setEditor({ palette: { kind: 'connect', path: chosen.path } })

@@ -1,4 +1,4 @@
-/** The names that `${…}` can use at the chosen node: parameters of the behavior, and userdata around it. */
+/** The names that `${…}` can use at the selected node: parameters of the behavior, and userdata around it. */
 import type { Dict } from '../../document/dict'
 import { useMemo } from 'react'
 import { allNodes, nodeOf, pathsTo, type EditNode } from '../../document/editing/model'

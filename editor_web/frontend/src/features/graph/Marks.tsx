@@ -22,7 +22,7 @@ export function Marks({ path }: { path: string }) {
   )
 }
 
-/** For the mouse; the keyboard has the key `b` and the form of the chosen node. Set only on the page of the run. */
+/** For the mouse; the keyboard has the key `b` and the form of the selected node. Set only on the page of the run. */
 function Dot({ path, when, isSet }: { path: string; when: 'before' | 'after'; isSet: boolean }) {
   const isPage = useIsPage()
   if (!isPage) return isSet && <span className={`break-dot is-${when} is-set`} title={`Pauses ${when} this node`} />

@@ -157,7 +157,7 @@ it('operates a run below full autonomy from this page before its first node is e
   await user.click(screen.getByRole('button', { name: 'Operation' }))
   await user.click(screen.getByRole('combobox', { name: 'Autonomy at the start' }))
   await user.click(within(screen.getByRole('listbox', { name: 'Autonomy at the start' })).getByText('high'))
-  expect(screen.getByLabelText(/^Operate it from this page/)).toBeChecked()
+  expect(screen.getByLabelText(/^Take control of it from this page/)).toBeChecked()
   await user.click(screen.getByRole('combobox', { name: 'When the operator is lost' }))
   await user.click(within(screen.getByRole('listbox', { name: 'When the operator is lost' })).getByText('stop the run'))
   await user.clear(screen.getByLabelText('After'))

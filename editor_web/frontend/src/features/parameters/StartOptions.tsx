@@ -30,7 +30,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
       />
       <Switch
         size="sm"
-        label="Operate it from this page"
+        label="Take control of it from this page"
         description="Its questions come here; closing this page is then an operator lost"
         checked={supervision.operates}
         onChange={(event) => set({ operates: event.currentTarget.checked })}

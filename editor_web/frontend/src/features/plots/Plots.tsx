@@ -89,7 +89,7 @@ export function Plots() {
       <div className={`plot-halves${isChoosing ? ' is-choosing' : ''}`}>
         {isChoosing && <FieldChooser topics={topics} chosen={plot.chosen} onChoose={plot.choose} />}
         {entries.length === 0 ? (
-          <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is chosen">
+          <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is selected">
             Unfold a topic and tick what you want to see: joints, forces, widths.
           </Empty>
         ) : (

@@ -48,7 +48,7 @@ it('shows the arm of the state at the entry until it is closed, with what is kno
 
 it.each([
   [{ ...SHOWN, arm: 'middle' }, ['left'], 'This cell has no arm middle; choose another one.'],
-  [{ ...SHOWN, name: '' }, ['left'], 'No entry is chosen.'],
+  [{ ...SHOWN, name: '' }, ['left'], 'No entry is selected.'],
   [SHOWN, [], 'This cell has no arm that could be shown.'],
 ])('says why there is nothing to see', async (of, arms, words) => {
   told(of, ...arms)

@@ -70,7 +70,7 @@ function obstacle(shown: Previewed, arms: readonly ArmInfo[] | undefined, arm: s
   if (arms === undefined) return ''
   if (!isOpen) return 'The server does not answer; nothing is shown until it does.'
   if (arms.length === 0) return 'This cell has no arm that could be shown.'
-  if (!shown.name) return 'No entry is chosen.'
+  if (!shown.name) return 'No entry is selected.'
   return arms.some((each) => each.name === arm) ? '' : `This cell has no arm ${arm}; choose another one.`
 }
 

@@ -70,7 +70,7 @@ function Tags({ entry, obstacle, onKeep }: TagsProps) {
       }}
     >
       <TextInput size="xs" label="Tags" placeholder="station_1, tested" value={typed} error={fault} onChange={(event) => setTyped(event.currentTarget.value)} autoComplete="off" spellCheck={false} />
-      <CommandButton label="Keep the tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
+      <CommandButton label="Save tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
     </form>
   )
 }

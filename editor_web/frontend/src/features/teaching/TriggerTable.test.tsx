@@ -196,7 +196,7 @@ it('keeps tags that are written as tags are, and only where they have changed', 
   taught()
   const user = show(<EntryDetails arm="left" entry={entry} />)
   const form = within(screen.getByRole('form', { name: 'Tags of aside' }))
-  const keep = form.getByRole('button', { name: 'Keep the tags' })
+  const keep = form.getByRole('button', { name: 'Save tags' })
   expect(keep).toHaveAttribute('title', 'Not possible: they are as they were')
   await user.clear(form.getByLabelText('Tags'))
   await user.type(form.getByLabelText('Tags'), 'Above')

@@ -74,7 +74,7 @@ it('begins anew', async () => {
   openTour()
   setTour({ step: 2, document: MADE })
   const user = show(<Guide page="edit" id={MADE} />)
-  await user.click(screen.getByRole('button', { name: 'Begin anew' }))
+  await user.click(screen.getByRole('button', { name: 'Restart' }))
   expect(screen.getByText(`Step 1 of ${STEPS.length}`)).toBeVisible()
   expect(useTour.getState().document).toBe('')
 })

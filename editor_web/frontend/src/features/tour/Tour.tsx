@@ -72,7 +72,7 @@ function Card({ page, id, onEdit, onBehavior, seen, at }: TourProps & { readonly
             onPress={() => focusIn(seen.target)}
           />
         )}
-        {at > 0 && step && <CommandButton label="Begin anew" tone="quiet" onPress={beginAnew} />}
+        {at > 0 && step && <CommandButton label="Restart" tone="quiet" onPress={beginAnew} />}
         {!step && <CommandButton label="Finish" tone="strong" onPress={endTour} />}
       </div>
     </section>

@@ -37,7 +37,7 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Give it a name',
-    words: 'Write a name, for example first_steps, and press Make it. It begins as a state machine: one state after the other.',
+    words: 'Write a name, for example first_steps, and press Create. It begins as a state machine: one state after the other.',
     keys: 'Write it and press Enter.',
     page: 'any',
     targets: ['dialog[open] .new-form', '.app-navbar .new-behavior', '.app-header .mantine-Burger-root'],
@@ -62,8 +62,8 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Add a second state',
-    words: 'Click Log in the library: it writes a line into the log of the run. While Wait is chosen, its outcome done is led to the new state by itself.',
-    keys: 'Choose the state, press A, write flow.log, press Enter.',
+    words: 'Click Log in the library: it writes a line into the log of the run. While Wait is selected, its outcome done is led to the new state by itself.',
+    keys: 'Select the state, press A, write flow.log, press Enter.',
     page: 'edit',
     targets: ['.library-add[aria-label="Add flow.Log"]', TABS('library'), '.edit-canvas'],
     clear: '.edit-canvas',
@@ -80,7 +80,7 @@ export const STEPS: readonly Step[] = [
   {
     title: 'Lead the outcomes on',
     words: 'Every outcome needs a target. Drag from the dot beside done to the pill finished: there the behavior ends.',
-    keys: 'Choose the state, press C, choose the outcome with Enter, write finished, press Enter.',
+    keys: 'Select the state, press C, choose the outcome with Enter, write finished, press Enter.',
     page: 'edit',
     targets: ['.edit-canvas .transition-row.is-loose', TABS('canvas'), '.problem-count'],
     clear: '.edit-canvas',
