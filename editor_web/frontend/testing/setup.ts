@@ -42,5 +42,6 @@ beforeEach(newServer)
 afterEach(() => {
   cleanup()
   forgetPage()
+  // oxlint-disable-next-line vitest/no-standalone-expect -- of each test
   expect(server().unanswered).toEqual([])
 })

@@ -32,7 +32,7 @@ export function useBreakpoints(): readonly CompleteBreakpoint[] {
 export function useBreakpointsAt(path: string): string {
   const all = useBreakpoints()
   const here = all.filter((each) => each.enabled && matches(each.path, path))
-  return here.map((each) => each.when).sort().join(' ')
+  return here.map((each) => each.when).toSorted().join(' ')
 }
 
 type Edit = (list: readonly CompleteBreakpoint[]) => readonly CompleteBreakpoint[]

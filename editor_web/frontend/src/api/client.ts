@@ -25,7 +25,7 @@ export class ServerError extends Error {
     /** What an interrupted run asks before it goes on. */
     readonly questions: readonly ResumeQuestion[] = [],
     /** The whole answer, for refusals that say more. */
-    readonly answer: unknown = undefined,
+    readonly answer?: unknown,
   ) {
     super(body.message)
     this.name = 'ServerError'

@@ -14,7 +14,7 @@ export function LogIn() {
     setAway(false)
     if (!isLoggedOut) return
     // Somebody may log in on another tab.
-    const timer = setInterval(() => api.session().catch(() => undefined), LOOK_MS)
+    const timer = setInterval(() => void api.session().catch(() => undefined), LOOK_MS)
     return () => clearInterval(timer)
   }, [isLoggedOut])
   if (!isLoggedOut) return null

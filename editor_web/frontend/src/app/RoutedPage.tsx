@@ -53,6 +53,8 @@ export function RoutedPage(props: RoutedPageProps) {
       return <SweepPage key={route.id} id={route.id} onOpen={onOpen} />
     case 'home':
       return <HomePage hasCellView={hasCellView(session)} onOpenRun={(id) => onOpen(runHref(id))} />
+    default:
+      break
   }
   if (route.page === 'recording' || (route.page === 'run' && knowsRuns && !shown)) {
     return (

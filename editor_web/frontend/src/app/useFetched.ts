@@ -21,7 +21,7 @@ export function useFetched<T>(key: string, load: () => Promise<T>, revision: num
     return () => {
       current = false
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the key stands for what `load` depends on
+    // oxlint-disable-next-line react/exhaustive-deps -- the key stands for what `load` depends on
   }, [key, generation, revision])
   // What another server process said is shown until this one has answered: nothing typed is lost.
   return state.key === key ? state : { value: undefined, problem: undefined }

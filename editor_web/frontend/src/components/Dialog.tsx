@@ -17,6 +17,7 @@ export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
   useModal(element, isOpen)
   if (!isOpen) return null
   return (
+    // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
       className="dialog"

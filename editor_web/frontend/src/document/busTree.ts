@@ -24,13 +24,13 @@ export function found<T extends Named>(entries: readonly T[], search: string): r
 /** Entries by what stands before the last slash of their names, in the order of names. */
 export function byNamespace<T extends Named>(entries: readonly T[]): readonly Namespace<T>[] {
   const groups = new Map<string, T[]>()
-  for (const entry of [...entries].sort((a, b) => (a.name < b.name ? -1 : 1))) {
+  for (const entry of entries.toSorted((a, b) => (a.name < b.name ? -1 : 1))) {
     const name = entry.name.slice(0, Math.max(0, entry.name.lastIndexOf('/')))
     const group = groups.get(name)
     if (group) group.push(entry)
     else groups.set(name, [entry])
   }
-  return [...groups].map(([name, of]) => ({ name, entries: of })).sort((a, b) => (a.name < b.name ? -1 : 1))
+  return [...groups].map(([name, of]) => ({ name, entries: of })).toSorted((a, b) => (a.name < b.name ? -1 : 1))
 }
 
 /** The last part of a name. */

@@ -87,29 +87,29 @@ export function outcomeId(path: string, outcome: string): string {
 }
 
 /** The id of a machine's arrow. */
-export function arrowId(machine: string, source: string, outcome: string): string {
-  return `${machine}|${source}|${outcome}`
+export function arrowId(path: string, source: string, outcome: string): string {
+  return `${path}|${source}|${outcome}`
 }
 
 /**
  * The outcomes of a machine that get a place of their own on the canvas: those that one arrow leads to.
  * Arrows to the others, typically one from every state to `failed`, are written on the states.
  */
-export function drawnOutcomes(machine: GraphNode): readonly string[] {
-  const inside = new Set(machine.children.map((child) => child.name))
-  return machine.outcomes.filter(
-    (outcome) => !inside.has(outcome) && machine.transitions.filter((t) => t.target === outcome).length === 1,
+export function drawnOutcomes(parent: GraphNode): readonly string[] {
+  const inside = new Set(parent.children.map((child) => child.name))
+  return parent.outcomes.filter(
+    (outcome) => !inside.has(outcome) && parent.transitions.filter((t) => t.target === outcome).length === 1,
   )
 }
 
-function drawnTransitions(machine: GraphNode): readonly GraphTransition[] {
-  const drawn = new Set([...drawnOutcomes(machine), ...machine.children.map((child) => child.name)])
-  return machine.transitions.filter((t) => drawn.has(t.target))
+function drawnTransitions(parent: GraphNode): readonly GraphTransition[] {
+  const drawn = new Set([...drawnOutcomes(parent), ...parent.children.map((child) => child.name)])
+  return parent.transitions.filter((t) => drawn.has(t.target))
 }
 
 /** The outcomes of `parent` that are written on its child `name`. */
 export function exitsOf(parent: GraphNode | undefined, name: string): readonly Exit[] {
-  if (!parent || parent.kind !== 'machine') return []
+  if (parent?.kind !== 'machine') return []
   const drawn = new Set([...drawnOutcomes(parent), ...parent.children.map((child) => child.name)])
   return parent.transitions.filter((t) => t.source === name && !drawn.has(t.target))
 }

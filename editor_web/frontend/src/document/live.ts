@@ -107,7 +107,7 @@ function mergeRuns(runs: readonly RunView[], changed: readonly RunView[]): reado
   const kept = runs.map((run) => byId.get(run.id) ?? run)
   const known = new Set(runs.map((run) => run.id))
   const added = changed.filter((run) => !known.has(run.id))
-  return [...added, ...kept].sort((a, b) => b.started_at_s - a.started_at_s)
+  return [...added, ...kept].toSorted((a, b) => b.started_at_s - a.started_at_s)
 }
 
 /** Is this run still going? */

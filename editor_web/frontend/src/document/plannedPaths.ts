@@ -28,7 +28,7 @@ export interface BlockedPath {
 export function blockedPaths(robots: Dict<RobotLive>): readonly BlockedPath[] {
   return Object.values(robots)
     .flatMap(({ name, path }) => (path?.state === 'blocked' ? [{ robot: name, path }] : []))
-    .sort((a, b) => a.robot.localeCompare(b.robot))
+    .toSorted((a, b) => a.robot.localeCompare(b.robot))
 }
 
 /** `12 s`, `3:05 min`. */

@@ -23,7 +23,7 @@ export function activeLeaves(nodes: Nodes): readonly string[] {
   const active = Object.keys(nodes).filter((path) => lookup(nodes, path)?.status === 'active')
   const above = new Set(active.flatMap((path) => path.split('/').map((_, count, parts) => parts.slice(0, count).join('/'))))
   const leaves = active.filter((path) => !above.has(path))
-  return leaves.sort((a, b) => (lookup(nodes, a)?.entered_s ?? 0) - (lookup(nodes, b)?.entered_s ?? 0) || a.localeCompare(b))
+  return leaves.toSorted((a, b) => (lookup(nodes, a)?.entered_s ?? 0) - (lookup(nodes, b)?.entered_s ?? 0) || a.localeCompare(b))
 }
 
 /** `both › left`; the root stays as it is. */

@@ -37,7 +37,7 @@ export function fieldOf(parameter: ParameterView): Field {
 }
 
 function kindOf(type: unknown): FieldKind {
-  const first = Array.isArray(type) ? type.find((t) => t !== 'null') : type
+  const first: unknown = Array.isArray(type) ? type.find((t) => t !== 'null') : type
   switch (first) {
     case 'number':
     case 'integer':
@@ -77,7 +77,7 @@ export function rangeText(field: Field): string {
 export function problemWith(field: Field, value: unknown): string | undefined {
   const empty = value === '' || value === undefined || value === null
   if (empty) return field.required ? 'A value is required' : undefined
-  if (field.kind === 'json') return isJson(String(value)) ? undefined : 'This is not JSON'
+  if (field.kind === 'json') return typeof value === 'string' && isJson(value) ? undefined : 'This is not JSON'
   if (field.kind !== 'number' && field.kind !== 'integer') return undefined
   const number = Number(value)
   if (!Number.isFinite(number)) return 'This is not a number'
@@ -87,7 +87,8 @@ export function problemWith(field: Field, value: unknown): string | undefined {
   return tooLow || tooHigh ? `Must be ${rangeText(field)}` : undefined
 }
 
-function isJson(value: string): boolean {
+/** Is it JSON? */
+export function isJson(value: string): boolean {
   try {
     JSON.parse(value)
     return true
@@ -97,9 +98,9 @@ function isJson(value: string): boolean {
 }
 
 /** The userdata to begin with, written as a JSON object; undefined where it is none. */
-export function inputsOf(text: string): Dict<unknown> | undefined {
-  if (text.trim() === '') return {}
-  const value: unknown = isJson(text) ? JSON.parse(text) : undefined
+export function inputsOf(written: string): Dict<unknown> | undefined {
+  if (written.trim() === '') return {}
+  const value: unknown = isJson(written) ? JSON.parse(written) : undefined
   return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Dict<unknown>) : undefined
 }
 

@@ -1,7 +1,7 @@
 /** What a sweep has shown, in words, orders and scales. Pure. */
 import type { Factor, FactorChoice, FactorCoverage, Interval, JudgedRequirement, MeasureSpread, Quantiles, SearchSpec, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
 import { lookup } from './dict'
-import { numeral } from './values'
+import { numeral, plainText } from './values'
 
 /** A share as a percentage; what is not quite everything never reads as 100 %. */
 export function percent(share: number): string {
@@ -104,7 +104,7 @@ export const FIRST_ORDER: RunOrder = { by: 'ended', isFalling: false }
 /** Runs in an order; those that are equal in it stay as they are. */
 export function orderedRuns(runs: readonly TrialResult[], { by, isFalling }: RunOrder): readonly TrialResult[] {
   const sign = isFalling ? -1 : 1
-  return [...runs].sort((left, right) => sign * compared(cellOf(left, by), cellOf(right, by)))
+  return runs.toSorted((left, right) => sign * compared(cellOf(left, by), cellOf(right, by)))
 }
 
 /** What stands in a column: a number where it is one. */
@@ -130,7 +130,7 @@ export function numberOf(run: TrialResult, name: string): number | undefined {
 
 function compared(left: unknown, right: unknown): number {
   if (typeof left === 'number' && typeof right === 'number') return left - right
-  return String(left ?? '').localeCompare(String(right ?? ''), 'en', { numeric: true })
+  return plainText(left ?? '').localeCompare(plainText(right ?? ''), 'en', { numeric: true })
 }
 
 /** Its outcome, or its status where it has none. */
@@ -164,7 +164,7 @@ export function axisScale(runs: readonly TrialResult[], axis: string): AxisScale
     const marks = [0, 0.5, 1].map((at) => ({ at, label: short(least + at * span) }))
     return { of: (run) => (Number(cellOf(run, axis)) - least) / span, marks }
   }
-  const names = [...new Set(values.map(String))].sort((left, right) => left.localeCompare(right))
+  const names = [...new Set(values.map(String))].toSorted((left, right) => left.localeCompare(right))
   const at = (name: string) => (names.indexOf(name) + 0.5) / names.length
   return { of: (run) => at(String(cellOf(run, axis))), marks: names.map((label) => ({ at: at(label), label })) }
 }
@@ -194,7 +194,7 @@ export function proposedFactor(choice: FactorChoice): FactorDraft {
   if (address.startsWith('displace.')) return { ...draft, kind: 'normal', first: '0', second: address.endsWith('_rad') ? '0.1' : '0.005' }
   if (least !== null && most !== null) return { ...draft, first: String(least), second: String(most) }
   if (typeof nominal === 'number' && nominal !== 0) {
-    const ends = [0.8 * nominal, 1.2 * nominal].sort((left, right) => left - right).map(short)
+    const ends = [0.8 * nominal, 1.2 * nominal].toSorted((left, right) => left - right).map(short)
     return { ...draft, first: ends[0] ?? '', second: ends[1] ?? '' }
   }
   return typeof nominal === 'number' ? draft : { ...draft, kind: 'values', values: nominal === null ? '' : JSON.stringify(nominal) }

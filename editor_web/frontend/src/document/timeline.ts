@@ -41,7 +41,7 @@ export interface ShownRow {
 export function rowsOf(paths: Iterable<string>, order: readonly string[], closed: ReadonlySet<string>): readonly ShownRow[] {
   const known = new Set(withParents(paths))
   const inGraph = new Set(order)
-  const others = [...known].filter((path) => !inGraph.has(path)).sort()
+  const others = [...known].filter((path) => !inGraph.has(path)).toSorted()
   const all = [...order.filter((path) => known.has(path)), ...others]
   const parents = new Set(all.map(parentOf))
   return all

@@ -33,7 +33,7 @@ export function shownScopes(scopes: Scopes, search: string): readonly ScopeShown
       }),
   }))
   const withLines = shown.filter((scope) => scope.lines.length > 0)
-  return withLines.sort((a, b) => Number(b.isOpen) - Number(a.isOpen) || (a.path < b.path ? -1 : 1))
+  return withLines.toSorted((a, b) => Number(b.isOpen) - Number(a.isOpen) || (a.path < b.path ? -1 : 1))
 }
 
 /** `Behavior`, `root/inner`, `root/loop, round 3`, `root/both/left, not merged yet`. */

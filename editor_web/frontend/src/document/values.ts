@@ -28,7 +28,12 @@ function written(value: object): string {
 function scalar(value: unknown): string {
   if (typeof value === 'number') return numeral(value)
   if (typeof value === 'string') return value === '' ? '""' : value
-  return value === null ? 'none' : String(value)
+  return value === null ? 'none' : plainText(value)
+}
+
+/** Text as it is, anything else as JSON; undefined is empty. */
+export function plainText(value: unknown): string {
+  return typeof value === 'string' ? value : (JSON.stringify(value) ?? '')
 }
 
 /** A number with at most five significant digits behind the point. */

@@ -59,7 +59,7 @@ it('draws a tree below its top, children in order, and a closed branch without i
   const root = node('root', ['success', 'failure'], { kind: 'tree', children: [top] })
   const { boxes } = await arrange(root, options)
   const xs = leaves.map((leaf) => boxes.get(leaf.path)?.x ?? NaN)
-  expect(xs).toEqual([...xs].sort((p, q) => p - q))
+  expect(xs).toEqual(xs.toSorted((p, q) => p - q))
   expect(boxes.get('root/sequence/x')?.y).toBeGreaterThan(boxes.get('root/sequence')?.y ?? 0)
   const closed = await arrange(root, { ...options, isOpen: (path) => path !== 'root/sequence' })
   expect(closed.boxes.has('root/sequence/x')).toBe(false)

@@ -71,5 +71,5 @@ test('what is around a mark is open', () => {
     ['root/box/inner/a', 'added' as const],
     ['root/other|b|done', 'added' as const],
   ])
-  expect([...containersOfMarks(marks)].sort()).toEqual(['root', 'root/box', 'root/box/inner', 'root/other'])
+  expect([...containersOfMarks(marks)].toSorted()).toEqual(['root', 'root/box', 'root/box/inner', 'root/other'])
 })

@@ -46,7 +46,7 @@ export function wordsOfChange(change: NodeChange): ChangeWords {
     case 'removed':
       return { path: change.path, kind: 'removed', title: `${name} removed${place}`, lines }
     case 'moved':
-      return { path: change.path, kind: 'moved', title: `${movedWords(change.before_path ?? '', change.path)}`, lines }
+      return { path: change.path, kind: 'moved', title: movedWords(change.before_path ?? '', change.path), lines }
     default:
       return {
         path: isDocument ? undefined : change.path,

@@ -60,7 +60,7 @@ export function drawnLinks(links: readonly FlowLink[], drawn: ReadonlySet<string
 }
 
 function nearestDrawn(drawn: ReadonlySet<string>, path: string): string | undefined {
-  return [...pathsTo(path)].reverse().find((each) => drawn.has(each))
+  return pathsTo(path).toReversed().find((each) => drawn.has(each))
 }
 
 /** What a node reads and writes. */

@@ -1,6 +1,7 @@
 /** From a state's JSON Schema to the fields of the editor's form, and values to and from what is typed. Pure. */
 import type { KeyView } from '../../api/types'
 import { lookup, type Dict } from '../dict'
+import { isJson } from '../schema'
 
 export type Schema = Dict<unknown>
 
@@ -87,7 +88,7 @@ function resolved(schema: Schema, definitions: Schema): Resolved {
     .map((option) => resolved(option, definitions).schema)
   const target = real.find((option) => 'entry' in record(option['properties']))
   const chosen = real.length === 1 ? real[0] : target
-  return { schema: { ...(chosen ?? {}), ...withoutShape(schema) }, isNullable: real.length < options.length }
+  return { schema: { ...chosen, ...withoutShape(schema) }, isNullable: real.length < options.length }
 }
 
 function kindOf(schema: Schema, is: { isEntry: boolean; hasChoices: boolean; isVector: boolean }): EditFieldKind {
@@ -196,14 +197,5 @@ function flowValue(typed: string): unknown {
     return JSON.parse(json) as unknown
   } catch {
     return typed
-  }
-}
-
-function isJson(text: string): boolean {
-  try {
-    JSON.parse(text)
-    return true
-  } catch {
-    return false
   }
 }

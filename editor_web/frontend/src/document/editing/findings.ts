@@ -11,7 +11,7 @@ export function problemsOf({ findings, targets }: Pick<Draft, 'findings' | 'targ
   if (targets.length === 0) return findings
   const known = together.get(findings)
   if (known?.targets === targets) return known.all
-  const all = [...findings, ...targets].sort((a, b) => a.line - b.line || a.column - b.column)
+  const all = [...findings, ...targets].toSorted((a, b) => a.line - b.line || a.column - b.column)
   together.set(findings, { targets, all })
   return all
 }

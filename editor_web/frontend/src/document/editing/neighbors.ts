@@ -95,7 +95,7 @@ function inLine(
 ): ReadonlyMap<string, Point> {
   const out = new Map<string, Point>()
   let at = start
-  for (const [id, box] of [...all].sort(([, a], [, b]) => order(a) - order(b))) {
+  for (const [id, box] of all.toSorted(([, a], [, b]) => order(a) - order(b))) {
     const { x, y, next } = place(box, at)
     out.set(id, { x, y })
     at = next

@@ -97,6 +97,6 @@ export function added(
 function textOf(when: ConcurrencyCondition['when']): string {
   return Object.entries(when)
     .map(([child, outcome]) => `${child}=${outcome}`)
-    .sort()
+    .toSorted()
     .join()
 }

@@ -40,6 +40,6 @@ export function found<T>(items: readonly T[], query: string, textsOf: (item: T) 
   return items
     .map((item, index) => ({ item, index, score: fit(query, ...textsOf(item)) }))
     .filter((each) => each.score !== undefined)
-    .sort((a, b) => (b.score ?? 0) - (a.score ?? 0) || a.index - b.index)
+    .toSorted((a, b) => (b.score ?? 0) - (a.score ?? 0) || a.index - b.index)
     .map((each) => each.item)
 }

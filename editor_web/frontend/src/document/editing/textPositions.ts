@@ -75,7 +75,7 @@ function openKeys(line: string): readonly string[] {
     if (found[0] === '}') stack.pop()
     else stack.push(found[1] ?? '')
   }
-  keys.push(...stack.reverse().filter(Boolean))
+  keys.push(...stack.toReversed().filter(Boolean))
   return keys
 }
 

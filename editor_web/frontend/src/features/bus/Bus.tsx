@@ -63,7 +63,7 @@ export function Bus({ session }: BusProps) {
   const tools = (
     <div className="bus-tools" ref={toolsRef}>
       {width === 0 ? null : width > 520 ? (
-        <SegmentedControl size="xs" aria-label="Part of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value as BusKind)} />
+        <SegmentedControl size="xs" aria-label="Part of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value)} />
       ) : (
         <select className="bus-kind" aria-label="Part of the bus" value={kind} onChange={(event) => setKind(event.currentTarget.value as BusKind)}>
           {KINDS.map((each) => (

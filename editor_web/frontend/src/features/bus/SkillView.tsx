@@ -65,8 +65,8 @@ function CourseView({ course }: { course: RequestProgress }) {
         {course.cause && `: ${course.cause}`}
       </p>
       {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Progress" />}
-      {course.feedback != null && !isOver(course) && <ValueTree label="Feedback" value={course.feedback} />}
-      {course.answer != null && <ValueTree label="Answer" value={course.answer} />}
+      {course.feedback !== null && course.feedback !== undefined && !isOver(course) && <ValueTree label="Feedback" value={course.feedback} />}
+      {course.answer !== null && course.answer !== undefined && <ValueTree label="Answer" value={course.answer} />}
     </div>
   )
 }

@@ -22,7 +22,7 @@ interface TopicViewProps {
 }
 
 export function TopicView({ facts, message, traffic, mayChange, onBack }: TopicViewProps) {
-  const heard = traffic && traffic.subscribers === 1 ? '1 subscriber' : `${traffic?.subscribers ?? 0} subscribers`
+  const heard = traffic?.subscribers === 1 ? '1 subscriber' : `${traffic?.subscribers ?? 0} subscribers`
   return (
     <Detail name={facts.name} type={facts.type} doc={facts.doc} onBack={onBack}>
       <p className="bus-traffic">

@@ -16,7 +16,7 @@ export interface RequestProgress {
 }
 
 const SENT: RequestProgress = { status: 'sent', feedback: undefined, answer: undefined, cause: '', goal: '' }
-const ACTIVE: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
+const ACTIVE: ReadonlySet<string> = new Set(['sent', 'pending', 'active', 'held', 'canceling'])
 
 /** The newest request to each address. */
 export const useRequests = create<{ readonly courses: Dict<RequestProgress> }>(() => ({ courses: {} }))
@@ -25,7 +25,7 @@ let watching = new AbortController()
 
 /** Has it ended? */
 export function isOver(course: RequestProgress): boolean {
-  return !ACTIVE.includes(course.status)
+  return !ACTIVE.has(course.status)
 }
 
 /** Ask a service, or send a goal and follow it. */

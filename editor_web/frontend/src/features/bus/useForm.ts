@@ -35,7 +35,7 @@ export function useForm(load: () => Promise<readonly Field[]>): FormState {
     return () => {
       isCurrent = false
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the form belongs to one entry and is made anew for another
+    // oxlint-disable-next-line react/exhaustive-deps -- the form belongs to one entry and is made anew for another
   }, [])
 
   const problems = Object.fromEntries((fields ?? []).map((field) => [field.name, problemWith(field, lookup(values, field.name))]))

@@ -10,7 +10,9 @@ const NAP = { id: 'behaviors/nap.yaml', name: 'nap', description: '', errors: 1,
 const opened = vi.fn()
 const made = vi.fn()
 
-function List({ mayMake = true, behaviors = [SHIFT, NAP] }: { readonly mayMake?: boolean; readonly behaviors?: readonly (typeof NAP)[] }) {
+const BOTH = [SHIFT, NAP]
+
+function List({ mayMake = true, behaviors = BOTH }: { readonly mayMake?: boolean; readonly behaviors?: readonly (typeof NAP)[] }) {
   return <BehaviorList behaviors={behaviors} current={NAP.id} href={(id) => `/behaviors/${id}`} onOpen={opened} onMade={mayMake ? made : undefined} />
 }
 

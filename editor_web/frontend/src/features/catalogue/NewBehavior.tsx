@@ -126,12 +126,12 @@ function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
             <button
               type="button"
               className="command"
-              onClick={() =>
-                relations.restore(each.id).then(
+              onClick={() => {
+                void relations.restore(each.id).then(
                   (made) => onRestored(made.id),
                   (error: unknown) => setProblem(wordsOf(error)),
                 )
-              }
+              }}
             >
               Restore
             </button>

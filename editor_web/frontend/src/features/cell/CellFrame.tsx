@@ -30,6 +30,7 @@ export function CellFrame() {
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
     <div className={isPast ? 'cell-view is-past' : 'cell-view'}>
+      {/* oxlint-disable-next-line react/iframe-missing-sandbox -- it has an origin of its own; see decision 0029 */}
       <iframe
         key={`${scheme}${generation}`}
         ref={frame}

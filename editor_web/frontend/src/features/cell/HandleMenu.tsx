@@ -50,7 +50,7 @@ export function HandleMenu() {
             { value: 'push', label: 'Push the arm' },
           ]}
           value={mode}
-          onChange={(next) => showHandle(arm, next as HandleMode)}
+          onChange={(next) => showHandle(arm, next)}
         />
         <p className="quiet handle-words">{WORDS[mode]}</p>
         <p role="status" className={refused ? 'handle-refused' : 'quiet handle-words'}>

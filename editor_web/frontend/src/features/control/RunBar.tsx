@@ -39,7 +39,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
   const isHeld = control?.paused === true && !control.stepping
   // What asks has its own place below the bar.
   const waiting = control?.waiting.filter((each) => !each.reasons.includes('autonomy')) ?? []
-  const isMine = run !== undefined && operated === run.id
+  const isMine = operated === run?.id
   const bar = (command: Command, label: string) => ({
     label,
     obstacle: commands.obstacle(command),

@@ -20,7 +20,9 @@ export interface DemonstrationProps {
   readonly initial?: readonly Step[]
 }
 
-export function Demonstration({ onMade, initial = [] }: DemonstrationProps) {
+const NO_STEPS: readonly Step[] = []
+
+export function Demonstration({ onMade, initial = NO_STEPS }: DemonstrationProps) {
   const [entries, setEntries] = useState<readonly EntryName[]>()
   const [steps, setSteps] = useState(initial)
   const [options, setOptions] = useState<Options>({ arm: '', speed: 0.3, approach_m: 0.1, width_m: null })

@@ -123,7 +123,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       isFitted.current = true
       return setViewport(viewportFor(arranged.arrangement, { width, height })).then(() => setInPlace(true))
     })
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- what is edited does not move the view
+    // oxlint-disable-next-line react/exhaustive-deps -- what is edited does not move the view
   }, [arranged.view, pane, setViewport])
 
   // What an edit pushes out of sight is brought back, unless somebody has chosen what to see.
@@ -132,7 +132,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     if (isFitted.current && !isAllSeen(arranged.arrangement, getViewport(), { width, height })) {
       void setViewport(viewportFor(arranged.arrangement, { width, height }))
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- a change of the pane has its own effect
+    // oxlint-disable-next-line react/exhaustive-deps -- a change of the pane has its own effect
   }, [arranged, getViewport, setViewport])
 
   // A node asked for is brought into view where it is not, and gets the keyboard.
@@ -257,7 +257,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
         return box && at.x >= box.x && at.x <= box.x + box.width && at.y >= box.y && at.y <= box.y + box.height
       })
       .map((node) => node.id)
-    return hits.sort((a, b) => b.length - a.length)[0] ?? arranged.scope.path
+    return hits.toSorted((a, b) => b.length - a.length)[0] ?? arranged.scope.path
   }
 
   /** A place of the canvas as a position in a container. */
@@ -282,10 +282,10 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   })
 
   function onDrop(event: DragEvent): void {
-    const given = event.dataTransfer.getData(ADDITION)
-    if (!given) return
+    const dragged = event.dataTransfer.getData(ADDITION)
+    if (!dragged) return
     event.preventDefault()
-    const what = JSON.parse(given) as Addition
+    const what = JSON.parse(dragged) as Addition
     const screen = { x: event.clientX, y: event.clientY }
     const hit = document
       .elementsFromPoint(screen.x, screen.y)

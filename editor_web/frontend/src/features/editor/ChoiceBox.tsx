@@ -84,6 +84,7 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
       }
     : undefined
   return (
+    // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
       className={`choice-box${at ? ' is-placed' : ''}`}
@@ -112,6 +113,7 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
         />
         <ul className="choices" role="listbox" id={id} aria-label={label} ref={list}>
           {shown.map((choice, position) => (
+            // oxlint-disable-next-line jsx-a11y/click-events-have-key-events -- the field above has the keys of the list
             <li
               key={choice.id}
               id={`${id}-${choice.id}`}

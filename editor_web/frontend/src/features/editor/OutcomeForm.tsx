@@ -92,9 +92,9 @@ function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
       aria-label={`Autonomy of ${outcome}`}
       title={level ? LEVEL_WORDS[level] : 'passes by itself'}
       value={level}
-      onChange={({ currentTarget: { value: level } }) =>
+      onChange={({ currentTarget: { value } }) =>
         void performOn(node.path, `Autonomy of ${outcome}`, (now) => {
-          const next = level ? { ...now.autonomy, [outcome]: level } : without(now.autonomy, outcome)
+          const next = value ? { ...now.autonomy, [outcome]: value } : without(now.autonomy, outcome)
           return [setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null)]
         })
       }

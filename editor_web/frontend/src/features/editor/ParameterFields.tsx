@@ -16,6 +16,7 @@ import {
   type EditField,
 } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
+import { plainText } from '../../document/values'
 import { perform } from './apply'
 import { EntryDetails } from './EntryDetails'
 import { FieldPreview } from './ShowEntry'
@@ -165,7 +166,7 @@ function FieldInput({ field, value, isFree, entries, names, hintId, isInvalid, o
           className="plain-input"
           aria-label={label}
           aria-describedby={hintId}
-          value={value === undefined ? '' : String(value)}
+          value={plainText(value)}
           onChange={(event) => onSet(event.currentTarget.value === '' ? undefined : event.currentTarget.value)}
         >
           <option value="">{field.required ? 'choose' : `default${fallback ? `: ${fallback}` : ''}`}</option>

@@ -132,7 +132,7 @@ function waypoints(
     0,
     transitions.findIndex((transition) => transition.outcome === outcome),
   )
-  const entry = to && 'entryY' in to.data ? Number(to.data['entryY']) : target.height / 2
+  const entry = to && 'entryY' in to.data ? to.data['entryY'] : target.height / 2
   const end = { x: target.x, y: target.y + entry }
   const [path] = getSmoothStepPath({
     sourceX: source.x + source.width,

@@ -109,7 +109,7 @@ export function TemplateInput(props: TemplateInputProps) {
     id,
     className: `plain-input${isMono ? ' mono' : ''}`,
     'aria-label': label,
-    'aria-invalid': isInvalid || undefined,
+    'aria-invalid': isInvalid ? true : undefined,
     'aria-describedby': describedBy,
     autoComplete: 'off',
     spellCheck: false,

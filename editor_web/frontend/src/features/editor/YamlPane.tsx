@@ -138,7 +138,7 @@ function diagnosticsOf(view: EditorView, findings: readonly FindingView[], fixes
         })),
       }
     })
-    .sort((a, b) => a.from - b.from)
+    .toSorted((a, b) => a.from - b.from)
 }
 
 export function YamlPane() {
@@ -178,6 +178,7 @@ export function YamlPane() {
     const effects: StateEffect<unknown>[] = [markNode.of(lines)]
     if (at !== undefined && !now.hasFocus) effects.push(EditorView.scrollIntoView(at, { y: 'start', yMargin: 60 }))
     now.dispatch({ effects })
+    // oxlint-disable-next-line react/exhaustive-deps -- a node that was drawn anew, with the same lines, scrolls nothing
   }, [chosen?.line, chosen?.end_line, chosen?.path, text])
 
   useEffect(() => {

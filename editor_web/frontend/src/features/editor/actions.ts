@@ -66,11 +66,11 @@ export async function add(what: Addition, request: AddRequest): Promise<void> {
     ...(after ? { after } : {}),
     ...(request.from?.isInsert ? { on_edge: { from: request.from.path, outcome: request.from.outcome } } : {}),
   }
-  const connect: Edit[] =
+  const transition: Edit[] =
     request.from && !request.from.isInsert
       ? [{ edit: 'set_transition', path: request.from.path, outcome: request.from.outcome, target: name }]
       : []
-  const answer = await perform(`Add ${name}`, [node, ...connect])
+  const answer = await perform(`Add ${name}`, [node, ...transition])
   const made =
     answer?.changed.find((path) => parentPath(path) === parent.path && nameOfPath(path) === name) ??
     `${parent.path}/${name}`

@@ -11,7 +11,7 @@ import { blank, draftOf, editor, rootOf, useEditor } from './store'
 
 vi.mock('../../api/documents', () => ({ documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn() } }))
 vi.mock('../../api/client', async (original) => ({
-  ...(await original<typeof import('../../api/client')>()),
+  ...(await original<object>()),
   api: { session: () => Promise.resolve({ role: 'operator' }) },
 }))
 

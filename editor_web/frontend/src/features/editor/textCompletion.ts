@@ -3,6 +3,7 @@ import type { Completion, CompletionContext, CompletionResult } from '@codemirro
 import { openingAt } from '../../document/editing/completion'
 import { allNodes, nodeOf, parentPath } from '../../document/editing/model'
 import { nodeAtLine, stateNear, writingAt } from '../../document/editing/textPositions'
+import { plainText } from '../../document/values'
 import { draftOf, editor, rootOf } from './store'
 
 const NODE_KEYS = [
@@ -66,7 +67,7 @@ function optionsFor(text: string, at: number, key: string, around: readonly stri
       label: parameter.name,
       type: 'property',
       apply: `${parameter.name}: `,
-      detail: String(parameter.schema['description'] ?? ''),
+      detail: plainText(parameter.schema['description']),
     }))
   }
   if (around[0] === 'transitions' || key === 'initial' || key === 'to' || key === 'on_error') {

@@ -94,7 +94,7 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
     return () => {
       current = false
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the pane counts when the row length is chosen
+    // oxlint-disable-next-line react/exhaustive-deps -- the pane counts when the row length is chosen
   }, [root, scope, opened, outcomes, measured])
   return { arranged, problem }
 }

@@ -45,7 +45,7 @@ export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
     return () => {
       current = false
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the pane counts by its rough size only
+    // oxlint-disable-next-line react/exhaustive-deps -- the pane counts by its rough size only
   }, [root, flow, measured, size])
 
   return { laidOut: laidOut?.root === root ? laidOut : undefined, problem }

@@ -1,6 +1,6 @@
 /** How the run is watched over: autonomy, operator, where it pauses, what happens when the operator is lost. */
 import { NumberInput, Select, Switch } from '@mantine/core'
-import { LEVEL_WORDS, LEVELS, type Level } from '../../document/commands'
+import { LEVEL_WORDS, LEVELS } from '../../document/commands'
 import { withAutonomy, type LossPolicy, type Supervision } from '../../document/supervision'
 
 const LOSSES = [
@@ -26,7 +26,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
         data={[...LEVELS]}
         value={supervision.autonomy}
         allowDeselect={false}
-        onChange={(level) => onChange(withAutonomy(supervision, (level ?? 'full') as Level))}
+        onChange={(level) => onChange(withAutonomy(supervision, (level ?? 'full')))}
       />
       <Switch
         size="sm"

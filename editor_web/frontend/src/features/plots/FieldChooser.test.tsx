@@ -14,12 +14,14 @@ const TOPICS = [
   { topic: 'left/gripper', type: 'GripperState', fields: [{ path: 'width_m', label: 'width_m', unit: 'm' }] },
 ]
 
-function Chooser({ first = [] }: { readonly first?: readonly string[] }) {
-  const [chosen, setChosen] = useState(first)
+const NONE: readonly string[] = []
+
+function Chooser({ first = NONE }: { readonly first?: readonly string[] }) {
+  const [fields, setFields] = useState(first)
   return (
     <>
-      <FieldChooser topics={TOPICS} chosen={chosen} onChoose={setChosen} />
-      <output aria-label="Chosen">{chosen.join(' ')}</output>
+      <FieldChooser topics={TOPICS} chosen={fields} onChoose={setFields} />
+      <output aria-label="Chosen">{fields.join(' ')}</output>
     </>
   )
 }

@@ -73,6 +73,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
   }
 
   return (
+    // oxlint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- a picture that is read by the keyboard
     <div
       className="plot-canvas"
       ref={both}

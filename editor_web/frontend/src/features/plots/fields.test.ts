@@ -32,7 +32,7 @@ test('a number whose topic is gone keeps its path', () => {
 test('colours stay with their curves', () => {
   const first = coloured(new Map(), ['a', 'b', 'c'])
   const second = coloured(first, ['c', 'a', 'd'])
-  expect([...second].sort()).toEqual([
+  expect([...second].toSorted(([left], [right]) => left.localeCompare(right))).toEqual([
     ['a', 0],
     ['c', 2],
     ['d', 1],

@@ -60,6 +60,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
     close()
   }
   return (
+    // oxlint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- a key of what is in it
     <section className="entry-preview" aria-label={`Preview of ${title}`} onKeyDown={onKeyDown}>
       {body}
     </section>
@@ -129,6 +130,7 @@ function Sheet({ label, onClose, children }: { readonly label: string; readonly 
   const element = useRef<HTMLDialogElement>(null)
   useModal(element)
   return (
+    // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog ref={element} className="entry-preview is-sheet" aria-label={label} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
       {children}
     </dialog>

@@ -28,7 +28,7 @@ const WORDS: Record<string, string> = {
 
 export function RobotStrip() {
   const robots = useLive((s) => s.robots)
-  const names = Object.keys(robots).sort()
+  const names = Object.keys(robots).toSorted()
   if (names.length === 0) return null
   return (
     <ul className="plain-list robots" aria-label="Arms">

@@ -27,7 +27,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   const y = (rate: number) => TOP + ((HEIGHT - TOP - BOTTOM) * (1 - rate)) / (1 - least)
   const banded = curve.filter((point) => point.interval !== null)
   const upper = banded.map((point) => `${x(point.runs)},${y(point.interval?.[1] ?? 1)}`)
-  const lower = banded.map((point) => `${x(point.runs)},${y(point.interval?.[0] ?? 0)}`).reverse()
+  const lower = banded.map((point) => `${x(point.runs)},${y(point.interval?.[0] ?? 0)}`).toReversed()
   const lines = Array.from({ length: LINES }, (_, at) => least + ((1 - least) * at) / (LINES - 1))
   const end = last.interval ? `, interval ${intervalText(last.interval)}` : ''
   return (

@@ -38,7 +38,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
   }, [sweep, number])
   useEffect(() => {
     // A run may be chosen far from where it is told of. What this returns is no clean-up.
-    void element.current?.scrollIntoView({ block: 'nearest' })
+     element.current?.scrollIntoView({ block: 'nearest' })
   }, [run])
   return (
     <section ref={element} className="sweep-card sweep-details" aria-label={`Run ${number}`}>
@@ -79,7 +79,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
 function Facts({ run }: { readonly run: TrialResult }) {
   const times = Object.entries(run.nodes)
     .map(([path, time]) => [path, time?.total_s ?? 0] as const)
-    .sort((left, right) => right[1] - left[1])
+    .toSorted((left, right) => right[1] - left[1])
   return (
     <dl className="sweep-facts">
       <Fact name="duration" value={duration(run.duration_s)} />
@@ -119,9 +119,9 @@ function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: T
     setAsking(true)
     setProblem('')
     try {
-      const recorded = await recordRun(sweep, run.configuration.number)
-      setRecorded(recorded)
-      if (recorded.same && recorded.recording) onOpen(recorded.recording)
+      const made = await recordRun(sweep, run.configuration.number)
+      setRecorded(made)
+      if (made.same && made.recording) onOpen(made.recording)
     } catch (error) {
       setProblem(wordsOf(error))
     }

@@ -73,9 +73,9 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
   const [across, upwards] = useMemo(() => [axisScale(runs, x), axisScale(runs, y)], [runs, x, y])
   const px = (share: number) => LEFT + (wide - LEFT - RIGHT) * share
   const py = (share: number) => HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * share
-  const byPlace = useMemo(() => [...runs].sort((left, right) => across.of(left) - across.of(right)), [runs, across])
+  const byPlace = useMemo(() => runs.toSorted((left, right) => across.of(left) - across.of(right)), [runs, across])
   // Failing ones last, so that no success hides one.
-  const drawn = useMemo(() => [...runs].sort((left, right) => Number(right.success) - Number(left.success)), [runs])
+  const drawn = useMemo(() => runs.toSorted((left, right) => Number(right.success) - Number(left.success)), [runs])
 
   function onKeyDown(event: KeyboardEvent): void {
     const at = byPlace.findIndex((run) => run.configuration.number === (active ?? selected))

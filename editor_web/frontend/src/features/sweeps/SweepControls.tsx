@@ -50,7 +50,9 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
           type="button"
           className="command is-danger"
           aria-disabled={live.status === 'stopping' || undefined}
-          onClick={() => live.status === 'running' && sweepsApi.stop(sweep).catch((error: unknown) => setProblem(wordsOf(error)))}
+          onClick={() => {
+            if (live.status === 'running') void sweepsApi.stop(sweep).catch((error: unknown) => setProblem(wordsOf(error)))
+          }}
         >
           <IconPlayerStop size={15} aria-hidden />
           {live.status === 'stopping' ? 'Stopping …' : 'Stop the sweep'}

@@ -20,7 +20,7 @@ export function CaptureList({ arm }: { readonly arm: string }) {
   const hand = useTeach((s) => s.hand)
   const [chosen, setChosen] = useState<number>()
   const [compared, setCompared] = useState<readonly number[]>([])
-  const captures = [...(hand?.captures ?? [])].reverse()
+  const captures = (hand?.captures ?? []).toReversed()
   const one = captures.find((each) => each.id === chosen) ?? captures[0]
   const beside = captures.filter((each) => compared.includes(each.id))
   if (captures.length === 0) {

@@ -58,7 +58,7 @@ function Tags({ entry, obstacle, onKeep }: TagsProps) {
   const before = entry.tags.join(', ')
   const [typed, setTyped] = useState(before)
   const fault = tagFault(typed)
-  const isSame = [...tagsOf(typed)].sort().join() === [...entry.tags].sort().join()
+  const isSame = tagsOf(typed).toSorted().join() === entry.tags.toSorted().join()
   const off = obstacle ?? (fault || (isSame ? 'they are as they were' : undefined))
   return (
     <form

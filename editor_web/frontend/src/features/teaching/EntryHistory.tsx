@@ -20,7 +20,7 @@ export function EntryHistory({ arm, entry }: { readonly arm: string; readonly en
     <>
       <h4>History</h4>
       <ol className="plain-list history" aria-label={`History of ${entry.name}`}>
-        {[...history].reverse().map((change) => {
+        {history.toReversed().map((change) => {
           const words = `${change.deleted ? 'deleted' : change.revision === 1 ? 'made' : 'changed'}${change.by && ` by ${change.by}`}, ${wallTime(change.changed_unix_ms / 1000)}`
           return (
             <li key={change.revision}>

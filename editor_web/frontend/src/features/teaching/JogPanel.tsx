@@ -66,10 +66,10 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   return (
     <div className="jog">
       <div className="jog-choices">
-        <SegmentedControl size="xs" aria-label="Jog target" value={space} onChange={(value) => setSpace(value as Space)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
+        <SegmentedControl size="xs" aria-label="Jog target" value={space} onChange={(value) => setSpace(value)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
         <SegmentedControl size="xs" aria-label="Jog mode" value={isStepping ? 'step' : 'hold'} onChange={(value) => setStepping(value === 'step')} data={[{ value: 'hold', label: 'Hold to run' }, { value: 'step', label: 'Step' }]} />
         {space === 'tool' && (
-          <SegmentedControl size="xs" aria-label="Along the axes of" value={frame} onChange={(value) => setFrame(value as Frame)} data={[{ value: 'world', label: 'World' }, { value: 'base', label: 'Base' }, { value: 'tool', label: 'Tool axes' }]} />
+          <SegmentedControl size="xs" aria-label="Along the axes of" value={frame} onChange={(value) => setFrame(value)} data={[{ value: 'world', label: 'World' }, { value: 'base', label: 'Base' }, { value: 'tool', label: 'Tool axes' }]} />
         )}
       </div>
       <div className="jog-speed">

@@ -120,5 +120,5 @@ function usePresent(arm: string, form: Form, name: string): { readonly exists: b
       clearTimeout(asked)
     }
   }, [arm, form, name, changed])
-  return found && found.name === name && found.form === form ? found : { exists: false, trace: undefined }
+  return found?.name === name && found.form === form ? found : { exists: false, trace: undefined }
 }

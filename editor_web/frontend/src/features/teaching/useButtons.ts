@@ -18,11 +18,11 @@ export function useButtons(): void {
   const keys = useButtonMap((s) => s.keys)
   const obstacle = useDisabledReason()
   const isOn = useButtonMap((s) => s.isOn) && obstacle === undefined
-  const down = useRef(new Set<string>())
+  const pressed = useRef(new Set<string>())
 
   useEffect(() => {
     if (!isOn) return
-    const held = down.current
+    const held = pressed.current
 
     function send(source: string, button: string, value: boolean): void {
       const name = `${source}/${button}`
@@ -36,7 +36,7 @@ export function useButtons(): void {
     }
 
     function letGo(): void {
-      for (const name of [...held]) {
+      for (const name of held) {
         const [source = '', button = ''] = name.split('/')
         send(source, button, false)
       }
@@ -56,7 +56,7 @@ export function useButtons(): void {
       // A button is down where it is on any gamepad; one that is gone has let go of everything.
       const down = padButtons(navigator.getGamepads())
       for (const button of down) send('gamepad', button, true)
-      for (const name of [...held]) {
+      for (const name of held) {
         const [source = '', button = ''] = name.split('/')
         if (source === 'gamepad' && !down.has(button)) send(source, button, false)
       }

@@ -72,7 +72,7 @@ export function Lanes(props: LanesProps) {
     if (isHead) {
       const near = marks.filter((mark) => Math.abs(mark.time_s - timeS) <= nearS * 1.5)
       // What matters more than a goal is named first.
-      const named = [...near].sort((a, b) => Number(a.kind === 'goal') - Number(b.kind === 'goal')).slice(0, 4)
+      const named = near.toSorted((a, b) => Number(a.kind === 'goal') - Number(b.kind === 'goal')).slice(0, 4)
       return named.length > 0 ? [...named.map(markWords), ...(near.length > 4 ? [`and ${near.length - 4} more`] : [])] : undefined
     }
     const row = rows[Math.floor((y + topPx) / ROW)]

@@ -7,14 +7,14 @@ export function usePlayback(subject: Subject | undefined, durationS: number): vo
   useEffect(() => {
     if (!isPlaying || !subject) return
     let before = performance.now()
-    let frame = requestAnimationFrame(function play(now) {
+    let frame = requestAnimationFrame(function advance(now) {
       const { timeS, speed } = useTimeline.getState()
       // The time of a frame may lie before the moment at which it was asked for.
       const next = (timeS ?? 0) + (Math.max(0, now - before) / 1000) * speed
       before = now
       seek(subject, Math.min(next, durationS))
       if (next >= durationS) useTimeline.setState({ isPlaying: false })
-      else frame = requestAnimationFrame(play)
+      else frame = requestAnimationFrame(advance)
     })
     return () => cancelAnimationFrame(frame)
   }, [isPlaying, subject, durationS])
