@@ -9,6 +9,7 @@ from msgspec import Meta
 
 from editor_web.security.authentication import OPERATOR, Role
 from engine.cell import CellConnection
+from engine.check import CellFit
 from engine.event import AnyEvent
 from engine.library import BehaviorView
 from engine.runtime.history import ResumeQuestion
@@ -29,6 +30,7 @@ class BehaviorSummary(msgspec.Struct, frozen=True, kw_only=True):
     description: str
     errors: int
     warnings: int
+    fit: CellFit
 
 
 class StartResultBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -112,5 +114,10 @@ class ResumeQuestionsBody(ErrorBody, frozen=True, kw_only=True):
 def summary_of(view: BehaviorView) -> BehaviorSummary:
     """Return the line of a behavior in the list."""
     return BehaviorSummary(
-        id=view.id, name=view.name, description=view.description, errors=view.errors, warnings=view.warnings
+        id=view.id,
+        name=view.name,
+        description=view.description,
+        errors=view.errors,
+        warnings=view.warnings,
+        fit=view.fit,
     )

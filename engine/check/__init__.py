@@ -5,15 +5,18 @@ from engine.check.behavior_check import check_behavior, check_file, check_given,
 from engine.check.cell.cell_check import check_cell, check_entries_document
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.entry_checks import check_stored, names_by_kind
+from engine.check.cell_fit import CellFit, cell_fit
 from engine.check.finding import CODES, Finding, Severity, finding_sort_key, invalid_document_finding, require_no_errors
 from engine.check.finding_pages import page_name, page_text
 
 __all__ = [
     "CODES",
     "CellContext",
+    "CellFit",
     "Finding",
     "Severity",
     "cell_context",
+    "cell_fit",
     "check_behavior",
     "check_cell",
     "check_entries_document",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import re
 import threading
 import time
@@ -64,7 +65,7 @@ class DocumentRepository:
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
         self._drafts = DraftCache()
-        self.library = Library(self._project, catalogue)
+        self.library = Library(self._project, catalogue, cell=cell)
         """The behaviors among them, read as the last saved files say."""
 
     @property
@@ -192,16 +193,21 @@ class DocumentRepository:
         return self._read(document_id, file)
 
     def create(self, document_id: str, *, template: str = "machine", name: str = "") -> StoredDocument:
-        """Create a document from a template.
+        """Create a document from a template; it belongs to the open cell.
 
         Raises:
             DocumentError: the id is taken, or there is no such template.
         """
         file = self.file_of(document_id)
-        text = new_text(template, name=name or file.stem)
+        text = new_text(template, name=name or file.stem, cell=self._cell_beside(file))
         if file.suffix == ".json":
             text = json.dumps(parse_source(text, file=document_id).data, indent=2, ensure_ascii=False) + "\n"
         return self._put(document_id, file, text)
+
+    def _cell_beside(self, file: Path) -> str | None:
+        return (
+            Path(os.path.relpath(self._cell.file.resolve(), file.parent)).as_posix() if self._cell is not None else None
+        )
 
     def add(self, document_id: str, text: str) -> StoredDocument:
         """Create a document from a text.

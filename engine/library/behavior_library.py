@@ -8,8 +8,8 @@ from pathlib import Path
 
 import msgspec
 
-from engine.check import Finding, check_survey, invalid_document_finding, read_beside
-from engine.document import Behavior, ParameterSpec, load_source, survey_behavior
+from engine.check import CellFit, Finding, cell_fit, check_survey, invalid_document_finding, read_beside
+from engine.document import Behavior, Cell, ParameterSpec, load_source, survey_behavior
 from engine.errors import DocumentError, Position
 from engine.library.behavior_graph import GraphNode, new_graph
 from engine.runtime.plan import Catalogue
@@ -49,6 +49,8 @@ class BehaviorView(msgspec.Struct, frozen=True, kw_only=True):
     graph: GraphNode | None = None
     view: dict[str, tuple[float, float]] = {}
     success: tuple[str, ...] = ()
+    fit: CellFit = CellFit()
+    """Whether it can be started in the connected cell."""
 
     @property
     def errors(self) -> int:
@@ -72,10 +74,16 @@ class Library:
     """The behaviors under `project`, read again when a file changes; ids are paths relative to it with `/`.
 
     Thread-safe: threads that need the same changed file at once may each read it, and one result is kept.
+
+    Args:
+        project: The folder of the project.
+        catalogue: The states by name.
+        cell: The connected cell; None without one.
     """
 
-    def __init__(self, project: Path, catalogue: Catalogue) -> None:
+    def __init__(self, project: Path, catalogue: Catalogue, *, cell: Cell | None = None) -> None:
         self.catalogue = catalogue
+        self._cell = cell
         self._project = project.resolve()
         self._read: dict[str, _Read] = {}
 
@@ -174,6 +182,7 @@ class Library:
             graph=new_graph(behavior, self.catalogue),
             view=behavior.document.view,
             success=behavior.success,
+            fit=cell_fit(behavior, self.catalogue, self._cell),
         )
 
 

@@ -150,6 +150,7 @@ class Session:
             FlexcellError: the behavior has errors, a parameter is invalid, or a STOP does not end in time.
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
+        await asyncio.to_thread(self._require_fit, behavior_id)
         watched = supervision or RunOptions()
         if breakpoints:
             watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
@@ -260,6 +261,11 @@ class Session:
         """Read, check and plan a behavior, on a thread because it may be large."""
         behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)
         return behavior, new_plan(behavior, self._library.catalogue)
+
+    def _require_fit(self, behavior_id: str) -> None:
+        if obstacle := self._library.view(behavior_id).fit.obstacle:
+            hint = "serve its cell (`flexcell serve --cell`), or write it for this one"
+            raise ControlError(obstacle, where=behavior_id, hint=hint)
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Request a run to stop and return immediately; has no effect on a run that has ended."""

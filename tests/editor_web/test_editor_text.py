@@ -165,9 +165,9 @@ def test_problems_lead_to_their_node_and_line(browser: Browser, shop: Workshop) 
         expect(card(page, "root/set").locator(".mark.is-error")).to_be_visible()
         page.locator(".edit-canvas .react-flow__pane").click(position={"x": 5, "y": 300})
         page.locator(".problem-count").click()
-        problem = page.get_by_role("list", name="Problems").get_by_role("button").first
-        expect(problem).to_contain_text("root/set")
-        problem.click()
+        problems = page.get_by_role("list", name="Problems")
+        problems.get_by_role("button").first.click()
+        expect(problems).to_contain_text("root/set")
         expect(card(page, "root/set").locator(".card")).to_contain_class("is-selected")
         expect(page.locator(".cm-activeLine")).to_contain_text("set: {state: flow.SetValue")
 

@@ -142,6 +142,7 @@ export interface BehaviorSummary {
   readonly description: string
   readonly errors: number
   readonly warnings: number
+  readonly fit: CellFit
 }
 
 /** A behavior for the dashboard's list and graph; `graph` is None when the behavior cannot be read. */
@@ -154,6 +155,7 @@ export interface BehaviorView {
   readonly graph: GraphNode | null
   readonly view: Dict<readonly [number, number]>
   readonly success: readonly string[]
+  readonly fit: CellFit
 }
 
 /** A condition of concurrency container `path` preempts some branches while the others continue. `branches` are the preempted branches that had not ended; each has ended, without an outcome, after its clean-up. */
@@ -343,6 +345,12 @@ export interface CauseLink {
 export interface CellConnection {
   readonly connected: boolean
   readonly reason: string
+}
+
+/** The cell that a behavior is written for, and why it cannot be executed in the connected one. */
+export interface CellFit {
+  readonly cell: string
+  readonly obstacle: string
 }
 
 /** Remove the value of a parameter; its default applies. */

@@ -206,7 +206,7 @@ it('makes and starts a sweep of what the form says', async () => {
   const choices = [{ address: 'parameters.speed', nominal: 0.5, unit: '', description: 'Share', least: 0.1, most: 1, options: [] }]
   server()
     .on('GET /sweeps', { sweeps: [LINE], others: [] })
-    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0 }])
+    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } }])
     .on('GET /sweep-factors', choices)
     .on('POST /sweeps', new Refusal(422, { message: 'the cell has no part', hint: '' }))
     .on('POST /sweeps/behaviors/sweeps/transfer_2.yaml/start', undefined)
@@ -236,7 +236,7 @@ it('makes and starts a sweep of what the form says', async () => {
 it('makes a search for failures of what the form says', async () => {
   server()
     .on('GET /sweeps', { sweeps: [], others: [] })
-    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0 }])
+    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } }])
     .on('GET /sweep-factors', [])
     .on('POST /sweeps', { id: ID })
   live()

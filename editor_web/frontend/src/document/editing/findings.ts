@@ -1,19 +1,34 @@
 /** The problems of a text: what the check finds, and the targets that an arm cannot be at, in the order of the text. Pure. */
 import type { FindingView } from '../../api/types'
-import type { Draft } from './model'
+import { allNodes, isHolder, type Draft, type EditNode } from './model'
 
 type Findings = readonly FindingView[]
 
-const together = new WeakMap<Findings, { readonly targets: Findings; readonly all: Findings }>()
+interface Known {
+  readonly targets: Findings
+  readonly root: EditNode | undefined
+  readonly all: Findings
+}
 
-/** All problems of a draft; the same list as long as both parts are the same. */
-export function problemsOf({ findings, targets }: Pick<Draft, 'findings' | 'targets'>): Findings {
-  if (targets.length === 0) return findings
+const together = new WeakMap<Findings, Known>()
+
+/**
+ * All problems of a draft but those of empty containers, which are being built; the same list as long as its parts are the same.
+ */
+export function problemsOf({ findings, targets, root }: Pick<Draft, 'findings' | 'targets' | 'root'>): Findings {
   const known = together.get(findings)
-  if (known?.targets === targets) return known.all
-  const all = [...findings, ...targets].toSorted((a, b) => a.line - b.line || a.column - b.column)
-  together.set(findings, { targets, all })
+  if (known?.targets === targets && known.root === root) return known.all
+  const empty = emptyContainers(root)
+  const due = empty.size === 0 ? findings : findings.filter((finding) => finding.code !== 'invalid-document' || !empty.has(finding.path))
+  const all = targets.length === 0 ? due : [...due, ...targets].toSorted((a, b) => a.line - b.line || a.column - b.column)
+  together.set(findings, { targets, root, all })
   return all
+}
+
+/** The paths of containers without anything in them: a document that has one is not finished, and no mistake was made. */
+export function emptyContainers(root: EditNode | undefined): ReadonlySet<string> {
+  const empty = root ? allNodes(root).filter((node) => isHolder(node) && node.children.length === 0) : []
+  return new Set(empty.map((node) => node.path))
 }
 
 /** Those of before where they say the same, so that nothing is drawn again for them. */

@@ -5,8 +5,8 @@ import { live, run, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { BehaviorList } from './BehaviorList'
 
-const SHIFT = { id: 'behaviors/day/shift.yaml', name: 'shift', description: 'moves cups', errors: 0, warnings: 2 }
-const NAP = { id: 'behaviors/nap.yaml', name: 'nap', description: '', errors: 1, warnings: 0 }
+const SHIFT = { id: 'behaviors/day/shift.yaml', name: 'shift', description: 'moves cups', errors: 0, warnings: 2, fit: { cell: '', obstacle: '' } }
+const NAP = { id: 'behaviors/nap.yaml', name: 'nap', description: '', errors: 1, warnings: 0, fit: { cell: 'home', obstacle: '' } }
 const opened = vi.fn()
 const made = vi.fn()
 
@@ -28,6 +28,19 @@ it('lists them with folder, problems, and whether they run', async () => {
   expect(nap).toHaveAttribute('aria-current', 'page')
   await user.click(screen.getByRole('link', { name: /shift/ }))
   expect(opened.mock.calls).toEqual([[SHIFT.id]])
+})
+
+it('groups those of other cells apart, and says why they cannot be started', async () => {
+  live()
+  const obstacle = 'it is written for the cell lathe, and home is connected: the robot arm is ur10 there and irb4600 here'
+  const turn = { ...NAP, id: 'behaviors/turn.yaml', name: 'turn', fit: { cell: 'lathe', obstacle } }
+  const user = show(<List behaviors={[turn, SHIFT, NAP]} />)
+  const group = screen.getByText('Of other cells (1)')
+  expect(screen.getAllByRole('link')[0]).toHaveTextContent('shift')
+  await user.click(group)
+  const link = screen.getByRole('link', { name: /turn/ })
+  expect(link).toHaveTextContent('cell lathe')
+  expect(link).toHaveAttribute('title', obstacle)
 })
 
 it('finds them by what they are for', async () => {

@@ -24,6 +24,7 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
   const active = new Set(runs.filter(isActive).map((run) => run.behavior))
   const query = text.trim().toLowerCase()
   const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(query))
+  const others = found.filter((behavior) => !fits(behavior))
   return (
     <nav className="behavior-list" aria-label="Behaviors">
       <div className="side-head">
@@ -45,34 +46,61 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
         </Empty>
       )}
       <ul className="plain-list">
-        {found.map((behavior) => (
-          <li key={behavior.id}>
-            <a
-              href={href(behavior.id)}
-              className={`side-item${behavior.id === current ? ' is-current' : ''}`}
-              aria-current={behavior.id === current ? 'page' : undefined}
-              onClick={(event) => {
-                if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-                event.preventDefault()
-                onOpen(behavior.id)
-              }}
-            >
-              <span className="side-item-name">
-                {behavior.name}
-                {active.has(behavior.id) && <span className="live-dot" role="img" aria-label="running" />}
-              </span>
-              <span className="side-item-text">{folderOf(behavior.id)}</span>
-              {(behavior.errors > 0 || behavior.warnings > 0) && (
-                <span className="side-item-problems">
-                  {behavior.errors > 0 && <Count status="failed" count={behavior.errors} word="error" />}
-                  {behavior.warnings > 0 && <Count status="warning" count={behavior.warnings} word="warning" />}
-                </span>
-              )}
-            </a>
-          </li>
+        {found.filter(fits).map((behavior) => (
+          <Item key={behavior.id} {...{ behavior, current, href, onOpen }} isRunning={active.has(behavior.id)} />
         ))}
       </ul>
+      {others.length > 0 && (
+        <details className="other-cells" open={query !== '' || others.some((behavior) => behavior.id === current)}>
+          <summary>Of other cells ({others.length})</summary>
+          <p className="quiet">They cannot be started in this cell.</p>
+          <ul className="plain-list">
+            {others.map((behavior) => (
+              <Item key={behavior.id} {...{ behavior, current, href, onOpen }} isRunning={false} />
+            ))}
+          </ul>
+        </details>
+      )}
     </nav>
+  )
+}
+
+function fits(behavior: BehaviorSummary): boolean {
+  return behavior.fit.obstacle === ''
+}
+
+interface ItemProps extends Pick<BehaviorListProps, 'current' | 'href' | 'onOpen'> {
+  readonly behavior: BehaviorSummary
+  readonly isRunning: boolean
+}
+
+function Item({ behavior, current, href, onOpen, isRunning }: ItemProps) {
+  return (
+    <li>
+      <a
+        href={href(behavior.id)}
+        className={`side-item${behavior.id === current ? ' is-current' : ''}`}
+        aria-current={behavior.id === current ? 'page' : undefined}
+        title={behavior.fit.obstacle || undefined}
+        onClick={(event) => {
+          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+          event.preventDefault()
+          onOpen(behavior.id)
+        }}
+      >
+        <span className="side-item-name">
+          {behavior.name}
+          {isRunning && <span className="live-dot" role="img" aria-label="running" />}
+        </span>
+        <span className="side-item-text">{fits(behavior) ? folderOf(behavior.id) : `cell ${behavior.fit.cell}`}</span>
+        {(behavior.errors > 0 || behavior.warnings > 0) && (
+          <span className="side-item-problems">
+            {behavior.errors > 0 && <Count status="failed" count={behavior.errors} word="error" />}
+            {behavior.warnings > 0 && <Count status="warning" count={behavior.warnings} word="warning" />}
+          </span>
+        )}
+      </a>
+    </li>
   )
 }
 

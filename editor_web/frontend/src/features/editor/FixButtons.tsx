@@ -3,7 +3,8 @@ import { IconBulb } from '@tabler/icons-react'
 import type { Fix } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
-import { fixesOf, makeFix, useFreshFixes } from './fixes'
+import { makeFix } from './fixes'
+import { goTo } from './problems'
 import { draftOf, useEditor } from './store'
 
 export function FixButtons({ fixes }: { fixes: readonly Fix[] }) {
@@ -27,21 +28,22 @@ export function Words({ text }: { text: string }) {
   return text.split('`').map((part, index) => (index % 2 === 1 ? <code key={index}>{part}</code> : part))
 }
 
+/** Over the form of a node: a line each, which leads to the list of problems with its fixes. */
 export function NodeFindings({ path }: { path: string }) {
   const findings = useEditor((s) => problemsOf(draftOf(s)))
   const own = findings.filter((finding) => finding.path === path)
-  const fixes = useFreshFixes(own.length > 0)
   if (own.length === 0) return null
   return (
     <ul className="plain-list node-findings" aria-label="Problems of this node">
       {own.map((finding, index) => (
         <li key={index}>
-          <StatusIcon status={statusOf(finding.severity)} size={15} />
-          <div>
-            <span className="visually-hidden">{finding.severity}: </span>
-            <Words text={finding.message} />
-            <FixButtons fixes={fixesOf(fixes, finding)} />
-          </div>
+          <button type="button" className="problem" title={`${finding.message}. Show it with its fixes`} onClick={() => goTo(finding)}>
+            <StatusIcon status={statusOf(finding.severity)} size={15} />
+            <span className="problem-line">
+              <span className="visually-hidden">{finding.severity}: </span>
+              <Words text={finding.message} />
+            </span>
+          </button>
         </li>
       ))}
     </ul>

@@ -21,6 +21,7 @@ const SHIFT: BehaviorView = {
   graph: null,
   view: {},
   success: [],
+  fit: { cell: '', obstacle: '' },
 }
 const DEFAULTS = { part: 'hca_1', speed: 0.3, cycles: 1, verify: true }
 const started = vi.fn()
