@@ -37,6 +37,7 @@ from editor_web.routes import (
     documents,
     page,
     runs,
+    search,
     session,
     sweeps,
 )
@@ -81,6 +82,7 @@ _ROUTERS = (
     relations.router,
     documents.router,
     catalogue.router,
+    search.router,
     runs.router,
     past.router,
     sweeps.router,

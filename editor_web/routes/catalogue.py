@@ -18,7 +18,7 @@ router = WireRouter(prefix="/api/v1/catalogue", tags=["documents"])
 @router.get("")
 async def get_catalogue(services: ServicesOf) -> CatalogueBody:
     """Return everything that a behavior can use, each kind sorted by name."""
-    entries = await _entries(services)
+    entries = await entry_names(services)
     return await run_in_threadpool(_catalogue, services, entries)
 
 
@@ -32,10 +32,11 @@ def _catalogue(services: Services, entries: tuple[EntryName, ...]) -> CatalogueB
     )
 
 
-async def _entries(services: Services) -> tuple[EntryName, ...]:
+async def entry_names(services: Services) -> tuple[EntryName, ...]:
+    """Return the entries of the cell's store; a cell without a store has none."""
     try:
         answer = await services.backend.bus.call("store/list_entries", {})
     except FlexcellError:
-        return ()  # a cell without a store has no entries
+        return ()
     listed = msgspec.json.decode(answer, type=EntryList).entries
     return tuple(EntryName(kind=kind, name=name) for kind, name, _ in listed)

@@ -2,6 +2,7 @@
 
 from engine.library.behavior_graph import GraphNode, GraphTransition
 from engine.library.behavior_library import BehaviorView, FindingView, Library, ParameterView
+from engine.library.name_search import NameHit, NameKind, behavior_names, search_names
 
 __all__ = [
     "BehaviorView",
@@ -9,5 +10,9 @@ __all__ = [
     "GraphNode",
     "GraphTransition",
     "Library",
+    "NameHit",
+    "NameKind",
     "ParameterView",
+    "behavior_names",
+    "search_names",
 ]

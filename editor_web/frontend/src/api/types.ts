@@ -1286,6 +1286,15 @@ export interface MoveResultBody {
   readonly left: readonly string[]
 }
 
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, whose kind is `path`; the id of a run. */
+export interface NameHit {
+  readonly kind: "behavior" | "entry" | "node" | "run"
+  readonly id: string
+  readonly title: string
+  readonly detail: string
+  readonly path: string
+}
+
 /** A document to create from a template: machine, sequence or concurrency. */
 export interface NewDocumentBody {
   readonly id: string

@@ -1,13 +1,14 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
-import { AppShell, Burger } from '@mantine/core'
+import { AppShell, Burger, Kbd, UnstyledButton } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
-import { IconChartDots, IconHistory, IconLayoutGrid } from '@tabler/icons-react'
+import { IconChartDots, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
 import { Suspense, useEffect } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
+import { openSearch, useSearch, type PageCommand } from '../api/search'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
-import type { RunView } from '../api/types'
+import type { NameHit, RunView } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
@@ -16,6 +17,7 @@ import { isActive } from '../document/live'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
+import { SearchBox } from '../features/search/SearchBox'
 import { Header } from './Header'
 import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
@@ -39,10 +41,12 @@ export function App() {
   const isTeaching = route.page === 'teach'
   const isOfRuns = route.page === 'runs' || route.page === 'beside'
   const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
+  const isSearching = useSearch((s) => s.isOpen)
   const isTouring = useTour((s) => s.isOn)
   const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
   useEffect(connect, [])
+  useSearchKey()
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
   useEffect(() => {
     const name = behaviorId ? (behaviorId.split('/').pop() ?? '') : (session?.cell_name ?? '')
@@ -92,6 +96,12 @@ export function App() {
           <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
         </ViewBoundary>
         <div>
+          <UnstyledButton className="side-item run-item" onClick={openSearch}>
+            <IconSearch size={15} aria-hidden />
+            <span className="side-item-name">
+              Search <Kbd size="xs">Ctrl K</Kbd>
+            </span>
+          </UnstyledButton>
           <PageLink href={RUNS_HREF} className={sideItem(isOfRuns)} isCurrent={isOfRuns} onOpen={() => open(RUNS_HREF)}>
             <IconLayoutGrid size={15} aria-hidden />
             <span className="side-item-name">All active runs</span>
@@ -114,6 +124,11 @@ export function App() {
           <RoutedPage route={route} shown={shown} session={session} isNarrow={isNarrow ?? false} onOpen={open} />
         </Loading>
       </AppShell.Main>
+      {isSearching && (
+        <ViewBoundary name="Search">
+          <SearchBox pages={PAGES} edited={isEditing ? route.id : undefined} onOpen={(hit) => open(hrefOf(hit))} />
+        </ViewBoundary>
+      )}
       {isTouring && (
         <ViewBoundary name="Tour">
           <Suspense fallback={null}>
@@ -123,6 +138,40 @@ export function App() {
       )}
     </AppShell>
   )
+}
+
+const PAGES: readonly PageCommand[] = [
+  ['Home', '/'],
+  ['Active runs', RUNS_HREF],
+  ['Past runs and recordings', PAST_HREF],
+  ['Sweeps', SWEEPS_HREF],
+  ['Teach and jog', TEACH_HREF],
+].map(([title = '', href = '']) => ({ id: `page:${href}`, title, group: 'Pages', run: () => goTo(href) }))
+
+function hrefOf({ kind, id, path }: NameHit): string {
+  switch (kind) {
+    case 'behavior':
+      return behaviorHref(id)
+    case 'node':
+      return editHref(id, path)
+    case 'run':
+      return runHref(id)
+    case 'entry':
+      return TEACH_HREF
+  }
+}
+
+/** Ctrl+K, or Cmd+K, also while somebody writes. */
+function useSearchKey(): void {
+  useEffect(() => {
+    const onKeyDown = (event: KeyboardEvent) => {
+      if (event.defaultPrevented || event.key.toLowerCase() !== 'k' || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return
+      event.preventDefault()
+      openSearch()
+    }
+    addEventListener('keydown', onKeyDown)
+    return () => removeEventListener('keydown', onKeyDown)
+  }, [])
 }
 
 function sideItem(isCurrent: boolean): string {

@@ -160,7 +160,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <ParameterForm
         behavior={behavior}
         obstacle={obstacle}
-        place={notHere(behavior) ?? placeOf(session, active.filter((each) => each.behavior !== behavior.id))}
+        place={placeOf(session, active.filter((each) => each.behavior !== behavior.id))}
         terminal={`flexcell run ${behavior.id} --clock virtual`}
         onStarted={onStarted}
         run={run?.id}
@@ -284,14 +284,8 @@ function hasErrors(behavior: BehaviorView): boolean {
 function obstacleOf(behavior: BehaviorView, active: readonly RunView[], session: SessionBody | undefined): string | undefined {
   if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
   if (hasErrors(behavior)) return 'The document has errors; see its problems'
-  const why = notHere(behavior)
-  if (why) return why
+  if (behavior.fit.obstacle) return `It cannot be started here: ${behavior.fit.obstacle}`
   return active.some((run) => run.behavior === behavior.id) ? 'This behavior is running' : undefined
-}
-
-/** Why another cell is needed. */
-function notHere({ fit }: BehaviorView): string | undefined {
-  return fit.obstacle ? `It cannot be started here: ${fit.obstacle}.` : undefined
 }
 
 function placeOf(session: SessionBody | undefined, active: readonly RunView[]): string {

@@ -1,4 +1,5 @@
 /** The head of the editor: which behavior, whether it is saved, and what can be done with all of it. */
+import { openSearch } from '../../api/search'
 import {
   IconArrowBackUp,
   IconArrowForwardUp,
@@ -76,7 +77,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
           shortcut="Control+K"
           hint="Every command, and every node to go to"
           icon={<IconCommand size={16} aria-hidden />}
-          onPress={() => setEditor({ palette: { kind: 'commands' } })}
+          onPress={openSearch}
         />
         <CommandButton
           isCompact

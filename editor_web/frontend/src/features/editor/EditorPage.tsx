@@ -5,6 +5,7 @@ import { Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
 import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { offerCommands } from '../../api/search'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
 import { lazyView } from '../../components/lazyView'
@@ -31,6 +32,7 @@ import { forgetReferences, refreshReferences } from './references'
 import { lookAtDisk, openDocument, save } from './session'
 import { CellViewContext } from './ShowEntry'
 import { draftOf, editor, isDirty, showEditorRefusal, setEditor, useEditor } from './store'
+import { searchCommands } from './searchCommands'
 import { useLongPress } from './useLongPress'
 import { useEditorKeys } from './useEditorKeys'
 import { wholeCanvas } from './viewport'
@@ -104,6 +106,7 @@ function useUnsavedGuard(): void {
 }
 
 function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, preview }: EditorPageProps) {
+  useEffect(() => offerCommands(searchCommands), [])
   const isTextShown = useEditor((s) => s.isTextShown)
   const isBusy = useEditor((s) => s.isBusy)
   const hasVersions = useFileDialog((s) => s.open === 'versions')

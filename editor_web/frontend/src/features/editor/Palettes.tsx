@@ -1,8 +1,7 @@
-/** The palettes: what to add, where an outcome leads, and every command by its name. */
+/** The palettes: what to add, and where an outcome leads. */
 import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
 import {
-  allNodes,
   isFailure,
   isMachine,
   nameOfPath,
@@ -11,13 +10,10 @@ import {
   outgoingTransitions,
   type EditNode,
 } from '../../document/editing/model'
-import { chordText } from '../../document/editing/keys'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemIcon, itemsOf } from './additions'
 import { openPortPalette } from './paletteRequests'
-import { ChoiceBox, type Choice } from './ChoiceBox'
-import { COMMANDS, disabledReason } from './commands'
-import { reveal } from './session'
+import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
 import { declaredOutcomes } from './useArrangement'
 import { draftOf, editor, rootOf, setEditor, useEditor, type PaletteRequest } from './store'
 
@@ -34,8 +30,6 @@ export function Palettes() {
       return <AddPalette request={palette} onClose={close} />
     case 'connect':
       return <ConnectPalette path={palette.path} onClose={close} />
-    case 'commands':
-      return <CommandPalette onClose={close} />
   }
 }
 
@@ -156,41 +150,6 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     <ChoiceBox
       label={`Connect ${node?.name ?? ''}`}
       placeholder="Which outcome …"
-      choices={choices}
-      onClose={onClose}
-    />
-  )
-}
-
-function CommandPalette({ onClose }: { onClose: () => void }) {
-  const root = useEditor(rootOf)
-  const choices = useMemo(() => {
-    const commands = COMMANDS.map((command): Choice => ({
-      id: `command:${command.id}`,
-      title: command.words,
-      group: 'Commands',
-      hint: command.chords[0] && chordText(command.chords[0]),
-      obstacle: disabledReason(command),
-      run: () => setTimeout(() => command.run()),
-    }))
-    const nodes = root
-      ? allNodes(root)
-          .slice(1)
-          .map((node): Choice => ({
-            id: `node:${node.path}`,
-            title: node.name,
-            group: 'Go to',
-            detail: [node.title, parentPath(node.path)].filter(Boolean).join(' · '),
-            icon: itemIcon(node.kind, 15),
-            run: () => reveal(node.path),
-          }))
-      : []
-    return [...commands, ...nodes]
-  }, [root])
-  return (
-    <ChoiceBox
-      label="Commands and nodes"
-      placeholder="Type a command, or a node to go to …"
       choices={choices}
       onClose={onClose}
     />

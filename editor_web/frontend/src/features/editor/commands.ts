@@ -1,4 +1,5 @@
 /** Every command of the editor with its words and keys: for the keyboard, the palette and the sheet. */
+import { openSearch } from '../../api/search'
 import { isChord, type Chord, type Press } from '../../document/editing/keys'
 import { isMachine, isTreePart, nodeOf, parentPath, ROOT } from '../../document/editing/model'
 import { canRedo, canUndo } from '../../document/editing/history'
@@ -109,7 +110,7 @@ export const COMMANDS: readonly Command[] = [
     part: 'Document',
     words: 'Every command, every node',
     chords: [{ key: 'k', ctrl: true }],
-    run: () => setEditor({ palette: { kind: 'commands' } }),
+    run: openSearch,
   },
   {
     id: 'sheet',

@@ -22,7 +22,6 @@ export interface AddRequest {
 
 export type PaletteRequest =
   | ({ readonly kind: 'add' } & AddRequest)
-  | { readonly kind: 'commands' }
   | { readonly kind: 'connect'; readonly path: string }
 
 export interface Notice {

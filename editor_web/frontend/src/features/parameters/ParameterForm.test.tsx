@@ -171,3 +171,8 @@ it('operates a run below full autonomy from this page before its first node is e
   socket.tell(snapshot({ run: 'r1', runs: [run()], control: control({ paused: true, operator: 'attached' }) }))
   await waitFor(() => expect(server().bodies('POST /runs/r1/control/resume')).toEqual([{}]))
 })
+
+it('says why a behavior of another cell cannot be started here', () => {
+  show(<Form of={{ ...SHIFT, fit: { cell: 'lathe', obstacle: 'it is written for the cell lathe' } }} obstacle="no" />)
+  expect(screen.getByRole('alert')).toHaveTextContent('It cannot be started hereit is written for the cell lathe')
+})

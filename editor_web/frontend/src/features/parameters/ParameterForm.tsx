@@ -1,7 +1,7 @@
 /** The form that sets a behavior's parameters for one run. */
 import { lookup } from '../../document/dict'
-import { Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
-import { IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
+import { Alert, Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
+import { IconAlertTriangle, IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { BehaviorView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
@@ -39,6 +39,11 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
         if (obstacle === undefined) void submit()
       }}
     >
+      {behavior.fit.obstacle && (
+        <Alert color="yellow" icon={<IconAlertTriangle size={16} aria-hidden />} title="It cannot be started here">
+          {behavior.fit.obstacle}
+        </Alert>
+      )}
       {fields.length === 0 && <p className="quiet">This behavior has no parameters.</p>}
       {fields.map((field) => (
         <ParameterField

@@ -1,8 +1,9 @@
 /** A box to choose from by typing: a field and a list below it, worked by the arrow keys. */
 import { useEffect, useId, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
-import { fit, found } from '../../document/editing/search'
-import type { Point } from '../../document/geometry'
-import { useModal } from '../../components/modal'
+import { fit, found } from '../document/editing/search'
+import type { Point } from '../document/geometry'
+import './choiceBox.css'
+import { useModal } from './modal'
 
 export interface Choice {
   readonly id: string
@@ -20,7 +21,14 @@ export interface Choice {
 export interface ChoiceBoxProps {
   readonly label: string
   readonly placeholder: string
+  /** What is searched here. */
   readonly choices: readonly Choice[]
+  /** What is found elsewhere for the text that was typed. */
+  readonly hits?: readonly Choice[]
+  /** The text has changed. */
+  readonly onText?: (text: string) => void
+  /** Why nothing is shown. */
+  readonly nothing?: string | undefined
   /** One more choice, made of what was typed. */
   readonly fromText?: ((text: string) => Choice | undefined) | undefined
   /** Where on the screen; in the upper middle without. */
@@ -28,18 +36,20 @@ export interface ChoiceBoxProps {
   readonly onClose: () => void
 }
 
+const NONE: readonly Choice[] = []
 const MOST = 60
 const WIDTH = 420
 const HEIGHT = 400
 
-export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }: ChoiceBoxProps) {
+export function ChoiceBox({ label, placeholder, choices, hits = NONE, onText, nothing = 'Nothing has this name', fromText, at, onClose }: ChoiceBoxProps) {
   const [text, setText] = useState('')
   const [index, setIndex] = useState(0)
   const element = useRef<HTMLDialogElement>(null)
   const list = useRef<HTMLUListElement>(null)
   const id = useId()
   const more = text.trim() ? fromText?.(text.trim()) : undefined
-  const fitting = found(choices, text, (choice) => [choice.title, choice.group, choice.detail ?? '']).slice(0, MOST)
+  const here = found(choices, text, (choice) => [choice.title, choice.group, choice.detail ?? '']).slice(0, MOST)
+  const fitting = [...here, ...hits]
   // Grouped in the order in which the groups come up, best first.
   const groups = [...new Set(fitting.map((choice) => choice.group))]
   const listed = groups.flatMap((group) => fitting.filter((choice) => choice.group === group))
@@ -107,6 +117,7 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
           value={text}
           onChange={(event) => {
             setText(event.currentTarget.value)
+            onText?.(event.currentTarget.value)
             setIndex(0)
           }}
           onKeyDown={onKeyDown}
@@ -137,7 +148,7 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
         </ul>
         {shown.length === 0 && (
           <p className="choice-none" role="status">
-            Nothing fits.
+            {nothing}
           </p>
         )}
       </div>

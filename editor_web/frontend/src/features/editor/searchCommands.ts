@@ -1,0 +1,31 @@
+/** What the editor offers to the search of the page: its commands, and the nodes of the document as it is now. */
+import type { PageCommand } from '../../api/search'
+import { chordText } from '../../document/editing/keys'
+import { allNodes, parentPath } from '../../document/editing/model'
+import { COMMANDS, disabledReason } from './commands'
+import { reveal } from './session'
+import { editor, rootOf } from './store'
+
+export function searchCommands(): readonly PageCommand[] {
+  const root = rootOf(editor())
+  const commands = COMMANDS.filter((command) => command.id !== 'palette').map((command): PageCommand => ({
+    id: `command:${command.id}`,
+    title: command.words,
+    group: 'Commands',
+    hint: command.chords[0] && chordText(command.chords[0]),
+    obstacle: disabledReason(command),
+    // The search closes first: what is opened keeps the keyboard.
+    run: () => setTimeout(() => command.run()),
+  }))
+  const nodes = root ? allNodes(root).slice(1) : []
+  return [
+    ...commands,
+    ...nodes.map((node): PageCommand => ({
+      id: `node:${node.path}`,
+      title: node.name,
+      group: 'In this behavior',
+      detail: [node.title, parentPath(node.path)].filter(Boolean).join(' · '),
+      run: () => reveal(node.path),
+    })),
+  ]
+}

@@ -1,0 +1,77 @@
+/** Leads to anything by its name, and runs the commands of the page that is shown, from the keyboard. */
+import { useDebouncedValue } from '@mantine/hooks'
+import { IconBinaryTree2, IconCommand, IconHistory, IconMapPin, IconRoute } from '@tabler/icons-react'
+import { useEffect, useMemo, useState, type ReactNode } from 'react'
+import { wordsOf } from '../../api/client'
+import { closeSearch, pageCommands, searchNames, type PageCommand } from '../../api/search'
+import type { NameHit } from '../../api/types'
+import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
+
+export interface SearchBoxProps {
+  /** The pages that can be gone to from everywhere. */
+  readonly pages: readonly PageCommand[]
+  /** The behavior that is edited; it offers its nodes itself, as they are now. */
+  readonly edited: string | undefined
+  readonly onOpen: (hit: NameHit) => void
+}
+
+const DELAY_MS = 120
+const SIZE = 15
+
+const KINDS: Readonly<Record<NameHit['kind'], { readonly group: string; readonly icon: ReactNode }>> = {
+  behavior: { group: 'Behaviors', icon: <IconRoute size={SIZE} aria-hidden /> },
+  node: { group: 'States and containers', icon: <IconBinaryTree2 size={SIZE} aria-hidden /> },
+  entry: { group: 'Entries', icon: <IconMapPin size={SIZE} aria-hidden /> },
+  run: { group: 'Runs', icon: <IconHistory size={SIZE} aria-hidden /> },
+}
+
+export function SearchBox({ pages, edited, onOpen }: SearchBoxProps) {
+  const [text, setText] = useState('')
+  const [asked] = useDebouncedValue(text.trim(), DELAY_MS)
+  const { hits, problem } = useHits(asked)
+  const choices = useMemo(
+    () =>
+      [...pageCommands(), ...pages].map((each): Choice => ({ icon: <IconCommand size={SIZE} aria-hidden />, ...each })),
+    [pages],
+  )
+  return (
+    <ChoiceBox
+      label="Search"
+      placeholder="Go to a behavior, state, entry or run, or type a command …"
+      choices={choices}
+      hits={hits.filter((hit) => hit.kind !== 'node' || hit.id !== edited).map((hit) => choiceOf(hit, onOpen))}
+      onText={setText}
+      nothing={problem || undefined}
+      onClose={closeSearch}
+    />
+  )
+}
+
+function choiceOf(hit: NameHit, onOpen: SearchBoxProps['onOpen']): Choice {
+  const { group, icon } = KINDS[hit.kind]
+  return { id: `${hit.kind}:${hit.id}:${hit.path}`, title: hit.title, detail: hit.detail, group, icon, run: () => onOpen(hit) }
+}
+
+interface Answer {
+  readonly hits: readonly NameHit[]
+  readonly problem: string
+}
+
+const NOTHING: Answer = { hits: [], problem: '' }
+
+/** What the server finds for a text; that of before until it has answered. */
+function useHits(text: string): Answer {
+  const [answer, setAnswer] = useState(NOTHING)
+  useEffect(() => {
+    if (!text) return
+    const asking = new AbortController()
+    searchNames(text, asking.signal).then(
+      (hits) => setAnswer({ hits, problem: '' }),
+      (error: unknown) => {
+        if (!asking.signal.aborted) setAnswer({ hits: [], problem: wordsOf(error) })
+      },
+    )
+    return () => asking.abort()
+  }, [text])
+  return text ? answer : NOTHING
+}

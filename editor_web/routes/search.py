@@ -1,0 +1,44 @@
+"""Search by name, for a page that leads to anything from anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from fastapi import Query
+from starlette.concurrency import run_in_threadpool
+
+from editor_web.http_bodies.document_bodies import EntryName
+from editor_web.routes.catalogue import entry_names
+from editor_web.routes.services import ServicesOf
+from editor_web.routes.wire_router import WireRouter
+from engine.library import NameHit, behavior_names, search_names
+from engine.runtime.history import RunView
+
+router = WireRouter(prefix="/api/v1/search", tags=["search"])
+
+_MOST = 40
+
+
+@router.get("")
+async def search(services: ServicesOf, text: Annotated[str, Query(max_length=200)] = "") -> tuple[NameHit, ...]:
+    """Return the behaviors, nodes, entries and runs of this server that have every word of a text, best first."""
+    backend = services.backend
+    entries, runs = await entry_names(services), backend.runs()
+
+    def found() -> tuple[NameHit, ...]:
+        names = [*behavior_names(backend.behaviors()), *_of_entries(entries), *_of_runs(runs)]
+        return search_names(text, names, limit=_MOST)
+
+    return await run_in_threadpool(found)
+
+
+def _of_entries(entries: tuple[EntryName, ...]) -> Iterator[NameHit]:
+    for entry in entries:
+        yield NameHit(kind="entry", id=entry.name, path=entry.kind, title=entry.name, detail=entry.kind)
+
+
+def _of_runs(runs: tuple[RunView, ...]) -> Iterator[NameHit]:
+    for run in runs:
+        detail = f"{run.id} {run.outcome or run.status}"
+        yield NameHit(kind="run", id=run.id, title=run.behavior.rpartition("/")[2], detail=detail)
