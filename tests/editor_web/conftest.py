@@ -9,13 +9,13 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, expect, sync_playwright
+from playwright.sync_api import Browser, expect
 
 from editor_web.security.authentication import load_access_tokens
 from editor_web.server import Dashboard, dashboard
-from tests.editor_web.browsing import browser_program
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.limits import GUARD_S
+from tests.editor_web.one_browser import OneBrowser
 from tests.editor_web.served import Served
 from tests.editor_web.workshop import Workshop
 
@@ -32,13 +32,21 @@ def loopback() -> str:
     return f"127.0.0.{20 + int(worker)}"
 
 
-@pytest.fixture(scope="module")
-def browser() -> Generator[Browser]:
-    """One browser for the module."""
-    with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
+@pytest.fixture(scope="session")
+def one_browser() -> Generator[OneBrowser]:
+    """The browser of this test process: to start one takes a second of processor time."""
+    opened = OneBrowser()
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def browser(one_browser: OneBrowser) -> Generator[Browser]:
+    """The same browser for every test; what a failed one leaves open is closed."""
+    with one_browser.driven() as running:
         yield running
-        running.close()
+        for context in running.contexts if running.is_connected() else ():
+            context.close()
 
 
 @pytest.fixture
