@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-_EVERY_S = 0.005
+_EVERY_S = 0.02
 """Looking all the time would take the processor from the process that is looked at."""
 _LIMIT_S = 120.0
 

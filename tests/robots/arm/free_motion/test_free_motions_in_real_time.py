@@ -26,7 +26,7 @@ async def test_killed_planning_processes_stop_the_arm_and_new_ones_take_it_to_it
         workers.append(PlanningWorker())
         return workers[-1]
 
-    async with free_cell(tmp_path) as opened:
+    async with free_cell(tmp_path, arms=("left",)) as opened:
         opened.workspace.planners = PlanningServices(opened.bus.clock, make)
         await opened.go(THERE)
         assert (len(workers), all(worker.pid for worker in workers)) == (2, True)
