@@ -36,6 +36,7 @@ from editor_web.routes import (
     demonstration,
     documents,
     page,
+    run_comparison,
     runs,
     search,
     session,
@@ -58,6 +59,7 @@ from editor_web.sockets import live_stream as live
 from editor_web.sockets import teaching_stream as teaching
 from editor_web.teaching.jogging import Jogger
 from editor_web.transport.capacity import MAX_CONNECTIONS
+from engine.archive import RunTrends
 from engine.editing import DocumentConflict, NoSuchDocument, TargetChecks
 from engine.errors import ControlError, FlexcellError
 from engine.project import Session
@@ -85,6 +87,7 @@ _ROUTERS = (
     search.router,
     runs.router,
     past.router,
+    run_comparison.router,
     sweeps.router,
     control.router,
     halt.router,
@@ -150,6 +153,7 @@ def new_app(
     )
     app.state.started = OrderedDict[str, str]()
     app.state.open_runs = OpenRunCache(backend)
+    app.state.run_trends = RunTrends(backend.archive)
     app.state.joggers = dict[str, Jogger]()
     return SecurityMiddleware(
         app,

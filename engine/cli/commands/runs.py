@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from engine.cause_chain import describe_cause
+from engine.cli.commands.runs_compare import compare, trend
 from engine.cli.output.run_report import cause_links, print_cause
 from engine.errors import DocumentError
 from engine.event import (
@@ -36,7 +37,10 @@ from engine.runtime.plan import new_plan
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200
 
-app = typer.Typer(help="List the runs of a journal and show the state of one.", invoke_without_command=True)
+app = typer.Typer(
+    help="List the runs of a journal, show the state of one, compare two, and show trends.",
+    invoke_without_command=True,
+)
 
 JournalPlace = Annotated[str, typer.Option("--journal", help="Folder of the run journal.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -118,6 +122,10 @@ def show(
         sys.stdout.write(msgspec.json.encode(summary).decode() + "\n")
     else:
         _print(summary, _end(found))
+
+
+app.command("compare")(compare)
+app.command("trend")(trend)
 
 
 def _line(record: RunRecord) -> RunListEntry:

@@ -219,3 +219,22 @@ def test_a_run_of_this_server_is_followed_by_many_at_once(shop: Workshop) -> Non
     finally:
         shop.call(shop.session.stop(run, reason="enough"))
         shop.call(shop.session.wait(run))
+
+
+def test_two_runs_are_compared(http: httpx.Client, restarted: tuple[Workshop, str]) -> None:
+    """One with itself meets everywhere; without a good one before it, there is nothing to compare it with."""
+    _, run = restarted
+    same = got(http, "/past-runs/comparison", left=run, right=run)
+    assert (same["divergence"], [each["path"] for each in same["visits"]]) == (None, ["root", "root/one"])
+    assert same["right"]["id"] == run
+    for query in ({"right": run}, {"left": "nowhere", "right": run}, {"left": run, "right": "no/such.mcap"}):
+        answer = http.get("/past-runs/comparison", params=query)
+        assert answer.status_code == 404, query
+        assert answer.json()["message"], query
+
+
+def test_the_runs_of_a_behavior_have_a_trend(http: httpx.Client) -> None:
+    """Of a behavior that always fails, there are no durations."""
+    found = got(http, "/past-runs/trend", behavior="goes wrong", last=5)
+    assert (found["known"], found["succeeded"], found["failed"], found["duration"]) == (1, 0, 1, None)
+    assert got(http, "/past-runs/trend", behavior="of nobody")["known"] == 0
