@@ -1,4 +1,6 @@
 /** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
+import { Button } from '@mantine/core'
+import { IconGitCompare, IconTrendingUp } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
 import { hasCellView } from '../api/session'
@@ -17,7 +19,7 @@ import { RerunLine } from '../features/sweeps/RerunLine'
 import { PastLine } from '../features/timeline/PastLine'
 import { Breadcrumb } from './Breadcrumb'
 import { pastBodies } from './dock'
-import { sweepHref } from './route'
+import { compareHref, LAST_GOOD, sweepHref, trendHref } from './route'
 import { useFetched } from './useFetched'
 import { Wide } from './WorkSpace'
 
@@ -101,6 +103,12 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
           </span>
         )}
         <span className="spacer" />
+        <Button variant="default" size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} onClick={() => onOpen(compareHref(LAST_GOOD, id))}>
+          Compare with the last good run
+        </Button>
+        <Button variant="default" size="xs" leftSection={<IconTrendingUp size={15} aria-hidden />} onClick={() => onOpen(trendHref(run.behavior))}>
+          Last runs
+        </Button>
         <button type="button" className="command" onClick={onAll}>
           <span className="command-label">All past runs</span>
         </button>
