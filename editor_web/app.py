@@ -36,6 +36,7 @@ from editor_web.routes import (
     demonstration,
     documents,
     page,
+    recorded_curves,
     run_comparison,
     runs,
     search,
@@ -76,7 +77,7 @@ _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
     (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
 )
 
-# `relations` before `documents`, whose ids match any address.
+# `relations` before `documents`, and curves before `past`, whose ids match any address.
 _ROUTERS = (
     session.router,
     breakpoints.router,
@@ -86,6 +87,7 @@ _ROUTERS = (
     catalogue.router,
     search.router,
     runs.router,
+    recorded_curves.router,
     past.router,
     run_comparison.router,
     sweeps.router,

@@ -1766,6 +1766,20 @@ export interface RatePair {
   readonly neither: number
 }
 
+/** Values of fields at the same times, seconds of the run; null before the first message. The time range is divided into cells of two times each: their values are the least and the most in the cell, in the order in which they were. So no peak is lost, however long the range is. */
+export interface RecordedCurves {
+  readonly times_s: readonly number[]
+  readonly fields: readonly string[]
+  readonly columns: readonly (readonly (number | null)[])[]
+}
+
+/** The topics of a recording with their numeric fields, and the time that it covers on the clock of the run. */
+export interface RecordedFields {
+  readonly topics: readonly TopicFields[]
+  readonly from_s: number
+  readonly until_s: number
+}
+
 /** A run of a sweep that was executed again and recorded to `recording`, a path in the project. */
 export interface RecordedTrial {
   readonly recording: string

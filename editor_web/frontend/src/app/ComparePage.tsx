@@ -1,12 +1,13 @@
 /** Two past runs compared: aligned visits, the first divergence, and what differs of one visit or of the whole. */
 import { ActionIcon, Tabs, Tooltip } from '@mantine/core'
 import { IconArrowsExchange } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { Suspense, useEffect, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { comparisonApi } from '../api/comparison'
 import type { RunComparison } from '../api/types'
 import { Empty } from '../components/Empty'
 import { PageLink } from '../components/PageLink'
+import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { dataOf, indexAt, placeOf, type Side } from '../document/comparison'
 import { ComparedRun } from '../features/comparison/ComparedRun'
@@ -18,6 +19,8 @@ import { VisitDetails } from '../features/comparison/VisitDetails'
 import { VisitTable } from '../features/comparison/VisitTable'
 import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
 import { useFetched } from './useFetched'
+
+const ComparedCurves = lazyView(async () => (await import('./ComparedCurves')).ComparedCurves)
 
 export interface ComparePageProps {
   /** Ids of runs, or paths of recordings; the left one may be the last good run. */
@@ -68,13 +71,14 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
   const swapped = compareHref(right, left)
   const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
   const details = (
-    <Tabs defaultValue="visit" className={styles.tabs ?? ''}>
+    <Tabs defaultValue="visit" keepMounted={false} className={styles.tabs ?? ''}>
       <Tabs.List>
         <Tabs.Tab value="visit">Visit</Tabs.Tab>
         <Tabs.Tab value="durations">Durations</Tabs.Tab>
         <Tabs.Tab value="settings">
           Settings {found.settings.length + found.documents.length > 0 && <span className="tab-count">{found.settings.length + found.documents.length}</span>}
         </Tabs.Tab>
+        <Tabs.Tab value="curves">Curves</Tabs.Tab>
       </Tabs.List>
       <Tabs.Panel value="visit">
         {visit && selected !== undefined ? (
@@ -88,6 +92,11 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
       </Tabs.Panel>
       <Tabs.Panel value="settings">
         <Settings settings={found.settings} documents={found.documents} />
+      </Tabs.Panel>
+      <Tabs.Panel value="curves" className={styles.curves ?? ''}>
+        <Suspense fallback={null}>
+          <ComparedCurves left={left} right={right} found={found} visit={visit} />
+        </Suspense>
       </Tabs.Panel>
     </Tabs>
   )

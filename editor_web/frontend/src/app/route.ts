@@ -83,9 +83,14 @@ export function trendHref(behavior: string): string {
   return `/trends/${behavior.split('/').map(encodeURIComponent).join('/')}`
 }
 
+/** Whether a name is the path of a recording, and not the id of a run. */
+export function isRecordingName(name: string): boolean {
+  return /\.mcap(\.part)?$/.test(name)
+}
+
 /** A run, or a recording by its path, at a time of it and with a node selected where these are given. */
 export function recordedHref(name: string, timeS?: number, path?: string): string {
-  const page = /\.mcap(\.part)?$/.test(name) ? recordingHref(name) : runHref(name)
+  const page = isRecordingName(name) ? recordingHref(name) : runHref(name)
   const at = momentText(timeS, path)
   return at ? `${page}#${at}` : page
 }
