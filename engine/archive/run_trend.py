@@ -125,7 +125,7 @@ def run_trend(
         else None,
         nodes=tuple(
             NodeTrend(**msgspec.structs.asdict(_spread(seconds, latest_nodes.get(path))), path=path)
-            for path, seconds in sorted(by_path.items())
+            for path, seconds in by_path.items()
         ),
     )
 

@@ -27,9 +27,9 @@ it('counts the runs, and tells durations with the latest run beside them', async
   show(<TrendPage behavior="pick" onOpen={vi.fn()} />)
   expect(await screen.findByText('2 of 3 runs succeeded, 1 failed; the latest of 8')).toBeVisible()
   const [, whole, node] = screen.getAllByRole('row')
-  expect(whole).toHaveTextContent('Whole run24.00 s3.50 to 4.50 s3.00 s5.00 s6.00 s')
+  expect(whole).toHaveTextContent('Whole run24.00 s3.50 s to 4.50 s3.00 s5.00 s6.00 s')
   expect(screen.getByTitle('Outside of what the runs that succeeded took')).toHaveTextContent('6.00 s')
-  expect(node).toHaveTextContent('root/move24.00 s3.50 to 4.50 s3.00 s5.00 s–')
+  expect(node).toHaveTextContent('root/move24.00 s3.50 s to 4.50 s3.00 s5.00 s–')
 })
 
 it('compares the two that are ticked, the older one on the left', async () => {

@@ -42,12 +42,12 @@ function OfRun({ side, visit, href, onOpen }: OfRunProps) {
   }
   const target = href(side, visit.end_s ?? visit.start_s, visit.path)
   return (
-    <p>
+    <div className={styles.ofRun}>
       <span className={styles.side}>{name}</span> {endWords(visit)}, from {duration(visit.start_s)} {visit.end_s !== null && `to ${duration(visit.end_s)} `}
       <PageLink href={target} onOpen={() => onOpen(target)}>
         Open the {side} run there
       </PageLink>
-      {visit.cause && <span className={styles.cause}> {visit.cause}</span>}
-    </p>
+      {visit.cause && <p className={styles.reason}>{visit.cause}</p>}
+    </div>
   )
 }

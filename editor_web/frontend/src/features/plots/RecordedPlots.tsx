@@ -34,7 +34,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
   const isShown = useIsVisible(area)
   const { topics, problem } = useRecordedFields(sources, isShown)
   const [chosen, setChosen] = useState(keptFields)
-  const [isChoosing, setChoosing] = useState(true)
+  const [isChoosing, setChoosing] = useState(chosen.length === 0)
   const [part, setPart] = useState<View>()
   const [width, setWidth] = useState(0)
   const view = part ?? wholeView(durationS)

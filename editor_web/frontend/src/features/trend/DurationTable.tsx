@@ -40,7 +40,7 @@ function Row({ name, spread }: { readonly name: string; readonly spread: Duratio
       <td className={styles.number}>{count}</td>
       <td className={styles.number}>{duration(median_s)}</td>
       <td className={styles.number}>
-        {lower_s.toFixed(2)} to {duration(upper_s)}
+        {duration(lower_s)} to {duration(upper_s)}
       </td>
       <td className={styles.number}>{duration(least_s)}</td>
       <td className={styles.number}>{duration(most_s)}</td>
