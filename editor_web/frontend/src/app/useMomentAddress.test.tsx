@@ -43,7 +43,9 @@ it('leaves the address of a behavior alone', () => {
   vi.useFakeTimers()
   open('/behaviors/pick.yaml#t=2.5', 'root/a')
   act(() => useTimeline.setState({ timeS: 1 }))
-  act(() => vi.advanceTimersByTime(1000))
+  act(() => {
+    vi.advanceTimersByTime(1000)
+  })
   expect([location.hash, shown.mock.calls.length]).toEqual(['#t=2.5', 0])
   vi.useRealTimers()
 })

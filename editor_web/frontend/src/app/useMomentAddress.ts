@@ -18,7 +18,7 @@ export function useMomentAddress(subject: Subject | undefined, node: string | un
     const place = momentOf(location.hash)
     if (place.node) show.current(place.node)
     if (place.timeS !== undefined) seek(subject, place.timeS)
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the address names the subject
+    // oxlint-disable-next-line react/exhaustive-deps -- the address names the subject
   }, [address])
   useEffect(() => {
     if (address === undefined || !isOfRun()) return

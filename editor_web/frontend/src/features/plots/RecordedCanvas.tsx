@@ -90,9 +90,14 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
     <div
       className="plot-canvas"
       ref={both}
-      role="img"
+      role="slider"
       tabIndex={0}
-      aria-label={`${shown.length} recorded curves from ${view.fromS.toFixed(2)} to ${view.untilS.toFixed(2)} s; arrows move the cursor, plus and minus zoom`}
+      aria-valuemin={view.fromS}
+      aria-valuemax={view.untilS}
+      aria-valuenow={cursorS ?? view.untilS}
+      aria-valuetext={`${(cursorS ?? view.untilS).toFixed(2)} s`}
+      aria-label={`${shown.length} recorded curves from ${view.fromS.toFixed(2)} to ${view.untilS.toFixed(2)} s`}
+      title="Drag to see a moment of the past; turn the wheel to zoom"
       onPointerDown={press}
       onPointerMove={move}
       onPointerUp={() => (grip.current = undefined)}
