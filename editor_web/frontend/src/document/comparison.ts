@@ -10,7 +10,8 @@ export function isDifferent({ left, right }: AlignedVisit): boolean {
 
 /** How long a visit took; undefined for none, and for one that had not ended. */
 export function durationOf(visit: Visit | null): number | undefined {
-  return visit === null || visit.end_s === null ? undefined : visit.end_s - visit.start_s
+  if (visit === null) return undefined
+  return visit.end_s === null ? undefined : visit.end_s - visit.start_s
 }
 
 /** Right minus left; undefined where one of them is missing. */
