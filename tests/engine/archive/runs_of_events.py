@@ -27,21 +27,21 @@ class MadeVisit:
 
 def run_of(*visits: MadeVisit, outcome: str = "good") -> list[Event]:
     """A run of a machine `root` that makes these visits one after another."""
-    told = _Told()
-    told.add(RunStarted, behavior="b", document="d", parameters={}, seed=1, clock="virtual")
-    told.visit("", MadeVisit("root", outcome, 0.0, visits))
-    told.add(RunEnded, status="finished", outcome=outcome)
-    return told.events
+    made = _MadeRun()
+    made.add(RunStarted, behavior="b", document="d", parameters={}, seed=1, clock="virtual")
+    made.visit("", MadeVisit("root", outcome, 0.0, visits))
+    made.add(RunEnded, status="finished", outcome=outcome)
+    return made.events
 
 
-class _Told:
+class _MadeRun:
     def __init__(self) -> None:
         self.events: list[Event] = []
         self.visits: dict[str, int] = {}
         self.time_s = 0.0
 
-    def add(self, told: type[Event], /, **fields: object) -> None:
-        self.events.append(told(seq=len(self.events) + 1, time_s=self.time_s, **fields))
+    def add(self, kind_of: type[Event], /, **fields: object) -> None:
+        self.events.append(kind_of(seq=len(self.events) + 1, time_s=self.time_s, **fields))
 
     def visit(self, above: str, made: MadeVisit) -> None:
         path = f"{above}/{made.name}" if above else made.name

@@ -89,16 +89,16 @@ def side_by_side(first: str, ends: dict[str, str]) -> list[Event]:
     """A run with two branches, of which one starts first; they end in the order of `ends`."""
     events: list[Event] = [RunStarted(1, 0.0, behavior="b", document="d", parameters={}, seed=1, clock="real")]
 
-    def tell(told: type[Event], time_s: float, /, **fields: object) -> None:
-        events.append(told(seq=len(events) + 1, time_s=time_s, **fields))
+    def publish(kind_of: type[Event], time_s: float, /, **fields: object) -> None:
+        events.append(kind_of(seq=len(events) + 1, time_s=time_s, **fields))
 
-    tell(NodeEntered, 0.0, path="root", visit=1, kind="concurrency", inputs={})
+    publish(NodeEntered, 0.0, path="root", visit=1, kind="concurrency", inputs={})
     for name in (first, *({"a", "b"} - {first})):
-        tell(NodeEntered, 0.0, path=f"root/{name}", visit=1, kind="state", inputs={})
+        publish(NodeEntered, 0.0, path=f"root/{name}", visit=1, kind="state", inputs={})
     for time_s, (name, outcome) in enumerate(ends.items(), 1):
-        tell(NodeExited, float(time_s), path=f"root/{name}", visit=1, outcome=outcome)
-    tell(NodeExited, 3.0, path="root", visit=1, outcome="good")
-    tell(RunEnded, 3.0, status="finished", outcome="good")
+        publish(NodeExited, float(time_s), path=f"root/{name}", visit=1, outcome=outcome)
+    publish(NodeExited, 3.0, path="root", visit=1, outcome="good")
+    publish(RunEnded, 3.0, status="finished", outcome="good")
     return events
 
 

@@ -53,7 +53,7 @@ def run_with(parameters: dict[str, object], read: object, wrote: object, *, appe
     )
 
 
-def told(comparison: RunComparison) -> list[tuple[str, str, str, str | None, str | None]]:
+def different_values(comparison: RunComparison) -> list[tuple[str, str, str, str | None, str | None]]:
     """The values that differ."""
     return [(each.path, each.kind, each.at, each.left, each.right) for each in comparison.data]
 
@@ -73,7 +73,7 @@ def test_values_are_compared_inside_and_named_with_their_visit() -> None:
     left = run_with({"speed": 0.5, "part": "a"}, {"xyz_m": [0.0, 1.0, 2.0]}, {"label": "bolt"})
     right = run_with({"speed": 0.7, "part": "a", "new": True}, {"xyz_m": [0.0, 1.5, 2.0]}, {"label": "nut"}, appended=2)
     found = compare_runs(left, right)
-    assert told(found) == [
+    assert different_values(found) == [
         ("root/look", "read", "pose.xyz_m[1]", "1.0", "1.5"),
         ("root/look", "wrote", "found.label", '"bolt"', '"nut"'),
         ("root/look", "wrote", "all (appended)[0]", "1", "2"),
@@ -95,7 +95,7 @@ def test_durations_are_those_of_all_visits_of_a_node() -> None:
     ] == [("root", 1, 1, 3.0, 0.5), ("root/move", 3, 1, 3.0, 0.5)]
 
 
-def test_documents_that_differ_are_told_line_by_line() -> None:
+def test_documents_that_differ_are_compared_line_by_line() -> None:
     """And those that only one run has."""
     run = run_of(MadeVisit("move"))
     left = archived(run, {"pick.yaml": TEXT, "same.yaml": "a\n"})

@@ -41,9 +41,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_run_is_compared_with_the_last_good_one(folder: Path) -> None:
     """The second one, which the third diverges from in what it decides."""
     _, good, bad = (run.id for run in runs_in(folder))
-    told = flexcell("runs", "compare", bad, cwd=folder)
-    assert told.code == 0, told.err
-    lines = told.out.splitlines()
+    output = flexcell("runs", "compare", bad, cwd=folder)
+    assert output.code == 0, output.err
+    lines = output.out.splitlines()
     assert lines[0].startswith(f"left  {good}: pick, started ")
     assert lines[1].startswith(f"right {bad}: pick, started ")
     assert lines[2] == (
@@ -59,25 +59,25 @@ def test_a_run_is_compared_with_the_last_good_one(folder: Path) -> None:
 def test_two_runs_that_went_the_same_way_do_not_diverge(folder: Path) -> None:
     """Though they took different times; as JSON for scripts."""
     first, second, _ = (run.id for run in runs_in(folder))
-    told = json.loads(flexcell("runs", "compare", first, second, "--json", cwd=folder).out)
-    assert (told["left"]["id"], told["right"]["id"], told["divergence"]) == (first, second, None)
-    assert [each["at"] for each in told["settings"]] == ["parameters.long"]
-    assert {each["path"]: each["duration_right_s"] for each in told["nodes"]}["root/wait"] == 3.0
+    output = json.loads(flexcell("runs", "compare", first, second, "--json", cwd=folder).out)
+    assert (output["left"]["id"], output["right"]["id"], output["divergence"]) == (first, second, None)
+    assert [each["at"] for each in output["settings"]] == ["parameters.long"]
+    assert {each["path"]: each["duration_right_s"] for each in output["nodes"]}["root/wait"] == 3.0
 
 
 def test_the_first_good_run_has_none_before_it(folder: Path) -> None:
     """Which is said with what to do."""
-    told = flexcell("runs", "compare", runs_in(folder)[0].id, cwd=folder)
-    assert told.code == 2
-    assert "no run of 'pick' before" in told.err
-    assert "give the run to compare it with" in told.err
+    output = flexcell("runs", "compare", runs_in(folder)[0].id, cwd=folder)
+    assert output.code == 2
+    assert "no run of 'pick' before" in output.err
+    assert "give the run to compare it with" in output.err
 
 
 def test_the_last_runs_of_a_behavior_have_a_trend(folder: Path) -> None:
     """By its name or its document; durations are those of good runs."""
-    told = flexcell("runs", "trend", "pick", cwd=folder)
-    assert told.code == 0, told.err
-    lines = told.out.splitlines()
+    output = flexcell("runs", "trend", "pick", cwd=folder)
+    assert output.code == 0, output.err
+    lines = output.out.splitlines()
     assert lines[0] == "pick: 2 of 3 runs succeeded, 1 failed"
     table = {line.split()[0]: line.split()[1:] for line in lines[2:]}
     assert table["root/wait"] == ["2", "2.000", "1.500", "to", "2.500", "1.000", "3.000", "1.000"]
@@ -87,7 +87,7 @@ def test_the_last_runs_of_a_behavior_have_a_trend(folder: Path) -> None:
 
 def test_a_behavior_that_never_ran_has_no_trend(folder: Path) -> None:
     """The journal may have one with nearly that name."""
-    told = flexcell("runs", "trend", "pikc", cwd=folder)
-    assert told.code == 2
-    assert "the journal has no run of 'pikc'" in told.err
-    assert "pick" in told.err
+    output = flexcell("runs", "trend", "pikc", cwd=folder)
+    assert output.code == 2
+    assert "the journal has no run of 'pikc'" in output.err
+    assert "pick" in output.err
