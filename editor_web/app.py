@@ -36,6 +36,8 @@ from editor_web.routes import (
     demonstration,
     documents,
     page,
+    run_comparison,
+    run_curves,
     runs,
     search,
     session,
@@ -58,6 +60,7 @@ from editor_web.sockets import live_stream as live
 from editor_web.sockets import teaching_stream as teaching
 from editor_web.teaching.jogging import Jogger
 from editor_web.transport.capacity import MAX_CONNECTIONS
+from engine.archive import RunTrends
 from engine.editing import DocumentConflict, NoSuchDocument, TargetChecks
 from engine.errors import ControlError, FlexcellError
 from engine.project import Session
@@ -74,7 +77,7 @@ _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
     (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
 )
 
-# `relations` before `documents`, whose ids match any address.
+# `relations` before `documents`, and curves before `past`, whose ids match any address.
 _ROUTERS = (
     session.router,
     breakpoints.router,
@@ -84,7 +87,9 @@ _ROUTERS = (
     catalogue.router,
     search.router,
     runs.router,
+    run_curves.router,
     past.router,
+    run_comparison.router,
     sweeps.router,
     control.router,
     halt.router,
@@ -150,6 +155,7 @@ def new_app(
     )
     app.state.started = OrderedDict[str, str]()
     app.state.open_runs = OpenRunCache(backend)
+    app.state.run_trends = RunTrends(backend.archive)
     app.state.joggers = dict[str, Jogger]()
     return SecurityMiddleware(
         app,

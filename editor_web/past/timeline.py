@@ -6,9 +6,10 @@ import math
 
 import msgspec
 
-from editor_web.past.intervals import MAX_INTERVALS, ActivationInterval, ActivationIntervals, merge_intervals
+from editor_web.past.intervals import MAX_INTERVALS, merge_intervals
 from editor_web.past.markers import TimelineMarker, limit_markers, marker_of
 from editor_web.past.state_history import RunStateHistory
+from engine.archive import ActivationInterval, ActivationIntervals
 from engine.event import Event
 
 

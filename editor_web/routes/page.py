@@ -45,6 +45,8 @@ def notices(services: ServicesOf) -> Response:
 @router.get("/runs")
 @router.get("/runs/{rest:path}")
 @router.get("/beside/{rest:path}")
+@router.get("/compare/{rest:path}")
+@router.get("/trends/{rest:path}")
 @router.get("/past")
 @router.get("/recordings/{rest:path}")
 @router.get("/edit/{rest:path}")

@@ -110,19 +110,18 @@ def _parts(value: object, path: Path) -> Iterator[tuple[str | int, str, str, obj
     """Yield the parts of a value: path step, label word, unit if the name has one, and the part."""
     match value:
         case msgspec.Struct():
-            row = _row_names(value)
+            row = _names_of(getattr(value, "names", ()))
             for name in value.__struct_fields__:
-                inner: object = getattr(value, name)
-                items = cast("tuple[object, ...]", inner) if isinstance(inner, tuple) else ()
-                named = row and len(items) == len(row)
-                yield name, name, unit_of(name), _Row(items, row) if named else inner
+                yield name, name, unit_of(name), _named(getattr(value, name), row)
         case _Row():
             for index, word in enumerate(value.names):
                 yield index, word, "", value.items[index]
         case Mapping():
-            for key, inner in cast("Mapping[object, object]", value).items():
+            mapping = cast("Mapping[object, object]", value)
+            row = _names_of(mapping.get("names"))
+            for key, inner in mapping.items():
                 if "." not in str(key):
-                    yield str(key), str(key), unit_of(str(key)), inner
+                    yield str(key), str(key), unit_of(str(key)), _named(inner, row)
         case list() | tuple():
             items = cast("list[object]", value)
             if len(items) <= MAX_ROW:
@@ -141,9 +140,14 @@ class _Row:
         self.names = names
 
 
-def _row_names(message: msgspec.Struct) -> tuple[str, ...]:
-    """Return the names of the items of a message's rows."""
-    names: object = getattr(message, "names", ())
-    if not isinstance(names, tuple) or len(cast("tuple[object, ...]", names)) > MAX_ROW:
+def _names_of(names: object) -> tuple[str, ...]:
+    """Return the names of the items of a message's rows, where it has them."""
+    if not isinstance(names, tuple | list) or len(cast("list[object]", names)) > MAX_ROW:
         return ()
-    return tuple(str(each) for each in cast("tuple[object, ...]", names))
+    return tuple(str(each) for each in cast("list[object]", names))
+
+
+def _named(value: object, names: tuple[str, ...]) -> object:
+    """Return a row with its names; any other value as it is."""
+    items = tuple(cast("list[object]", value)) if names and isinstance(value, tuple | list) else ()
+    return _Row(items, names) if items and len(items) == len(names) else cast("object", value)

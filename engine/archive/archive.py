@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import msgspec
 
 from engine.archive.past_runs import PastRun, PastRuns, is_success
-from engine.archive.recording_files import RecordingFile, recording_files, recording_path
+from engine.archive.recording_files import RecordingFile, is_recording, recording_files, recording_path
 from engine.cause_chain import describe_cause
 from engine.document import Behavior
 from engine.errors import FlexcellError, JournalError
@@ -23,15 +24,16 @@ from engine.runtime.plan import Catalogue, Plan, new_plan
 
 @dataclass(frozen=True, kw_only=True)
 class ArchivedRun:
-    """One past run: its description, its events, and the behavior at its start.
+    """One past run: its description, its events, and the behavior at its start with the texts of its documents.
 
-    Without information on the executed behavior, `behavior` has no graph and there is no plan.
+    Without information on the executed behavior, `behavior` has no graph, and there are no plan and no documents.
     """
 
     summary: PastRun
     events: tuple[AnyEvent, ...]
     behavior: BehaviorView
     plan: Plan | None
+    documents: Mapping[str, str]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +42,7 @@ class _Executed:
 
     view: BehaviorView
     plan: Plan | None = None
+    documents: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 class Archive:
@@ -82,6 +85,31 @@ class Archive:
             events=read_events(self.journal, run_id),
             behavior=executed.view,
             plan=executed.plan,
+            documents=executed.documents,
+        )
+
+    def open(self, name: str) -> ArchivedRun:
+        """Open a run of the journal by its id, or a recording by its path in the project, which ends with `.mcap`.
+
+        Raises:
+            JournalError: there is no such run, or an event of it is damaged.
+            RecordingError: there is no such recording, or it cannot be read.
+        """
+        return self.recording(name) if is_recording(name) else self.run(name)
+
+    def last_good_run(self, run: PastRun) -> PastRun | None:
+        """Return the latest run of the same behavior that succeeded and started before a run; None if there is none.
+
+        Raises:
+            JournalError: the journal cannot be read.
+        """
+        return next(
+            (
+                each
+                for each in self.runs()
+                if each.success and each.behavior == run.behavior and each.started_at_s < run.started_at_s
+            ),
+            None,
         )
 
     def recordings(self) -> tuple[RecordingFile, ...]:
@@ -133,6 +161,7 @@ class Archive:
             events=events,
             behavior=executed.view,
             plan=executed.plan,
+            documents=executed.documents,
         )
 
     def _of_run(self, run_id: str, document: str) -> _Executed:
@@ -153,7 +182,7 @@ class Archive:
         file = Path(origin.behavior)
         if file.is_relative_to(self.project):
             view = msgspec.structs.replace(executed.view, id=file.relative_to(self.project).as_posix())
-            executed = _Executed(view=view, plan=executed.plan)
+            executed = replace(executed, view=view)
         with self._lock:
             self._executed[document] = executed
         return executed
@@ -165,11 +194,12 @@ class Archive:
         except FlexcellError:
             # Its events can still be shown.
             return _Executed(view=_unknown(name))
+        texts = {name: text.decode(errors="replace") for name, text in documents.texts.items()}
         try:
-            return _Executed(view=view, plan=new_plan(behavior, self._catalogue))
+            return _Executed(view=view, plan=new_plan(behavior, self._catalogue), documents=texts)
         except FlexcellError:
             # A state that is no longer installed: only the initial values of userdata are then unknown.
-            return _Executed(view=view)
+            return _Executed(view=view, documents=texts)
 
     def _drawn(self, behavior: Behavior, behavior_id: str) -> BehaviorView:
         return BehaviorView(

@@ -56,7 +56,7 @@ def recording_path(project: Path, name: str) -> Path:
     missing = RecordingError(
         "there is no such recording in this project", where=name, hint="see the list of recordings"
     )
-    if "\0" in name or place.is_absolute() or ".." in place.parts or not _is_recording(place.name):
+    if "\0" in name or place.is_absolute() or ".." in place.parts or not is_recording(place.name):
         raise missing
     try:
         file = (root / place).resolve()
@@ -92,7 +92,8 @@ def read_description(path: Path) -> RecordingDescription:
     raise RecordingError("this is not a recording of a run", where=path, hint="give a file that --record wrote")
 
 
-def _is_recording(name: str) -> bool:
+def is_recording(name: str) -> bool:
+    """Return whether a file has the name of a recording."""
     return name.removesuffix(PART).endswith(SUFFIX)
 
 
@@ -111,7 +112,7 @@ def _files(root: Path) -> Iterator[tuple[Path, os.stat_result]]:
                 hidden = entry.name.startswith(".") and entry.name not in _OPENED
                 if depth < _DEPTH and not hidden and entry.name not in _KEEP_OUT:
                     due.append((Path(entry.path), depth + 1))
-            elif _is_recording(entry.name) and entry.is_file(follow_symlinks=False):
+            elif is_recording(entry.name) and entry.is_file(follow_symlinks=False):
                 yield Path(entry.path), entry.stat()
 
 

@@ -146,6 +146,28 @@ class IndexedRecording:
             row = bisect_right(track.times_ns, at_ns) - 1
             return self._stored(track, row) if row >= 0 else None
 
+    def between(self, topic: str, from_s: float, until_s: float, *, most: int) -> Iterator[tuple[float, bytes]]:
+        """Yield times and data of the messages of a topic in a time range, with the one that was the latest before it.
+
+        Of more than `most` messages, at least half as many, which lie evenly among all.
+
+        Raises:
+            RecordingError: it is damaged.
+        """
+        if self._zero_ns is None:
+            return
+        with damage_reported(self.path):
+            track = self._track(f"/{topic}")
+            if track is None:
+                return
+            rows = [
+                bisect_right(track.times_ns, self._zero_ns + round(min(max(at_s, -1e9), 1e9) * 1e9))
+                for at_s in (from_s, until_s)
+            ]
+            first, end = max(0, rows[0] - 1), rows[1]
+            for row in range(first, end, max(1, -(-(end - first) // most))):
+                yield self._time_s(track.times_ns[row]), self._stored(track, row).data
+
     def _begin(self) -> None:
         index = None if self.path.suffix == PART else read_index(self._stream, new_read_budget(self._stream))
         if index is None:

@@ -6,5 +6,6 @@
 from engine.replay.journal_recording import recording_from_journal
 from engine.replay.replay_difference import ReplayDifference
 from engine.replay.replayer import ReplayReport, replay
+from engine.replay.value_change import ValueChange, value_changes
 
-__all__ = ["ReplayDifference", "ReplayReport", "recording_from_journal", "replay"]
+__all__ = ["ReplayDifference", "ReplayReport", "ValueChange", "recording_from_journal", "replay", "value_changes"]

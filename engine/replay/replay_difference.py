@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from itertools import islice
 
 from engine.event import Event
-from engine.replay.plain_event import plain_event, value_changes
+from engine.replay.plain_event import plain_event
+from engine.replay.value_change import value_changes
 from engine.runtime.history.event_texts import event_text
 
 CONTEXT = 10
 _SHOWN = 3
+_LONGEST = 60
 _NOTHING = "nothing"
 
 
@@ -77,8 +79,10 @@ def _detail(recorded: Event | None, replayed: Event | None) -> str:
         return ""
     if _path(recorded) != _path(replayed):
         return ""
-    found = value_changes(plain_event(recorded), plain_event(replayed))
-    shown = ", ".join(islice(found, _SHOWN))
+    found = value_changes(plain_event(recorded), plain_event(replayed), longest=_LONGEST)
+    shown = ", ".join(
+        f"{change.at}: {change.left or _NOTHING} ≠ {change.right or _NOTHING}" for change in islice(found, _SHOWN)
+    )
     return shown or f"at {replayed.time_s:.6f} s instead of {recorded.time_s:.6f} s"
 
 

@@ -303,8 +303,14 @@ def test_everything_is_accessible(
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_lists_are_accessible(browser: Browser, sorted_shop: tuple[Workshop, str], scheme: Scheme) -> None:
-    """Past runs and recordings."""
-    shop, _ = sorted_shop
+    """Past runs and recordings, two runs compared at a visit of the address, and the last runs of a behavior."""
+    shop, run = sorted_shop
     with opened_page(browser, shop.running, "/past", scheme=scheme) as page:
         expect(page.get_by_role("list", name="Past runs").get_by_role("link")).to_be_visible()
         require_accessible(page, "lists")
+        page.goto(f"{shop.running.url}compare/{run}/{run}#root/approach@1")
+        expect(page.get_by_role("button", name="root/approach, visit 1")).to_have_attribute("aria-pressed", "true")
+        require_accessible(page, "comparison")
+        page.goto(f"{shop.running.url}trends/sort")
+        expect(page.get_by_role("list", name="Last runs")).to_be_visible()
+        require_accessible(page, "trend")

@@ -33,6 +33,7 @@ NODE_EVENTS = frozenset(
 REDUCER = "engine/runtime/history/run_state_part.py"
 WORDS = "engine/runtime/history/event_texts.py"
 EXCEPTIONS = {
+    "engine/archive/run_comparison.py": "finds the values that visits read and wrote, to compare two runs; no state",
     "engine/replay/entry_schedule.py": "finds the instants of entries in a recording, to repeat them; no state",
     "engine/replay/recorded_requests.py": "finds the requests of a recording and which were cancelled; no state",
     "engine/runtime/history/resumable_state.py": "a part of the reducer; whether a write assigns or appends",
@@ -46,6 +47,7 @@ EXCEPTIONS = {
 
 REDUCERS = {
     "editor_web/past/state_history.py": "a run at any instant; keeps copies",
+    "engine/archive/run_alignment.py": "the visits of a past run, read once",
     "engine/cli/output/progress_printer.py": "a run in a terminal",
     "engine/coverage/coverage_counter.py": "many runs, each read once",
     "engine/runtime/history/live_run.py": "the runs of a session",

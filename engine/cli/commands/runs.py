@@ -1,4 +1,4 @@
-"""`flexcell runs`: lists the runs of a journal and shows the state of one."""
+"""`flexcell runs`: lists the runs of a journal, shows the state of one, compares two, and shows trends."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 
+from engine.archive import Archive, ArchivedRun, RunTrends, compare_runs
 from engine.cause_chain import describe_cause
+from engine.cli.output.comparison_output import print_comparison, print_trend
 from engine.cli.output.run_report import cause_links, print_cause
-from engine.errors import DocumentError
+from engine.document import load_behavior
+from engine.errors import DocumentError, JournalError
 from engine.event import (
     Cause,
     Event,
@@ -32,11 +35,15 @@ from engine.runtime.history.event_texts import event_text
 from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
 from engine.runtime.plan import new_plan
+from engine.suggestions import did_you_mean
 
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200
 
-app = typer.Typer(help="List the runs of a journal and show the state of one.", invoke_without_command=True)
+app = typer.Typer(
+    help="List the runs of a journal, show the state of one, compare two, and show trends.",
+    invoke_without_command=True,
+)
 
 JournalPlace = Annotated[str, typer.Option("--journal", help="Folder of the run journal.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -118,6 +125,60 @@ def show(
         sys.stdout.write(msgspec.json.encode(summary).decode() + "\n")
     else:
         _print(summary, _end(found))
+
+
+@app.command("compare")
+def compare(
+    runs: Annotated[
+        list[str],
+        typer.Argument(
+            help="Two runs: ids, see `flexcell runs`, or recordings of this project. One run is compared with the last"
+            " run of its behavior before it that succeeded.",
+            show_default=False,
+        ),
+    ],
+    journal: JournalPlace = STATE_FOLDER,
+    json: AsJson = False,
+) -> None:
+    """Compare two runs: where they first diverge, settings, documents, durations, values that were read and written.
+
+    Visits of nodes are aligned, container by container. Durations and values are written `left → right`.
+    """
+    archive = _archive(journal)
+    left, right = _two(archive, runs)
+    comparison = compare_runs(left, right)
+    if json:
+        sys.stdout.write(msgspec.json.encode(comparison).decode() + "\n")
+    else:
+        print_comparison(comparison)
+
+
+@app.command("trend")
+def trend(
+    behavior: Annotated[
+        str, typer.Argument(help="Behavior: its name, see `flexcell runs`, or its document.", show_default=False)
+    ],
+    last: Annotated[int, typer.Option(help="Number of runs, at most.", min=1, max=1000)] = 20,
+    journal: JournalPlace = STATE_FOLDER,
+    json: AsJson = False,
+) -> None:
+    """Show how the last runs of a behavior went: how many succeeded, and how long they and their nodes took.
+
+    Durations are those of runs that succeeded: median, quartiles, extremes, and beside them that of the latest run.
+    """
+    archive = _archive(journal)
+    file = Path(behavior)
+    name = load_behavior(file).name if file.suffix in (".yaml", ".yml", ".json") else behavior
+    found = RunTrends(archive).of(name, last=last)
+    if not found.known:
+        known = sorted({run.behavior for run in archive.runs()})
+        raise JournalError(
+            f"the journal has no run of {name!r}", where=archive.journal, hint=did_you_mean(name, known) or None
+        )
+    if json:
+        sys.stdout.write(msgspec.json.encode(found).decode() + "\n")
+    else:
+        print_trend(found)
 
 
 def _line(record: RunRecord) -> RunListEntry:
@@ -216,3 +277,23 @@ def _event_line(event: Event) -> str:
     shown = event_text(event)
     why = f": {describe_cause(shown.cause)}" if shown.cause is not None else ""
     return f"{shown.path}  {shown.text}{why}" if shown.path else f"{shown.text}{why}"
+
+
+def _archive(journal: str) -> Archive:
+    return Archive(Path.cwd(), load_states(Path.cwd()), Path(journal))
+
+
+def _two(archive: Archive, names: list[str]) -> tuple[ArchivedRun, ArchivedRun]:
+    if len(names) > 2:
+        raise DocumentError(f"{len(names)} runs are given", hint="give two, or one")
+    right = archive.open(names[-1])
+    if len(names) == 2:
+        return archive.open(names[0]), right
+    good = archive.last_good_run(right.summary)
+    if good is None:
+        raise JournalError(
+            f"no run of {right.summary.behavior!r} before {right.summary.id} succeeded",
+            where=archive.journal,
+            hint="give the run to compare it with",
+        )
+    return archive.open(good.id), right

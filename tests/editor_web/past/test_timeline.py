@@ -7,9 +7,9 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from editor_web.past.intervals import ActivationInterval
 from editor_web.past.markers import TimelineMarker, limit_markers
 from editor_web.past.timeline import RunHistory, Timeline
+from engine.archive import ActivationInterval
 from engine.event import Event
 from tests.editor_web.past.events import STEPS, made_up
 

@@ -145,7 +145,7 @@ def test_a_recording_is_opened_with_the_behavior_inside_it(
     """Also one with blanks in its name, and one that was cut off."""
     path = folder / "my runs" / "one.mcap"
     path.parent.mkdir(exist_ok=True)
-    run_virtual(record_run(RECORDED, path, rate_hz=0))
+    run_virtual(record_run(RECORDED, path, rate_hz=50))
     part_file(folder / "my runs" / "two.mcap").write_bytes(path.read_bytes()[:-40])
     names = {file["path"]: file["problem"] for file in got(http, "/recordings")}
     assert names == {"my runs/one.mcap": "", "my runs/two.mcap.part": ""}
@@ -157,6 +157,11 @@ def test_a_recording_is_opened_with_the_behavior_inside_it(
         half = got(http, f"/recordings/{name}/at", time_s=1.0)
         assert half["nodes"]["root/it"]["status"] == "active"
         assert got(http, f"/recordings/{name}/failure") is None
+    address = "/recordings/my runs/one.mcap"
+    (topic,) = got(http, f"{address}/fields")["topics"]
+    curves = got(http, f"{address}/curves", field="bench/tick:number", from_s=0, until_s=2, cells=2)
+    assert (topic["topic"], curves["times_s"]) == ("bench/tick", [0.25, 0.75, 1.25, 1.75])
+    assert curves["columns"][0][0] < curves["columns"][0][3]
 
 
 @pytest.mark.parametrize(
@@ -168,6 +173,8 @@ def test_a_recording_is_opened_with_the_behavior_inside_it(
         "/runs/nobody/failure",
         "/recordings/nothing.mcap",
         "/recordings/nothing.mcap/at",
+        "/runs/nobody/fields",
+        "/recordings/nothing.mcap/curves?field=a:b&from_s=0&until_s=1",
         "/recordings/..%2F..%2Fetc%2Fpasswd",
         "/recordings/%2Fetc%2Fpasswd.mcap/timeline",
         "/recordings/behaviors/wrong.yaml",
@@ -219,3 +226,22 @@ def test_a_run_of_this_server_is_followed_by_many_at_once(shop: Workshop) -> Non
     finally:
         shop.call(shop.session.stop(run, reason="enough"))
         shop.call(shop.session.wait(run))
+
+
+def test_two_runs_are_compared(http: httpx.Client, restarted: tuple[Workshop, str]) -> None:
+    """One with itself meets everywhere; without a good one before it, there is nothing to compare it with."""
+    _, run = restarted
+    same = got(http, "/past-runs/comparison", left=run, right=run)
+    assert (same["divergence"], [each["path"] for each in same["visits"]]) == (None, ["root", "root/one"])
+    assert same["right"]["id"] == run
+    for query in ({"right": run}, {"left": "nowhere", "right": run}, {"left": run, "right": "no/such.mcap"}):
+        answer = http.get("/past-runs/comparison", params=query)
+        assert answer.status_code == 404, query
+        assert answer.json()["message"], query
+
+
+def test_the_runs_of_a_behavior_have_a_trend(http: httpx.Client) -> None:
+    """Of a behavior that always fails, there are no durations."""
+    found = got(http, "/past-runs/trend", behavior="goes wrong", last=5)
+    assert (found["known"], found["succeeded"], found["failed"], found["duration"]) == (1, 0, 1, None)
+    assert got(http, "/past-runs/trend", behavior="of nobody")["known"] == 0

@@ -61,6 +61,22 @@ def test_a_moment_has_the_latest_message_before_it(files: tuple[Path, Path], tim
         assert number == (expected[-1] if expected else None)
 
 
+@given(from_s=st.floats(-1.0, 7.0), length_s=st.floats(0.0, 7.0), most=st.integers(1, 400))
+def test_a_time_range_has_its_messages_and_the_one_before(
+    files: tuple[Path, Path], from_s: float, length_s: float, most: int
+) -> None:
+    """Of many, some that lie evenly among them."""
+    before = [number for at_s, number in ticks(files[0]) if at_s <= from_s + 5e-10]
+    inside = [number for at_s, number in ticks(files[0]) if from_s + 5e-10 < at_s <= from_s + length_s + 5e-10]
+    expected = [*before[-1:], *inside]
+    for path in files:
+        with IndexedRecording.open(path) as moments:
+            found = list(moments.between("bench/tick", from_s, from_s + length_s, most=most))
+        numbers = [msgspec.json.decode(data, type=Tick).number for _, data in found]
+        assert numbers == expected[:: max(1, -(-len(expected) // most))]
+        assert len(numbers) <= most
+
+
 def test_topics_and_span_are_reported(files: tuple[Path, Path]) -> None:
     for path in files:
         with IndexedRecording.open(path) as moments:

@@ -29,6 +29,13 @@ export interface AddNode {
   readonly on_edge?: TransitionRef | null
 }
 
+/** A visit of a node in the left run and the same one in the right run; null in the run that does not have it. */
+export interface AlignedVisit {
+  readonly path: string
+  readonly left: Visit | null
+  readonly right: Visit | null
+}
+
 /** An arm with the names of its skills. */
 export interface ArmInfo {
   readonly name: string
@@ -470,6 +477,16 @@ export interface CurvePoint {
   readonly interval: Interval | null
 }
 
+/** A value that the aligned visit `index` read on its entry or wrote, and that is another one in the right run. */
+export interface DataDifference {
+  readonly at: string
+  readonly left: string | null
+  readonly right: string | null
+  readonly index: number
+  readonly path: string
+  readonly kind: "read" | "wrote"
+}
+
 /** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run. */
 export interface DataSubscription {
   readonly k: "look"
@@ -502,6 +519,16 @@ export interface DeviceStop {
   readonly at_rest: boolean
 }
 
+/** Where two runs first differ: a `visit` that one does not have, another `outcome`, or another `cause` of it. `index` is that of the aligned visit. `left_s` and `right_s` are when it shows in each run, null where the run does not have the visit. */
+export interface Divergence {
+  readonly kind: "cause" | "outcome" | "visit"
+  readonly path: string
+  readonly index: number
+  readonly left_s: number | null
+  readonly right_s: number | null
+  readonly text: string
+}
+
 /** Graph and findings of a text; `graph` and `document` are None if it cannot be read. `checked` is False if the graph was built but the check has not run yet. */
 export interface DocumentAnalysis {
   readonly hash: string
@@ -527,6 +554,12 @@ export interface DocumentBody {
 export interface DocumentDiff {
   readonly changes: readonly NodeChange[]
   readonly layout_only: boolean
+}
+
+/** A document of the behavior with another text: the lines of a unified difference, at most `MAX_LINES`. */
+export interface DocumentDifference {
+  readonly name: string
+  readonly lines: readonly string[]
 }
 
 /** The declarations of the document itself, as written. */
@@ -603,6 +636,17 @@ export interface DragKeepAlive {
 export interface DuplicateNodes {
   readonly edit: "duplicate"
   readonly paths: readonly string[]
+}
+
+/** How long something took in `count` runs, in seconds: the median, the quartiles, the extremes. `last_s` is that of the latest run of all, however it ended; null where that run did not have it or has not ended. */
+export interface DurationSpread {
+  readonly count: number
+  readonly median_s: number
+  readonly lower_s: number
+  readonly upper_s: number
+  readonly least_s: number
+  readonly most_s: number
+  readonly last_s: number | null
 }
 
 /** A text after edits with its findings, and its graph, or the difference from the graph that the asker has. */
@@ -1286,7 +1330,7 @@ export interface MoveResultBody {
   readonly left: readonly string[]
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, whose kind is `path`; the id of a run. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run. */
 export interface NameHit {
   readonly kind: "behavior" | "entry" | "node" | "run"
   readonly id: string
@@ -1333,6 +1377,15 @@ export interface NodeChange {
 /** The node that a command addresses. */
 export interface NodeCommandBody {
   readonly path: string
+}
+
+/** How often a node was visited in each run, and how long all its visits together took. */
+export interface NodeDifference {
+  readonly path: string
+  readonly visits_left: number
+  readonly visits_right: number
+  readonly duration_left_s: number
+  readonly duration_right_s: number
 }
 
 /** A node was left for `target` without an outcome: by timeout, guard or on_error (`by`). */
@@ -1397,6 +1450,18 @@ export interface NodeRetried {
 export interface NodeTime {
   readonly visits: number
   readonly total_s: number
+}
+
+/** How long all visits of a node together took in a run. */
+export interface NodeTrend {
+  readonly count: number
+  readonly median_s: number
+  readonly lower_s: number
+  readonly upper_s: number
+  readonly least_s: number
+  readonly most_s: number
+  readonly last_s: number | null
+  readonly path: string
 }
 
 /** A normal distribution. */
@@ -1485,6 +1550,21 @@ export interface ParameterView {
   readonly name: string
   readonly schema: Dict<unknown>
   readonly required: boolean
+}
+
+/** A run in its journal; `status` is running, finished, stopped or errored. A run with status `running` has no end in the journal: it is active in another process, or its process died. `document` is the semantic hash of the behavior, `events` the number of events. */
+export interface PastRun {
+  readonly id: string
+  readonly behavior: string
+  readonly status: string
+  readonly outcome: string | null
+  readonly success: boolean
+  readonly cause: string
+  readonly started_at_s: number
+  readonly duration_s: number
+  readonly waits: string
+  readonly document: string
+  readonly events: number
 }
 
 /** One run of the journal. `running` means that it has no end: it is active, or its engine died. `recording` is the path of its recording, empty if there is none; `here` is true for a run of this server. */
@@ -1686,6 +1766,20 @@ export interface RatePair {
   readonly neither: number
 }
 
+/** Values of fields at the same times, seconds of the run; null before the first message. The time range is divided into cells of two times each: their values are the least and the most in the cell, in the order in which they were. So no peak is lost, however long the range is. */
+export interface RecordedCurves {
+  readonly times_s: readonly number[]
+  readonly fields: readonly string[]
+  readonly columns: readonly (readonly (number | null)[])[]
+}
+
+/** The topics of a recording with their numeric fields, and the time that it covers on the clock of the run. */
+export interface RecordedFields {
+  readonly topics: readonly TopicFields[]
+  readonly from_s: number
+  readonly until_s: number
+}
+
 /** A run of a sweep that was executed again and recorded to `recording`, a path in the project. */
 export interface RecordedTrial {
   readonly recording: string
@@ -1764,6 +1858,20 @@ export interface RobotLive {
   readonly path: PathLive | null
 }
 
+/** Two runs beside one another. `visits` are aligned, each container before what is inside; `divergence` is where the runs first differ, null where they do not. `settings` are parameters, inputs, seed and clock that differ. `left_out` and `data_left_out` count what is not listed. */
+export interface RunComparison {
+  readonly left: PastRun
+  readonly right: PastRun
+  readonly divergence: Divergence | null
+  readonly visits: readonly AlignedVisit[]
+  readonly left_out: number
+  readonly nodes: readonly NodeDifference[]
+  readonly settings: readonly ValueChange[]
+  readonly documents: readonly DocumentDifference[]
+  readonly data: readonly DataDifference[]
+  readonly data_left_out: number
+}
+
 /** The run ended; `status` is finished, stopped or errored. */
 export interface RunEnded {
   readonly event: "run_ended"
@@ -1827,6 +1935,19 @@ export interface RunSteppedBack {
   readonly went_wrong?: Cause | null
   readonly reason?: Cause | null
   readonly cause?: Cause | null
+}
+
+/** The last runs of a behavior, newest first, of `known` in the journal. Each is counted once: it `succeeded`, `failed`, was `stopped`, or has `not_ended`. Durations are those of runs that succeeded, `duration` is null and `nodes` empty where there is none. */
+export interface RunTrend {
+  readonly behavior: string
+  readonly runs: readonly PastRun[]
+  readonly known: number
+  readonly succeeded: number
+  readonly failed: number
+  readonly stopped: number
+  readonly not_ended: number
+  readonly duration: DurationSpread | null
+  readonly nodes: readonly NodeTrend[]
 }
 
 /** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run. `waits` is asks, paused or locked while it waits for a person. */
@@ -2565,6 +2686,13 @@ export interface UserdataWritten {
   readonly post?: string
 }
 
+/** One field that differs: its path `pose.xyz_m[0]`, and both values as short JSON, null where it is missing. */
+export interface ValueChange {
+  readonly at: string
+  readonly left: string | null
+  readonly right: string | null
+}
+
 /** One version of a document and when it was first seen; `by` is `editor`, or `file` for a change on disk. */
 export interface VersionBody {
   readonly hash: string
@@ -2580,6 +2708,20 @@ export interface VersionTextBody {
   readonly by: string
   readonly current: boolean
   readonly text: string
+}
+
+/** One activation of a node, with the causes of its failure, from the outermost. */
+export interface Visit {
+  readonly start_s: number
+  readonly end_s: number | null
+  readonly status: string
+  readonly outcome: string
+  readonly visit: number
+  readonly seq: number
+  readonly end_seq: number
+  readonly count: number
+  readonly path: string
+  readonly cause: string
 }
 
 /** From the client: watch this run (empty: the list of runs only); the response is a snapshot. */

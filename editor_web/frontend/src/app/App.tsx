@@ -40,6 +40,7 @@ export function App() {
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
   const isOfRuns = route.page === 'runs' || route.page === 'beside'
+  const isOfPast = route.page === 'past' || route.page === 'compare' || route.page === 'trend'
   const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
   const isSearching = useSearch((s) => s.isOpen)
   const isTouring = useTour((s) => s.isOn)
@@ -106,7 +107,7 @@ export function App() {
             <IconLayoutGrid size={15} aria-hidden />
             <span className="side-item-name">All active runs</span>
           </PageLink>
-          <PageLink href={PAST_HREF} className={sideItem(route.page === 'past')} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
+          <PageLink href={PAST_HREF} className={sideItem(isOfPast)} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
             <IconHistory size={15} aria-hidden />
             <span className="side-item-name">Past runs and recordings</span>
           </PageLink>

@@ -1,13 +1,14 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
 import { Button } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
 import { clearRefusal, showRefusal } from '../api/refusal'
 import { hasCellView } from '../api/session'
+import { runSubject } from '../api/timeline'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
@@ -40,6 +41,7 @@ import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
+import { useMomentAddress } from './useMomentAddress'
 import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 
 export interface BehaviorPageProps {
@@ -95,6 +97,12 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     setShown({ path })
   }
 
+  const runId = run?.id
+  useMomentAddress(
+    useMemo(() => (runId ? runSubject(runId) : undefined), [runId]),
+    selected,
+    show,
+  )
   const keys = useShortcuts({
     pause: commands.pauseOrResume,
     into: () => commands.step('into'),

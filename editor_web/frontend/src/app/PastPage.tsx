@@ -1,5 +1,7 @@
 /** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
-import { useEffect, useState } from 'react'
+import { Button } from '@mantine/core'
+import { IconGitCompare, IconTrendingUp } from '@tabler/icons-react'
+import { useEffect, useMemo, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
 import { hasCellView } from '../api/session'
 import type { OpenRunBody, SessionBody } from '../api/types'
@@ -17,8 +19,9 @@ import { RerunLine } from '../features/sweeps/RerunLine'
 import { PastLine } from '../features/timeline/PastLine'
 import { Breadcrumb } from './Breadcrumb'
 import { pastBodies } from './dock'
-import { sweepHref } from './route'
+import { compareHref, LAST_GOOD, sweepHref, trendHref } from './route'
 import { useFetched } from './useFetched'
+import { useMomentAddress } from './useMomentAddress'
 import { Wide } from './WorkSpace'
 
 export interface PastPageProps {
@@ -56,7 +59,9 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
   const isOpen = useTimeline((s) => s.opened !== undefined)
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
 
-  useEffect(() => openSubject(isRecording ? recordingSubject(id, run.id) : runSubject(id, true)), [id, isRecording, run.id])
+  const subject = useMemo(() => (isRecording ? recordingSubject(id, run.id) : runSubject(id, true)), [id, isRecording, run.id])
+  useEffect(() => openSubject(subject), [subject])
+  useMomentAddress(subject, selected, show)
 
   // What stands in the page asks for the timeline of what is opened.
   if (!isOpen) return null
@@ -101,6 +106,12 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
           </span>
         )}
         <span className="spacer" />
+        <Button variant="default" size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} onClick={() => onOpen(compareHref(LAST_GOOD, id))}>
+          Compare with the last good run
+        </Button>
+        <Button variant="default" size="xs" leftSection={<IconTrendingUp size={15} aria-hidden />} onClick={() => onOpen(trendHref(run.behavior))}>
+          Last runs
+        </Button>
         <button type="button" className="command" onClick={onAll}>
           <span className="command-label">All past runs</span>
         </button>

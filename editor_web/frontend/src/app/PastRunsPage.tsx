@@ -2,14 +2,19 @@
 import { Panel } from '../components/Panel'
 import { PastRuns } from '../features/past/PastRuns'
 import { Recordings } from '../features/past/Recordings'
-import { recordingHref, runHref } from './route'
+import { compareHref, LAST_GOOD, recordingHref, runHref, trendHref } from './route'
 
 export function PastRunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   return (
     <div className="past-page">
       <h1 className="visually-hidden">Past runs</h1>
       <Panel title="Past runs">
-        <PastRuns href={runHref} onOpen={(run) => onOpen(runHref(run))} />
+        <PastRuns
+          href={runHref}
+          trendHref={trendHref}
+          onOpen={onOpen}
+          onCompare={(left, right) => onOpen(compareHref(left ?? LAST_GOOD, right))}
+        />
       </Panel>
       <Panel title="Recordings">
         <Recordings href={recordingHref} onOpen={(path) => onOpen(recordingHref(path))} />

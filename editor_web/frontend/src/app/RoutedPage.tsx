@@ -17,6 +17,8 @@ const PastPage = lazyView(async () => (await import('./PastPage')).PastPage)
 const PastRunsPage = lazyView(async () => (await import('./PastRunsPage')).PastRunsPage)
 const RunsPage = lazyView(async () => (await import('./RunsPage')).RunsPage)
 const BesidePage = lazyView(async () => (await import('./SideBySidePage')).SideBySidePage)
+const ComparePage = lazyView(async () => (await import('./ComparePage')).ComparePage)
+const TrendPage = lazyView(async () => (await import('./TrendPage')).TrendPage)
 const SweepsPage = lazyView(async () => (await import('./SweepsPage')).SweepsPage)
 const SweepPage = lazyView(async () => (await import('./SweepPage')).SweepPage)
 const EditorPage = lazyView(async () => (await import('../features/editor/EditorPage')).EditorPage)
@@ -47,6 +49,10 @@ export function RoutedPage(props: RoutedPageProps) {
       return <RunsPage onOpen={onOpen} />
     case 'beside':
       return <BesidePage left={route.left} right={route.right} isNarrow={isNarrow} onOpen={onOpen} />
+    case 'compare':
+      return <ComparePage left={route.left} right={route.right} isNarrow={isNarrow} onOpen={onOpen} />
+    case 'trend':
+      return <TrendPage key={route.behavior} behavior={route.behavior} onOpen={onOpen} />
     case 'sweeps':
       return <SweepsPage onOpen={onOpen} />
     case 'sweep':

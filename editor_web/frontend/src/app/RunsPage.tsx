@@ -1,5 +1,5 @@
 /** All active runs at once, each with its commands; those that ended last; and two of them to be compared. */
-import { IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
+import { IconGitCompare, IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
@@ -18,12 +18,13 @@ import { RunCard } from '../features/runs/RunCard'
 import { nameOf } from '../features/runs/RunList'
 import '../features/runs/runs.css'
 import { InterruptedHere } from './InterruptedHere'
-import { sideBySideHref, runHref } from './route'
+import { compareHref, sideBySideHref, runHref } from './route'
 import { useBehaviorOf } from './useBehaviorOf'
 
 /** So many of those that are over are listed. */
 const ENDED = 8
 const CHOOSE = 'tick Compare at two runs first'
+const CHOOSE_ENDED = 'tick Compare at two runs that have ended'
 
 export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   const runs = useLive((s) => s.runs)
@@ -33,6 +34,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   const active = runs.filter(isActive)
   const ended = runs.filter((run) => !isActive(run)).slice(0, ENDED)
   const pair = pairOf(chosen.filter((id) => runs.some((run) => run.id === id)), active)
+  const endedPair = pair?.every((id) => ended.some((run) => run.id === id)) ? olderFirst(pair, ended) : undefined
   const asking = active.filter((run) => run.waits === 'asks').length
 
   /** The two that were chosen last. */
@@ -58,6 +60,14 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
           obstacle={pair ? undefined : CHOOSE}
           onObstacle={() => showRefusal('Side by side', CHOOSE)}
           onPress={() => pair && onOpen(sideBySideHref(...pair))}
+        />
+        <CommandButton
+          label="Compare"
+          hint="Visits, durations and values of two runs that have ended"
+          icon={<IconGitCompare size={16} aria-hidden />}
+          obstacle={endedPair ? undefined : CHOOSE_ENDED}
+          onObstacle={() => showRefusal('Compare', CHOOSE_ENDED)}
+          onPress={() => endedPair && onOpen(compareHref(...endedPair))}
         />
       </header>
       <RefusalLine />
@@ -134,6 +144,11 @@ function useLeases(): readonly LeaseMetrics[] {
 function pairOf(chosen: readonly string[], active: readonly RunView[]): readonly [string, string] | undefined {
   const [left, right] = chosen.length > 0 ? chosen : active.length === 2 ? active.map((run) => run.id) : []
   return left !== undefined && right !== undefined ? [left, right] : undefined
+}
+
+function olderFirst([one, other]: readonly [string, string], runs: readonly RunView[]): readonly [string, string] {
+  const startS = (id: string) => runs.find((run) => run.id === id)?.started_at_s ?? 0
+  return startS(one) <= startS(other) ? [one, other] : [other, one]
 }
 
 function wordsOf(active: number, asking: number): string {

@@ -30,7 +30,7 @@ const DOCK_TABS: readonly DockTab[] = [
   later('Timeline', async () => (await import('../features/timeline/Timeline')).Timeline),
   later('Failure', async () => (await import('../features/timeline/FailureView')).FailureView),
   later('Data', async () => (await import('../features/data/Data')).Data),
-  later('Plots', async () => (await import('../features/plots/Plots')).Plots),
+  later('Plots', async () => (await import('./RunPlots')).RunPlots),
   later('Bus', async () => (await import('../features/bus/Bus')).Bus),
 ]
 
@@ -42,6 +42,6 @@ export function dockBodies(props: DockProps): Record<string, ReactNode> {
 /** Those that tell of the past, the most telling one first. */
 export function pastBodies(props: DockProps, isFailed: boolean): Record<string, ReactNode> {
   const bodies = dockBodies(props)
-  const names = isFailed ? ['Failure', 'Timeline', 'Log', 'Data'] : ['Timeline', 'Log', 'Data']
+  const names = isFailed ? ['Failure', 'Timeline', 'Log', 'Data', 'Plots'] : ['Timeline', 'Log', 'Data', 'Plots']
   return Object.fromEntries(names.map((name) => [name, bodies[name]]))
 }

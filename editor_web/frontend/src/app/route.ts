@@ -1,5 +1,6 @@
 /** Which page an address means, and going to another one without loading. */
 import { useSyncExternalStore } from 'react'
+import { momentText } from '../document/moment'
 
 export type Route =
   | { readonly page: 'home' }
@@ -7,6 +8,8 @@ export type Route =
   | { readonly page: 'run'; readonly id: string }
   | { readonly page: 'runs' }
   | { readonly page: 'beside'; readonly left: string; readonly right: string }
+  | { readonly page: 'compare'; readonly left: string; readonly right: string }
+  | { readonly page: 'trend'; readonly behavior: string }
   | { readonly page: 'edit'; readonly id: string }
   | { readonly page: 'past' }
   | { readonly page: 'teach' }
@@ -21,6 +24,8 @@ export function routeOf(pathname: string): Route {
   if (page === 'behaviors' && id) return { page: 'behavior', id }
   if (page === 'runs') return id ? { page: 'run', id } : { page: 'runs' }
   if (page === 'beside') return { page: 'beside', left: decoded(rest[0] ?? ''), right: decoded(rest[1] ?? '') }
+  if (page === 'compare') return { page: 'compare', left: decoded(rest[0] ?? ''), right: decoded(rest[1] ?? '') }
+  if (page === 'trends' && id) return { page: 'trend', behavior: id }
   if (page === 'edit' && id) return { page: 'edit', id }
   if (page === 'past') return { page: 'past' }
   if (page === 'teach') return { page: 'teach' }
@@ -65,6 +70,31 @@ export function recordingHref(path: string): string {
   return `/recordings/${path.split('/').map(encodeURIComponent).join('/')}`
 }
 
+/** In the place of the left run: the last run of the same behavior before the right one that succeeded. */
+export const LAST_GOOD = 'last-good'
+
+/** Two past runs compared, at a visit where one is given. */
+export function compareHref(left: string, right: string, place = ''): string {
+  return `/compare/${encodeURIComponent(left)}/${encodeURIComponent(right)}${place ? `#${place}` : ''}`
+}
+
+/** The last runs of a behavior, by its name. */
+export function trendHref(behavior: string): string {
+  return `/trends/${behavior.split('/').map(encodeURIComponent).join('/')}`
+}
+
+/** Whether a name is the path of a recording, and not the id of a run. */
+export function isRecordingName(name: string): boolean {
+  return /\.mcap(\.part)?$/.test(name)
+}
+
+/** A run, or a recording by its path, at a time of it and with a node selected where these are given. */
+export function recordedHref(name: string, timeS?: number, path?: string): string {
+  const page = isRecordingName(name) ? recordingHref(name) : runHref(name)
+  const at = momentText(timeS, path)
+  return at ? `${page}#${at}` : page
+}
+
 export const SWEEPS_HREF = '/sweeps'
 
 /** A sweep, at one of its runs where one is given. */
@@ -76,6 +106,12 @@ const listeners = new Set<() => void>()
 
 export function goTo(href: string): void {
   if (href !== location.pathname) history.pushState(null, '', href)
+  listeners.forEach((listener) => listener())
+}
+
+/** The same page under another address. */
+export function replaceWith(href: string): void {
+  history.replaceState(null, '', href)
   listeners.forEach((listener) => listener())
 }
 

@@ -86,7 +86,7 @@ export class Curves {
   }
 }
 
-/** All rows as CSV: seconds since 1970 on the server's clock, then a column for each curve. */
+/** All rows as CSV: their times in seconds, then a column for each curve. */
 export function csvOf(curves: Curves, headings: Dict<string>): string {
   const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`
   const lines = [['time_s', ...curves.names.map((name) => quoted(lookup(headings, name) ?? name))].join(',')]

@@ -9,6 +9,7 @@ import { PastRuns } from './PastRuns'
 import { Recordings } from './Recordings'
 
 const opened = vi.fn()
+const compared = vi.fn()
 const queries: Record<string, string>[] = []
 
 function past(told: Partial<PastRunBody>): PastRunBody {
@@ -37,12 +38,13 @@ const RUNS = [past({ recording: 'r1.mcap' }), past({ id: 'r2', status: 'running'
 async function at(runs: readonly PastRunBody[], total = runs.length) {
   queries.length = 0
   opened.mockReset()
+  compared.mockReset()
   server().on('GET /past-runs', ({ query }: { query: URLSearchParams }) => {
     queries.push(Object.fromEntries(query))
     return { runs, total, counts: { all: total, failed: 1 } }
   })
   live()
-  const user = show(<PastRuns href={(id) => `/runs/${id}`} onOpen={opened} />)
+  const user = show(<PastRuns href={(id) => `/runs/${id}`} trendHref={(name) => `/trends/${name}`} onOpen={opened} onCompare={compared} />)
   await waitFor(() => expect(queries).toHaveLength(1))
   return user
 }
@@ -56,7 +58,7 @@ it('lists the runs with how they ended, and opens one', async () => {
   expect(bad).toHaveTextContent('no contact')
   expect(screen.getByRole('button', { name: 'Failed 1' })).toHaveAttribute('aria-pressed', 'false')
   await user.click(screen.getAllByRole('link')[2] ?? document.body)
-  expect(opened.mock.calls).toEqual([['r3']])
+  expect(opened.mock.calls).toEqual([['/runs/r3']])
 })
 
 it('asks for words, days and endings together', async () => {
@@ -84,7 +86,7 @@ it('shows more of many, up to as many as can be looked through', async () => {
 it('says why the journal cannot be read', async () => {
   server().on('GET /past-runs', new Refusal(503, { message: 'the journal is locked', hint: 'end the other server' }))
   live()
-  show(<PastRuns href={(id) => id} onOpen={opened} />)
+  show(<PastRuns href={(id) => id} trendHref={(name) => name} onOpen={opened} onCompare={compared} />)
   expect(await screen.findByRole('alert')).toHaveTextContent('the journal is locked – end the other server')
 })
 
@@ -106,4 +108,32 @@ it('says how recordings come to be where there are none', async () => {
   server().on('GET /recordings', [])
   show(<Recordings href={(path) => path} onOpen={opened} />)
   expect(await screen.findByText('No recordings')).toBeVisible()
+})
+
+it('compares the two that were ticked last, the older one on the left', async () => {
+  const user = await at([past({}), past({ id: 'r2', started_at_s: 900 }), past({ id: 'r3', started_at_s: 950 })])
+  const boxes = await screen.findAllByRole('checkbox')
+  for (const box of boxes) await user.click(box)
+  expect(boxes[0]).not.toBeChecked()
+  await user.click(screen.getByRole('button', { name: 'Compare' }))
+  expect(compared.mock.calls).toEqual([['r2', 'r3']])
+  await user.click(screen.getByRole('button', { name: 'Select none' }))
+  expect(screen.queryByRole('group', { name: 'Selected runs' })).toBeNull()
+})
+
+it('waits for a second one', async () => {
+  const user = await at(RUNS)
+  await user.click((await screen.findAllByRole('checkbox'))[0] ?? document.body)
+  expect(screen.getByRole('button', { name: 'Compare' })).toBeDisabled()
+  expect(screen.getByText('Select a second run.')).toBeVisible()
+})
+
+it('compares one with the last good run, and leads to the last runs of its behavior', async () => {
+  const user = await at(RUNS)
+  await user.click((await screen.findAllByRole('button', { name: /^More of shift/ }))[2] ?? document.body)
+  await user.click(await screen.findByRole('menuitem', { name: 'Compare with the last good run' }))
+  expect(compared.mock.calls).toEqual([[undefined, 'r3']])
+  await user.click(screen.getAllByRole('button', { name: /^More of shift/ })[2] ?? document.body)
+  await user.click(await screen.findByRole('menuitem', { name: 'Last runs of shift' }))
+  expect(opened.mock.calls).toEqual([['/trends/shift']])
 })

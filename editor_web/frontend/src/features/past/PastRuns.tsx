@@ -1,7 +1,7 @@
 /** The runs of the journal: found by words, by how they ended, by the day; failures are one press away. */
 import './past.css'
-import { CloseButton, TextInput } from '@mantine/core'
-import { IconHistory, IconSearch } from '@tabler/icons-react'
+import { ActionIcon, Button, Checkbox, CloseButton, Group, Menu, TextInput } from '@mantine/core'
+import { IconDots, IconGitCompare, IconHistory, IconSearch } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
@@ -23,17 +23,29 @@ const PAGE = 50
 
 export interface PastRunsProps {
   readonly href: (run: string) => string
-  readonly onOpen: (run: string) => void
+  /** The page of the last runs of a behavior. */
+  readonly trendHref: (behavior: string) => string
+  readonly onOpen: (href: string) => void
+  /** Compare two runs; without a left one, with the last good run. */
+  readonly onCompare: (left: string | undefined, right: string) => void
 }
 
-export function PastRuns({ href, onOpen }: PastRunsProps) {
+export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) {
   const [text, setText] = useState('')
   const [kind, setKind] = useState<string>('all')
   const [since, setSince] = useState('')
   const [until, setUntil] = useState('')
   const [limit, setLimit] = useState(PAGE)
+  const [chosen, setChosen] = useState<readonly PastRunBody[]>([])
   const { found, problem } = useFound({ text, kind, sinceS: dayStartS(since), untilS: dayEndS(until), limit })
   const isFiltered = text !== '' || kind !== 'all' || since !== '' || until !== ''
+
+  /** The two that were chosen last. */
+  function choose(run: PastRunBody, isChosen: boolean): void {
+    const others = chosen.filter((each) => each.id !== run.id)
+    setChosen(isChosen ? [...others, run].slice(-2) : others)
+  }
+
   return (
     <div className="past-runs">
       <div className="past-filters">
@@ -61,6 +73,7 @@ export function PastRuns({ href, onOpen }: PastRunsProps) {
           </button>
         ))}
       </div>
+      <CompareChosen chosen={chosen} onCompare={onCompare} onNone={() => setChosen([])} />
       {problem && (
         <p className="past-problem" role="alert">
           {problem}
@@ -73,7 +86,26 @@ export function PastRuns({ href, onOpen }: PastRunsProps) {
       )}
       <ul className="plain-list" aria-label="Past runs">
         {found?.runs.map((run) => (
-          <Item key={run.id} run={run} href={href(run.id)} onOpen={() => onOpen(run.id)} />
+          <li key={run.id} className="past-row">
+            <Checkbox
+              size="xs"
+              aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
+              checked={chosen.some((each) => each.id === run.id)}
+              onChange={(event) => choose(run, event.currentTarget.checked)}
+            />
+            <Item run={run} href={href(run.id)} onOpen={() => onOpen(href(run.id))} />
+            <Menu position="bottom-end" withinPortal>
+              <Menu.Target>
+                <ActionIcon variant="subtle" color="gray" size="sm" aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}>
+                  <IconDots size={15} />
+                </ActionIcon>
+              </Menu.Target>
+              <Menu.Dropdown>
+                <Menu.Item onClick={() => onCompare(undefined, run.id)}>Compare with the last good run</Menu.Item>
+                <Menu.Item onClick={() => onOpen(trendHref(run.behavior))}>Last runs of {run.behavior}</Menu.Item>
+              </Menu.Dropdown>
+            </Menu>
+          </li>
         ))}
       </ul>
       {found && found.total > found.runs.length && (
@@ -87,7 +119,6 @@ export function PastRuns({ href, onOpen }: PastRunsProps) {
 
 function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: () => void }) {
   return (
-    <li>
       <a
         className="past-item"
         href={href}
@@ -105,7 +136,28 @@ function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: (
         <span className="quiet mono past-item-id">{run.id}</span>
         {run.cause && <span className={`past-item-cause${run.failed ? '' : ' quiet'}`}>{run.cause}</span>}
       </a>
-    </li>
+  )
+}
+
+interface CompareChosenProps extends Pick<PastRunsProps, 'onCompare'> {
+  readonly chosen: readonly PastRunBody[]
+  readonly onNone: () => void
+}
+
+/** What can be done with the runs that are ticked; the older one is the left one. */
+function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
+  const [left, right] = chosen.toSorted((one, other) => one.started_at_s - other.started_at_s)
+  if (!left) return null
+  return (
+    <Group gap="sm" my="xs" role="group" aria-label="Selected runs">
+      <Button size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} disabled={!right} onClick={() => right && onCompare(left.id, right.id)}>
+        Compare
+      </Button>
+      <span className="quiet">{right ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}` : 'Select a second run.'}</span>
+      <Button size="xs" variant="subtle" color="gray" onClick={onNone}>
+        Select none
+      </Button>
+    </Group>
   )
 }
 

@@ -6,7 +6,7 @@ import { show } from '../../../testing/page'
 import { Curves } from '../../document/curves'
 import { FieldChooser } from './FieldChooser'
 import { Legend } from './Legend'
-import { MOST_CURVES } from './usePlot'
+import { MOST_CURVES } from './keptFields'
 
 const JOINTS = Array.from({ length: 3 }, (_, at) => ({ path: `position_rad.${at}`, label: `position_rad ${at + 1}`, unit: 'rad' }))
 const TOPICS = [

@@ -3,7 +3,7 @@ import { Checkbox, CloseButton, TextInput } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useState } from 'react'
 import { idOf, rowsOf, shownTopics, type FieldRow } from './fields'
-import { MOST_CURVES } from './usePlot'
+import { MOST_CURVES } from './keptFields'
 import type { TopicFields } from '../../api/types'
 
 interface FieldChooserProps {

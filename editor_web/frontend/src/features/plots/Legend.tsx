@@ -16,7 +16,7 @@ interface LegendProps {
   readonly curves: Curves
   readonly atS: number | undefined
   readonly endS: number | undefined
-  readonly onRemove: (id: string) => void
+  readonly onRemove?: (id: string) => void
 }
 
 export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
@@ -35,9 +35,11 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
             <span className="plot-value">
               {valueText(value)} {entry.unit}
             </span>
-            <button type="button" className="plot-remove" aria-label={`Take away ${entry.label} of ${entry.topic}`} onClick={() => onRemove(entry.id)}>
-              <IconX size={12} aria-hidden />
-            </button>
+            {onRemove && (
+              <button type="button" className="plot-remove" aria-label={`Take away ${entry.label} of ${entry.topic}`} onClick={() => onRemove(entry.id)}>
+                <IconX size={12} aria-hidden />
+              </button>
+            )}
           </li>
         )
       })}

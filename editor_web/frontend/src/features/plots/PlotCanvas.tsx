@@ -96,7 +96,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
 }
 
 /** The pen of a canvas in CSS pixels, sharp on every screen. */
-function sized(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
+export function sized(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
   const scale = window.devicePixelRatio || 1
   const [wide, high] = [Math.round(width * scale), Math.round(height * scale)]
   if (canvas.width !== wide || canvas.height !== high) {
@@ -108,7 +108,7 @@ function sized(canvas: HTMLCanvasElement, width: number, height: number): Canvas
   return pen
 }
 
-function lookOf(element: HTMLElement): Look {
+export function lookOf(element: HTMLElement): Look {
   const style = getComputedStyle(element)
   const named = (name: string) => style.getPropertyValue(name).trim()
   return {

@@ -10,6 +10,7 @@ import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
 import { csvOf } from '../../document/curves'
 import { wallTime } from '../../document/time'
+import { saveBlob } from './exporting'
 import { coloured, describe } from './fields'
 import { FieldChooser } from './FieldChooser'
 import { Legend } from './Legend'
@@ -36,11 +37,7 @@ export function Plots() {
 
   function save(): void {
     const headings = Object.fromEntries(entries.map(({ id, topic, label, unit }) => [id, `${topic} ${label}${unit && ` (${unit})`}`]))
-    const link = document.createElement('a')
-    link.href = URL.createObjectURL(new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }))
-    link.download = `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`
-    link.click()
-    URL.revokeObjectURL(link.href)
+    saveBlob(new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }), `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`)
   }
 
   const isPaused = plot.pausedS !== undefined

@@ -1,6 +1,7 @@
 /** Draws curves over time: a lane for each unit, all over the same time axis. */
 import { agoText, marksOf, rangeAround } from '../../document/axis'
 import type { Curves } from '../../document/curves'
+import { ticks } from '../../document/timeline'
 import { numeral } from '../../document/values'
 
 export interface Curve {
@@ -16,6 +17,8 @@ export interface View {
   readonly spanS: number
   /** The time that is pointed at. */
   readonly atS: number | undefined
+  /** Times are those of a recorded run, which has no gaps; else they are told as so long ago. */
+  readonly isRecorded?: boolean
 }
 
 export interface Look {
@@ -89,22 +92,22 @@ function lane(pen: CanvasRenderingContext2D, area: Area, curves: Curves, shown: 
   for (const curve of shown) {
     pen.strokeStyle = look.colors[curve.color % look.colors.length] ?? look.text
     pen.setLineDash(curve.color >= look.colors.length ? [5, 3] : [])
-    line(pen, curves, curve.id, first, last, (at) => xOf(at, area, view), y)
+    line(pen, curves, curve.id, [first, last], view.isRecorded ? Infinity : GAP_S, (at) => xOf(at, area, view), y)
   }
   pen.restore()
 }
 
-function line(pen: CanvasRenderingContext2D, curves: Curves, id: string, first: number, last: number, x: (at: number) => number, y: (value: number) => number): void {
+function line(pen: CanvasRenderingContext2D, curves: Curves, id: string, [first, last]: readonly [number, number], gapS: number, x: (at: number) => number, y: (value: number) => number): void {
   pen.beginPath()
-  let before = -Infinity
+  let before: number | undefined
   for (let row = first; row <= last; row += 1) {
     const value = curves.value(id, row)
     const at = curves.time(row)
     if (Number.isNaN(value)) {
-      before = -Infinity
+      before = undefined
       continue
     }
-    if (at - before > GAP_S) pen.moveTo(x(at), y(value))
+    if (before === undefined || at - before > gapS) pen.moveTo(x(at), y(value))
     else pen.lineTo(x(at), y(value))
     before = at
   }
@@ -129,19 +132,28 @@ function timeAxis(pen: CanvasRenderingContext2D, area: Area, view: View, look: L
   pen.strokeStyle = look.line
   pen.lineWidth = 1
   pen.textBaseline = 'top'
-  for (const mark of marksOf(0, view.spanS, Math.max(2, Math.floor((area.right - area.left) / 90)))) {
-    const x = Math.round(xOf(view.endS - mark, area, view)) + 0.5
+  for (const { timeS, label, isLast } of timeMarks(area, view)) {
+    const x = Math.round(xOf(timeS, area, view)) + 0.5
     pen.beginPath()
     pen.moveTo(x, area.bottom)
     pen.lineTo(x, area.bottom + 4)
     pen.stroke()
-    pen.textAlign = mark === 0 ? 'right' : 'center'
-    pen.fillText(agoText(mark), x, area.bottom + 6)
+    pen.textAlign = isLast ? 'right' : 'center'
+    pen.fillText(label, x, area.bottom + 6)
   }
   pen.beginPath()
   pen.moveTo(area.left, area.bottom + 0.5)
   pen.lineTo(area.right, area.bottom + 0.5)
   pen.stroke()
+}
+
+function timeMarks(area: Area, view: View): readonly { readonly timeS: number; readonly label: string; readonly isLast: boolean }[] {
+  const width = area.right - area.left
+  if (view.isRecorded) {
+    const shown = { fromS: view.endS - view.spanS, untilS: view.endS }
+    return ticks(shown, width).map(({ timeS, label }) => ({ timeS, label, isLast: width - xOf(timeS, { left: 0, right: width }, view) < 20 }))
+  }
+  return marksOf(0, view.spanS, Math.max(2, Math.floor(width / 90))).map((ago) => ({ timeS: view.endS - ago, label: agoText(ago), isLast: ago === 0 }))
 }
 
 function cursor(pen: CanvasRenderingContext2D, area: Area, atS: number, view: View, look: Look): void {

@@ -2,12 +2,11 @@
 import { useCallback, useEffect, useRef, useState } from 'react'
 import { useData } from '../../api/data'
 import { Curves } from '../../document/curves'
+import { keepFields, keptFields, MOST_CURVES } from './keptFields'
 
 /** Two minutes at twenty rows a second. */
 const ROWS = 2400
-export const MOST_CURVES = 32
 export const SPANS_S = [10, 30, 120] as const
-const KEPT = 'flexcell.plots'
 
 export interface Plot {
   readonly chosen: readonly string[]
@@ -28,7 +27,7 @@ export interface Plot {
 }
 
 export function usePlot(isShown: boolean): Plot {
-  const [chosen, setChosen] = useState<readonly string[]>(kept)
+  const [chosen, setChosen] = useState<readonly string[]>(keptFields)
   const [live] = useState(() => new Curves(ROWS))
   const [frozen, setFrozen] = useState<{ readonly curves: Curves; readonly endS: number }>()
   const [spanS, setSpanS] = useState<number>(30)
@@ -42,7 +41,7 @@ export function usePlot(isShown: boolean): Plot {
     number.current += 1
     live.choose(chosen)
     setAsked({ number: number.current, fields: chosen })
-    localStorage.setItem(KEPT, JSON.stringify(chosen))
+    keepFields(chosen)
   }, [chosen, live])
 
   useData(isShown && asked.number > 0 && asked.fields.length > 0 ? asked : undefined, (frame) => {
@@ -73,15 +72,5 @@ export function usePlot(isShown: boolean): Plot {
     zoom: (chosenS) => setSpanS(Math.min(120, Math.max(1, chosenS))),
     revision,
     dropped,
-  }
-}
-
-function kept(): readonly string[] {
-  try {
-    const fields: unknown = JSON.parse(localStorage.getItem(KEPT) ?? '[]')
-    return Array.isArray(fields) ? fields.filter((each): each is string => typeof each === 'string').slice(0, MOST_CURVES) : []
-  } catch {
-    // What somebody else has written there is no reason not to start.
-    return []
   }
 }

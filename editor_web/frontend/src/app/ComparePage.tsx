@@ -1,0 +1,141 @@
+/** Two past runs compared: aligned visits, the first divergence, and what differs of one visit or of the whole. */
+import { ActionIcon, Tabs, Tooltip } from '@mantine/core'
+import { IconArrowsExchange } from '@tabler/icons-react'
+import { Suspense, useEffect, useState } from 'react'
+import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { comparisonApi } from '../api/comparison'
+import type { RunComparison } from '../api/types'
+import { Empty } from '../components/Empty'
+import { PageLink } from '../components/PageLink'
+import { lazyView } from '../components/lazyView'
+import { ViewBoundary } from '../components/ViewBoundary'
+import { dataOf, indexAt, placeOf, type Side } from '../document/comparison'
+import { ComparedRun } from '../features/comparison/ComparedRun'
+import styles from '../features/comparison/comparison.module.css'
+import { FirstDivergence } from '../features/comparison/FirstDivergence'
+import { NodeDurations } from '../features/comparison/NodeDurations'
+import { Settings } from '../features/comparison/Settings'
+import { VisitDetails } from '../features/comparison/VisitDetails'
+import { VisitTable } from '../features/comparison/VisitTable'
+import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
+import { useFetched } from './useFetched'
+
+const ComparedCurves = lazyView(async () => (await import('./ComparedCurves')).ComparedCurves)
+
+export interface ComparePageProps {
+  /** Ids of runs, or paths of recordings; the left one may be the last good run. */
+  readonly left: string
+  readonly right: string
+  readonly isNarrow: boolean
+  readonly onOpen: (href: string) => void
+}
+
+export function ComparePage(props: ComparePageProps) {
+  const { left, right, onOpen } = props
+  const { value, problem } = useFetched(`${left} ${right}`, () => comparisonApi.compare(left === LAST_GOOD ? '' : left, right))
+  const good = left === LAST_GOOD ? value?.left.id : undefined
+  useEffect(() => {
+    // The last good run is another one tomorrow: the address names the one that is shown.
+    if (good !== undefined) replaceWith(compareHref(good, right))
+  }, [good, right])
+  if (problem) {
+    return (
+      <Empty title="These runs cannot be compared">
+        {problem}
+        <br />
+        <PageLink href={PAST_HREF} onOpen={() => onOpen(PAST_HREF)}>
+          All past runs
+        </PageLink>
+      </Empty>
+    )
+  }
+  if (!value || left === LAST_GOOD) return <div className="page-wait" role="status" aria-label="Loading" />
+  return <Compared key={`${left} ${right}`} {...props} found={value} />
+}
+
+function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & { readonly found: RunComparison }) {
+  const [selected, setSelected] = useState<number | undefined>(() => indexAt(found.visits, placeOfAddress()) ?? found.divergence?.index)
+  const visit = selected === undefined ? undefined : found.visits[selected]
+  const place = visit && placeOf(visit)
+
+  useEffect(() => {
+    history.replaceState(null, '', compareHref(left, right, place))
+  }, [left, right, place])
+  useEffect(() => {
+    const listen = () => setSelected(indexAt(found.visits, placeOfAddress()))
+    addEventListener('hashchange', listen)
+    return () => removeEventListener('hashchange', listen)
+  }, [found])
+
+  const hrefAt = (side: Side, timeS?: number, path?: string) => recordedHref(side === 'left' ? left : right, timeS, path)
+  const swapped = compareHref(right, left)
+  const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
+  const details = (
+    <Tabs defaultValue="visit" keepMounted={false} className={styles.tabs ?? ''}>
+      <Tabs.List>
+        <Tabs.Tab value="visit">Visit</Tabs.Tab>
+        <Tabs.Tab value="durations">Durations</Tabs.Tab>
+        <Tabs.Tab value="settings">
+          Settings {found.settings.length + found.documents.length > 0 && <span className="tab-count">{found.settings.length + found.documents.length}</span>}
+        </Tabs.Tab>
+        <Tabs.Tab value="curves">Curves</Tabs.Tab>
+      </Tabs.List>
+      <Tabs.Panel value="visit">
+        {visit && selected !== undefined ? (
+          <VisitDetails visit={visit} data={dataOf(found.data, selected)} href={hrefAt} onOpen={onOpen} />
+        ) : (
+          <Empty title="No visit is selected">Select one in the table.</Empty>
+        )}
+      </Tabs.Panel>
+      <Tabs.Panel value="durations">
+        <NodeDurations nodes={found.nodes} />
+      </Tabs.Panel>
+      <Tabs.Panel value="settings">
+        <Settings settings={found.settings} documents={found.documents} />
+      </Tabs.Panel>
+      <Tabs.Panel value="curves" className={styles.curves ?? ''}>
+        <Suspense fallback={null}>
+          <ComparedCurves left={left} right={right} found={found} visit={visit} />
+        </Suspense>
+      </Tabs.Panel>
+    </Tabs>
+  )
+  return (
+    <div className={styles.page}>
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>Compare runs</h1>
+        </div>
+        <span className="spacer" />
+        <Tooltip label="Swap left and right">
+          <ActionIcon variant="subtle" color="gray" aria-label="Swap left and right" onClick={() => onOpen(swapped)}>
+            <IconArrowsExchange size={18} />
+          </ActionIcon>
+        </Tooltip>
+      </header>
+      <div className={styles.runs}>
+        <ComparedRun side="left" run={found.left} href={hrefAt('left')} onOpen={() => onOpen(hrefAt('left'))} />
+        <ComparedRun side="right" run={found.right} href={hrefAt('right')} onOpen={() => onOpen(hrefAt('right'))} />
+      </div>
+      <FirstDivergence divergence={found.divergence} onShow={() => setSelected(found.divergence?.index)} />
+      <Group orientation={isNarrow ? 'vertical' : 'horizontal'} className="work-space">
+        <Pane id="visits" defaultSize="58%" minSize="25%">
+          <ViewBoundary name="Visits">{table}</ViewBoundary>
+        </Pane>
+        <Separator className={`splitter ${isNarrow ? 'is-flat' : ''}`} aria-label="Size of the table of visits" />
+        <Pane id="details" defaultSize="42%" minSize="25%">
+          <ViewBoundary name="Details">{details}</ViewBoundary>
+        </Pane>
+      </Group>
+    </div>
+  )
+}
+
+/** The visit in the address, `#root/grasp@2`. */
+function placeOfAddress(): string {
+  try {
+    return decodeURIComponent(location.hash.slice(1))
+  } catch {
+    return ''
+  }
+}

@@ -1,0 +1,41 @@
+/** The last runs of a behavior, newest first: a bar as long as the run took, in the colour of its end. */
+import { Checkbox } from '@mantine/core'
+import type { PastRun } from '../../api/types'
+import { PageLink } from '../../components/PageLink'
+import { StatusBadge } from '../../components/StatusBadge'
+import { duration, wallTime } from '../../document/time'
+import styles from './trend.module.css'
+
+interface RunBarsProps {
+  readonly runs: readonly PastRun[]
+  readonly href: (run: string) => string
+  readonly onOpen: (run: string) => void
+  readonly chosen: readonly string[]
+  readonly onChoose: (run: string, isChosen: boolean) => void
+}
+
+export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) {
+  const longestS = Math.max(...runs.map((run) => run.duration_s), 1e-9)
+  return (
+    <ul className={`plain-list ${styles.runs}`} aria-label="Last runs">
+      {runs.map((run) => (
+        <li key={run.id} className={styles.run}>
+          <Checkbox size="xs" aria-label={`Compare the run of ${wallTime(run.started_at_s)}`} checked={chosen.includes(run.id)} onChange={(event) => onChoose(run.id, event.currentTarget.checked)} />
+          <PageLink href={href(run.id)} title={run.cause} onOpen={() => onOpen(run.id)}>
+            {wallTime(run.started_at_s)}
+          </PageLink>
+          <StatusBadge status={run.status === 'running' ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+          <span className={styles.track} aria-hidden>
+            <span className={`${styles.bar} ${styles[endOf(run)]}`} style={{ inlineSize: `${(run.duration_s / longestS) * 100}%` }} />
+          </span>
+          <span className={styles.number}>{duration(run.duration_s)}</span>
+        </li>
+      ))}
+    </ul>
+  )
+}
+
+function endOf(run: PastRun): 'done' | 'failed' | 'stopped' {
+  if (run.success) return 'done'
+  return run.status === 'finished' || run.status === 'errored' ? 'failed' : 'stopped'
+}
