@@ -25,7 +25,7 @@ class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k
 class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
     """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
-    `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run
+    `now_s` is the run's clock at sending; it advances with wall time while `ticking`, which it does not while the run is paused. `control` is null unless the run
     is active; `lock_reasons` are the texts of the operator, by the path of the locked node.
     """
 

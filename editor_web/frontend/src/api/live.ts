@@ -1,5 +1,6 @@
 /** The live connection: one websocket, reopened when it is lost, folded into one store. */
-import { EMPTY, fold, isActive, type LiveState } from '../document/live'
+import { EMPTY, fold, type LiveState } from '../document/live'
+import { isActive } from '../document/runState'
 import { atMoment, type ShownMoment } from '../document/timelineMoment'
 import { wallTime } from '../document/time'
 import { api } from './client'

@@ -7,7 +7,7 @@ import { pastApi, seekEvent, type Subject } from '../../api/timeline'
 import type { RunFailure, RunView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { isActive } from '../../document/live'
+import { isActive } from '../../document/runState'
 import { useSubject } from './useSubject'
 
 export interface FailureViewProps {
