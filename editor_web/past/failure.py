@@ -129,7 +129,7 @@ def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, s
 
 def _link_and_hint(cause: Cause) -> tuple[CauseLink, str]:
     message, hint = _split_hint(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
-    return CauseLink(message=message, where=cause.where, kind=cause.kind), hint
+    return CauseLink(message=message, where=cause.where, kind=cause.kind, compared=cause.compared), hint
 
 
 def _family(kind: type[FlexcellError]) -> frozenset[str]:
