@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 
 
-class Comparison(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, gc=False):
+class MeasuredValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, gc=False):
     """A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit."""
 
     quantity: str
@@ -25,7 +25,7 @@ class CauseLink(msgspec.Struct, frozen=True, kw_only=True):
     message: str
     where: str = ""
     kind: str = ""
-    compared: tuple[Comparison, ...] = ()
+    compared: tuple[MeasuredValue, ...] = ()
 
 
 class Cause(CauseLink, frozen=True, kw_only=True, omit_defaults=True):

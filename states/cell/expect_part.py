@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from engine.cause_chain import wrap_cause
 from engine.errors import StateError
-from engine.event import Cause, Comparison
+from engine.event import Cause, MeasuredValue
 from engine.messages import FramePoses, Vector3
 from engine.state import Context, Outcome, State, nothing_to_undo
 from engine.suggestions import did_you_mean
@@ -87,7 +87,7 @@ class ExpectPart(State, frozen=True, kw_only=True):
             message=f"it lies at {_format_xyz(xyz)}, {distance}",
             where=PARTS_TOPIC,
             compared=(
-                Comparison(
+                MeasuredValue(
                     quantity=f"distance from {self.frame}", measured=distance_m, unit="m", most=self.tolerance_m
                 ),
             ),

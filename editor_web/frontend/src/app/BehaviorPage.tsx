@@ -23,6 +23,7 @@ import { ShowMenu } from '../features/cell/ShowMenu'
 import { ChangeReport } from '../features/control/ChangeReport'
 import { Holds } from '../features/control/Holds'
 import { FORCE_ID, NodeCard } from '../features/control/NodeCard'
+import { PathScrubber } from '../features/control/PathScrubber'
 import { RefusalLine } from '../features/control/RefusalLine'
 import { REQUESTS_ID } from '../features/control/Requests'
 import { RunBar } from '../features/control/RunBar'
@@ -175,7 +176,12 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           {mayOperate && <ResetParts isBusy={active.length > 0} />}
         </>
       }
-      foot={<RobotStrip />}
+      foot={
+        <>
+          {hasView && <PathScrubber />}
+          <RobotStrip />
+        </>
+      }
     >
       <CellFrame />
     </Panel>

@@ -15,8 +15,8 @@ const FAILURE: RunFailure = {
   text: 'root/grasp failed: no contact',
   hint: 'look at the gripper',
   links: [
-    { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed' },
-    { message: 'the grasp failed', where: '', kind: 'StateError' },
+    { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed', compared: [{ quantity: 'opening', measured: 1.2, unit: 'mm', least: 20, most: 40 }] },
+    { message: 'the grasp failed', where: '', kind: 'StateError', compared: [] },
   ],
   steps: [
     { path: 'root', seq: 11, time_s: 1.6, kind: 'exited', level: 'error', text: 'ended with bad', causes: [] },
