@@ -1900,9 +1900,10 @@ export interface RunEnded {
   readonly cause?: Cause | null
 }
 
-/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
+/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `entered_seq` is the entry into that node, from where the run can be tried again; 0 if it is in no node. `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
 export interface RunFailure {
   readonly seq: number
+  readonly entered_seq: number
   readonly time_s: number
   readonly path: string
   readonly text: string

@@ -210,7 +210,18 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       )}
     </div>
   )
-  const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show })
+  const page = {
+    behavior: behavior.id,
+    mayOperate,
+    hasView,
+    onEdit,
+    onParameters: () => {
+      if (arrangement === '3d') setLayout('operate')
+      setTab('parameters')
+    },
+    onStarted,
+  }
+  const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show, page })
   const outline = (
     <div className="tab-body is-flush">
       {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={setSelected} />}

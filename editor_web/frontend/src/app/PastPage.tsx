@@ -20,7 +20,7 @@ import { PastLine } from '../features/timeline/PastLine'
 import { Breadcrumb } from './Breadcrumb'
 import { pastBodies } from './dock'
 import { LayoutChoice } from './LayoutChoice'
-import { compareHref, LAST_GOOD, sweepHref, trendHref } from './route'
+import { compareHref, LAST_GOOD, runHref, sweepHref, trendHref } from './route'
 import { useRunLayout } from './runLayout'
 import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
@@ -93,7 +93,14 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
       {node && <Selection node={node} />}
     </div>
   )
-  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show }, run.failed)
+  const page = {
+    behavior: behavior.id,
+    mayOperate: session?.role === 'operator',
+    hasView,
+    // The file may have changed since, and may be gone: what is executed then is what it says now.
+    onStarted: isRecording ? undefined : (started: string) => onOpen(runHref(started)),
+  }
+  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show, page }, run.failed)
   return (
     <div className="behavior-page">
       <header className="page-head">

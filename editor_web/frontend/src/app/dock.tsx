@@ -2,6 +2,7 @@
 import { type ComponentType, type ReactNode } from 'react'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { lazyView } from '../components/lazyView'
+import type { FailurePage } from '../features/timeline/FailureActions'
 import { EventLog } from '../features/log/EventLog'
 
 export interface DockProps {
@@ -13,6 +14,8 @@ export interface DockProps {
   readonly session: SessionBody | undefined
   /** Choose a node and bring it into view. */
   readonly onShow: (path: string) => void
+  /** What the view of a failure can do here. */
+  readonly page: FailurePage
 }
 
 interface DockTab {
