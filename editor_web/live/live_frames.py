@@ -27,8 +27,9 @@ class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k
 class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
     """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
-    `now_s` is the run's clock at sending; it advances with wall time while `ticking`, which it does not while the run is paused. `control` is null unless the run
-    is active; `lock_reasons` are the texts of the operator, by the path of the locked node.
+    `now_s` is the run's clock at sending; it advances with wall time while `ticking`, and stands while the run is
+    paused. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the
+    locked node.
     """
 
     run: str
@@ -101,7 +102,7 @@ class ShowLayers(msgspec.Struct, frozen=True, kw_only=True, tag="show", tag_fiel
 
 
 class ScrubPath(msgspec.Struct, frozen=True, kw_only=True, tag="scrub", tag_field="k"):
-    """From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: no more."""
+    """From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null ends it."""
 
     page: str
     robot: str

@@ -60,7 +60,7 @@ def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Worksh
     with opened_page(browser, shop.running, "/runs") as page:
         nap, shift, night = (card(page, name) for name in ("nap", "shift", "night"))
         command(nap, "Pause").click()
-        expect(run_state(nap, "nap")).to_have_text("Paused, everything rests")
+        expect(run_state(nap, "nap")).to_have_text("Paused")
         left, right = (
             shift.get_by_role("listitem", name=f"Question of root/both/{side}") for side in ("left", "right")
         )
@@ -68,7 +68,7 @@ def test_a_command_on_a_card_is_for_that_run_only(browser: Browser, shop: Worksh
         expect(run_state(shift, "shift")).to_have_text("Asks for an answer")
         command(right, "Agree: a").click()
         expect(shift.get_by_role("list", name="Active nodes")).to_contain_text("rest")
-        expect(run_state(night, "night")).to_have_text("Paused, everything rests")
+        expect(run_state(night, "night")).to_have_text("Paused")
         command(nap, "Resume").click()
         expect(run_state(nap, "nap")).to_have_text("Running")
         command(night, "Stop").click()
@@ -119,7 +119,7 @@ def test_two_runs_stand_side_by_side(browser: Browser, shop: Workshop) -> None:
         expect(left.get_by_role("log")).to_contain_text("run started: nap")
         expect(left.get_by_role("log")).not_to_contain_text("shift")
         command(left, "Pause").click()
-        expect(left.get_by_role("status", name="State of nap on the left")).to_have_text("Paused, everything rests")
+        expect(left.get_by_role("status", name="State of nap on the left")).to_have_text("Paused")
         command(right.get_by_role("listitem", name="Question of root/both/left"), "Agree: a").click()
         expect(right.get_by_role("status", name="State of shift on the right")).to_have_text("Asks for an answer")
         page.get_by_label("Which run on the left").select_option(runs["night"])
@@ -155,7 +155,7 @@ def test_both_pages_are_accessible(browser: Browser, shop: Workshop, scheme: Sch
     runs = three_runs(shop)
     with opened_page(browser, shop.running, "/runs", scheme=scheme) as page:
         expect(page.get_by_role("button", name="Agree: a")).to_have_count(2)
-        expect(run_state(card(page, "night"), "night")).to_have_text("Paused, everything rests")
+        expect(run_state(card(page, "night"), "night")).to_have_text("Paused")
         require_accessible(page, "all runs")
     with opened_page(browser, shop.running, f"/beside/{runs['shift']}/{runs['nap']}", scheme=scheme) as page:
         expect(page.get_by_role("button", name="Agree: a")).to_have_count(2)
@@ -203,5 +203,5 @@ def test_a_card_whose_connection_is_lost_comes_back(browser: Browser, shop: Work
         require_accessible(page, "all runs without a server")
         shop.on_loop(lambda: shop.session.control(runs["nap"]).pause())
         is_cut = False
-        expect(run_state(nap, "nap")).to_have_text("Paused, everything rests")
+        expect(run_state(nap, "nap")).to_have_text("Paused")
         expect(command(nap, "Resume")).to_be_enabled()

@@ -147,7 +147,7 @@ class _PausedBackend(FakeBackend):
         self.view = control
 
     def control(self, run_id: str) -> Control:
-        return cast(Control, SimpleNamespace(view=lambda: self.view))
+        return cast("Control", SimpleNamespace(view=lambda: self.view))
 
 
 async def test_the_clock_of_a_paused_run_stands() -> None:

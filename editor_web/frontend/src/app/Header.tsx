@@ -58,7 +58,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
         </PageLink>
       )}
       {named && (
-        <div className="active-run">
+        <div className={`active-run is-${runStateOf(named).look}`}>
           <button type="button" className="active-run-name" title={runWords(named)} onClick={() => onRun(named.id)}>
             <StatusIcon status={runStateOf(named).look} size={14} />
             <span>{nameOf(named.behavior)}</span>

@@ -62,12 +62,12 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
             {hasGraph && <Separator key="width" className="splitter" aria-label="Width of the graph" />}
             <Pane key="right" id={id('right')} defaultSize={hasGraph ? RIGHT[arrangement] : '100%'} minSize="22%">
               <Group orientation="vertical" {...right}>
-                <Pane key="cell" id={id('cell')} defaultSize={isDebug ? '48%' : '100%'} minSize="15%">
+                <Pane key="cell" id={id('cell')} defaultSize={isDebug ? '56%' : '100%'} minSize="15%">
                   <ViewBoundary name="Cell">{cell}</ViewBoundary>
                 </Pane>
                 {isDebug && <Separator key="height" className="splitter is-flat" aria-label="Height of the cell" />}
                 {isDebug && (
-                  <Pane key="tabs" id={id('tabs')} defaultSize="52%" minSize="15%">
+                  <Pane key="tabs" id={id('tabs')} defaultSize="44%" minSize="15%">
                     <Placed host={tabs.host} />
                   </Pane>
                 )}

@@ -22,9 +22,8 @@ export function measuredWords({ measured, unit }: MeasuredValue): string {
 
 /** `18.8 mm too small`; empty where it is as expected. */
 export function missWords({ measured, least, most, unit }: MeasuredValue): string {
-  if (least != null && measured < least) return `${number(least - measured)} ${unit} too small`
-  if (most != null && measured > most) return `${number(measured - most)} ${unit} too large`
-  return ''
+  if (measured < (least ?? -Infinity)) return `${number((least ?? 0) - measured)} ${unit} too small`
+  return measured > (most ?? Infinity) ? `${number(measured - (most ?? 0))} ${unit} too large` : ''
 }
 
 function number(value: number): string {
@@ -43,7 +42,7 @@ function slowest(nodes: readonly NodeDifference[]): readonly NodeDifference[] {
   const leaves = nodes.filter((node) => node.visits_left > 0 && node.visits_right > 0 && !nodes.some((other) => other.path.startsWith(`${node.path}/`)))
   return leaves
     .filter((node) => change(node) >= Math.max(LEAST_DIFFERENCE_S, LEAST_SHARE * node.duration_left_s))
-    .sort((a, b) => change(b) - change(a))
+    .toSorted((a, b) => change(b) - change(a))
     .slice(0, SLOWEST)
 }
 

@@ -16,7 +16,7 @@ export interface RunState {
 export type RunFacts = Pick<RunView, 'status'> & Partial<Pick<RunView, 'outcome' | 'success' | 'waits' | 'cause'>>
 
 /** Outcomes that say no more than that a run has ended well or badly. */
-const PLAIN_OUTCOMES = ['done', 'finished', 'succeeded', 'success', 'failed', 'failure', 'error']
+const PLAIN_OUTCOMES = new Set(['done', 'finished', 'succeeded', 'success', 'failed', 'failure', 'error'])
 
 /** Is this run still going? */
 export function isActive(run: RunFacts | undefined): boolean {
@@ -54,7 +54,7 @@ export function runStateOf(run: RunFacts | undefined, control: ControlView | nul
 export function runWords(run: RunFacts | undefined, control: ControlView | null = null): string {
   const { word } = runStateOf(run, control)
   const outcome = run && !isActive(run) ? (run.outcome ?? '') : ''
-  return outcome && !PLAIN_OUTCOMES.includes(outcome) ? `${word}: ${outcome}` : word
+  return outcome && !PLAIN_OUTCOMES.has(outcome) ? `${word}: ${outcome}` : word
 }
 
 function unwatched(waits: string): RunState {

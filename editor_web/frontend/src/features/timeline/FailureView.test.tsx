@@ -4,7 +4,7 @@ import { afterEach, expect, it, vi } from 'vitest'
 import { live, robot, run, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { forget, useTimeline } from '../../api/timeline'
-import type { RunFailure } from '../../api/types'
+import type { RunComparison, RunFailure } from '../../api/types'
 import { FailureView } from './FailureView'
 
 const FAILED = run({ status: 'finished', outcome: 'bad' })
@@ -36,6 +36,13 @@ afterEach(() => {
   act(() => useTimeline.setState(useTimeline.getInitialState(), true))
 })
 
+/** The server of a run that failed, and of no run before it that succeeded. */
+function failing() {
+  return server()
+    .on('GET /runs/r1/failure', FAILURE)
+    .on('GET /past-runs/comparison', new Refusal(404, { message: 'no run before this one succeeded' }))
+}
+
 function sections(): Record<string, string[]> {
   const region = within(screen.getByRole('region', { name: 'How the run failed' }))
   const lists = region.getAllByRole('list')
@@ -46,7 +53,7 @@ function sections(): Record<string, string[]> {
 }
 
 it('tells where it began, why, and what happened there', async () => {
-  server().on('GET /runs/r1/failure', FAILURE)
+  failing()
   live({ runs: [FAILED] })
   show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   expect(await screen.findByText('root/grasp failed: no contact')).toBeVisible()
@@ -60,17 +67,37 @@ it('tells where it began, why, and what happened there', async () => {
 })
 
 it('tells what was measured against what was expected', async () => {
-  server().on('GET /runs/r1/failure', FAILURE)
+  failing()
   live({ runs: [FAILED] })
   show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   const table = await screen.findByRole('table', { name: 'Expected against measured' })
   expect(within(table).getAllByRole('cell').map((each) => each.textContent)).toEqual(['opening', '20 to 40 mm', '1.2 mm', '18.8 mm too small'])
 })
 
+it('tells what differs from the last good run', async () => {
+  const past = { ...FAILED, document: 'd', events: 9 }
+  const comparison: RunComparison = {
+    left: { ...past, id: 'r0', success: true },
+    right: past,
+    divergence: { kind: 'outcome', path: 'root/grasp', index: 1, left_s: 1, right_s: 1.5, text: 'root/grasp ended with missed, with held before' },
+    visits: [],
+    left_out: 0,
+    nodes: [],
+    settings: [{ at: 'parameters.dwell', left: '0.0', right: '2.0' }],
+    documents: [],
+    data: [],
+    data_left_out: 0,
+  }
+  failing().on('GET /past-runs/comparison', comparison)
+  live({ runs: [FAILED] })
+  show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
+  expect(await screen.findByText('root/grasp ended with missed, with held before')).toBeVisible()
+  expect(screen.getByText('parameters.dwell: 0.0 before, 2.0 now')).toBeVisible()
+})
+
 it('starts again where it failed, with what the run had there', async () => {
   started.mockReset()
-  server()
-    .on('GET /runs/r1/failure', FAILURE)
+  failing()
     .on('GET /runs/r1/events', { events: [{ event: 'run_started', seq: 1, time_s: 0, behavior: 'shift', document: 'd', parameters: {}, seed: 5, clock: 'real', inputs: {} }], last: 1 })
     .on('POST /runs', { run: 'r2' })
   live({ runs: [FAILED] })
@@ -81,7 +108,7 @@ it('starts again where it failed, with what the run had there', async () => {
 })
 
 it('turns the camera to what it names, opens the state, and leads to the parameters', async () => {
-  server().on('GET /runs/r1/failure', FAILURE)
+  failing()
   const socket = live({ runs: [FAILED], robots: { left: robot() } })
   const user = show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   await user.click(await screen.findByRole('button', { name: 'Show place in 3D' }))
@@ -92,7 +119,7 @@ it('turns the camera to what it names, opens the state, and leads to the paramet
 })
 
 it('offers nothing that moves something while a run is active, and nothing to a viewer', async () => {
-  server().on('GET /runs/r1/failure', FAILURE)
+  failing()
   live({ runs: [FAILED, run({ id: 'r2' })] })
   show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   expect(await screen.findByRole('button', { name: 'Reset parts' })).toBeDisabled()
@@ -104,7 +131,7 @@ it('offers nothing that moves something while a run is active, and nothing to a 
 
 it('leads to the node and the moment', async () => {
   chosen.mockReset()
-  server().on('GET /runs/r1/failure', FAILURE).on('GET /runs/r1/at', new Refusal(404, { message: 'gone' }))
+  failing().on('GET /runs/r1/at', new Refusal(404, { message: 'gone' }))
   live({ runs: [FAILED] })
   const user = show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   await user.click(await screen.findByRole('button', { name: 'Show the moment' }))
