@@ -52,7 +52,7 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
       {!isDebug && arrangement !== 'operate' && <Placed host={tabs.host} isHidden />}
       {!hasGraph && <Placed host={graph.host} isHidden />}
       <Group orientation="vertical" className="work-space" {...page}>
-        <Pane key="upper" id={id('upper')} defaultSize={isDebug ? '58%' : '100%'} minSize="25%">
+        <Pane key="upper" id={id('upper')} defaultSize={isDebug ? '62%' : '100%'} minSize="25%">
           <Group orientation="horizontal" {...upper}>
             {hasGraph && (
               <Pane key="left" id={id('left')} defaultSize={LEFT[arrangement]} minSize="20%">
@@ -62,12 +62,12 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
             {hasGraph && <Separator key="width" className="splitter" aria-label="Width of the graph" />}
             <Pane key="right" id={id('right')} defaultSize={hasGraph ? RIGHT[arrangement] : '100%'} minSize="22%">
               <Group orientation="vertical" {...right}>
-                <Pane key="cell" id={id('cell')} defaultSize={isDebug ? '56%' : '100%'} minSize="15%">
+                <Pane key="cell" id={id('cell')} defaultSize={isDebug ? '64%' : '100%'} minSize="15%">
                   <ViewBoundary name="Cell">{cell}</ViewBoundary>
                 </Pane>
                 {isDebug && <Separator key="height" className="splitter is-flat" aria-label="Height of the cell" />}
                 {isDebug && (
-                  <Pane key="tabs" id={id('tabs')} defaultSize="44%" minSize="15%">
+                  <Pane key="tabs" id={id('tabs')} defaultSize="36%" minSize="15%">
                     <Placed host={tabs.host} />
                   </Pane>
                 )}
@@ -77,7 +77,7 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
         </Pane>
         {isDebug && <Separator key="height" className="splitter is-flat" aria-label="Height of the graph" />}
         {isDebug && (
-          <Pane key="lower" id={id('lower')} defaultSize="42%" minSize="12%">
+          <Pane key="lower" id={id('lower')} defaultSize="38%" minSize="12%">
             <CourseAndRecords course={course} records={records} />
           </Pane>
         )}

@@ -34,7 +34,7 @@ function ArmScrubber({ robot }: { readonly robot: string }) {
         min={0}
         max={100}
         value={percent}
-        label={(value) => `${value} %`}
+        label={null}
         thumbLabel={`Along the path of ${robot}`}
         onChange={(value) => scrubPath(robot, value / 100)}
       />

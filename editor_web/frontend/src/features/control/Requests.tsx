@@ -78,7 +78,7 @@ function Planned({ path }: { path: string }) {
   const nodes = useLive((s) => s.nodes)
   const robots = useLive((s) => s.robots)
   return plansOf(nodes, path).map((plan) => (
-    <span key={plan.robot} className="request-plan">
+    <span key={plan.robot} className="request-plan" title={planWords(plan)}>
       <IconRoute size={15} aria-hidden />
       <span>
         <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}
