@@ -214,7 +214,7 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
         expect(first.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
         expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
         command(second, "Resume").click()
-        expect(first.get_by_role("status", name="State of the run")).to_have_text("Running")
+        expect(first.get_by_role("status", name="State of the run")).to_have_text("Waiting for answer")
         expect(first.get_by_role("region", name="The run asks")).to_be_visible()
         command(first, "Take control").click()
         expect(first.get_by_text("This run has no operator: it asks nothing.")).to_be_visible()

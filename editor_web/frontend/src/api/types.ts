@@ -1214,7 +1214,7 @@ export interface LiveDelta {
   readonly robots: Dict<RobotLive>
 }
 
-/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`, which it does not while the run is paused. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the locked node. */
+/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`, and stands while the run is paused. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the locked node. */
 export interface LiveSnapshot {
   readonly k: "snapshot"
   readonly run: string
@@ -2026,7 +2026,7 @@ export interface ScopeView {
   readonly values: Dict<UserdataRecord>
 }
 
-/** From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: no more. */
+/** From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null ends it. */
 export interface ScrubPath {
   readonly k: "scrub"
   readonly page: string

@@ -40,7 +40,7 @@ afterEach(() => {
 function failing() {
   return server()
     .on('GET /runs/r1/failure', FAILURE)
-    .on('GET /past-runs/comparison', new Refusal(404, { message: 'no run before this one succeeded' }))
+    .on('GET /runs/r1/last-good-run', null)
 }
 
 function sections(): Record<string, string[]> {
@@ -88,7 +88,7 @@ it('tells what differs from the last good run', async () => {
     data: [],
     data_left_out: 0,
   }
-  failing().on('GET /past-runs/comparison', comparison)
+  failing().on('GET /runs/r1/last-good-run', comparison.left).on('GET /past-runs/comparison', comparison)
   live({ runs: [FAILED] })
   show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   expect(await screen.findByText('root/grasp ended with missed, with held before')).toBeVisible()

@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'react'
 import { call, wordsOf } from '../../api/client'
 import { pastApi, type Subject } from '../../api/timeline'
-import type { RunComparison, RunFailure } from '../../api/types'
+import type { PastRun, RunComparison, RunFailure } from '../../api/types'
 
 export interface FoundFailure {
   /** Undefined until the server has answered. */
@@ -35,7 +35,7 @@ export function useLastGoodRun(run: string, hasFailed: boolean): RunComparison |
   useEffect(() => {
     if (!hasFailed) return
     let isCurrent = true
-    call<RunComparison>(`/past-runs/comparison?${new URLSearchParams({ right: run }).toString()}`).then(
+    againstLastGood(run).then(
       (comparison) => isCurrent && setFound({ run, comparison }),
       () => isCurrent && setFound({ run, comparison: null }),
     )
@@ -44,4 +44,9 @@ export function useLastGoodRun(run: string, hasFailed: boolean): RunComparison |
     }
   }, [run, hasFailed])
   return found?.run === run ? found.comparison : undefined
+}
+
+async function againstLastGood(run: string): Promise<RunComparison | null> {
+  const good = await call<PastRun | null>(`/runs/${encodeURIComponent(run)}/last-good-run`)
+  return good && call<RunComparison>(`/past-runs/comparison?${new URLSearchParams({ left: good.id, right: run }).toString()}`)
 }
