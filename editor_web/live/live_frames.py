@@ -102,7 +102,7 @@ class ShowLayers(msgspec.Struct, frozen=True, kw_only=True, tag="show", tag_fiel
 
 
 class ScrubPath(msgspec.Struct, frozen=True, kw_only=True, tag="scrub", tag_field="k"):
-    """From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null ends it."""
+    """From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: none."""
 
     page: str
     robot: str

@@ -2026,7 +2026,7 @@ export interface ScopeView {
   readonly values: Dict<UserdataRecord>
 }
 
-/** From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null ends it. */
+/** From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: none. */
 export interface ScrubPath {
   readonly k: "scrub"
   readonly page: string
