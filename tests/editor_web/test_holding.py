@@ -126,7 +126,7 @@ def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Works
         )
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Waiting for answer")
         expect(node(page, "root/both/left")).to_contain_text("asks: a")
-        expect(page.get_by_role("navigation", name="Runs")).to_contain_text("running, asks")
+        expect(page.get_by_role("navigation", name="Runs")).to_contain_text("Waiting for answer")
         page.keyboard.press("a")
         expect(asked.get_by_role("button", name="Agree: a").first).to_be_focused()
         page.keyboard.press("Enter")

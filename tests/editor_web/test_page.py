@@ -128,7 +128,7 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
     with visit(address(TRANSFER.id)) as page:
         page.get_by_role("tab", name="Outline").click()
-        tree = page.get_by_role("tree")
+        tree = page.get_by_role("tree", name="Outline of the behavior")
         tree.get_by_role("treeitem").first.focus()
         for key in ("ArrowRight", "ArrowRight", "Enter"):
             page.keyboard.press(key)

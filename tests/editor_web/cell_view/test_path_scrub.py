@@ -26,6 +26,10 @@ class _View(CellView):
         super().__init__(FakeBackend())
         self.ghosts: list[tuple[str, PathPreview]] = []
 
+    def propose(self, preview: PathPreview) -> None:
+        """Take this as the latest path of its arm."""
+        self._latest.paths[preview.robot] = preview
+
     def show_ghost(self, page: str, preview: PathPreview, *, place: int = 0) -> None:
         """Keep it."""
         self.ghosts.append((page, preview))
@@ -37,7 +41,7 @@ class _View(CellView):
 def test_the_arm_stands_where_the_path_is_at_a_share_of_it(share: float, joints: tuple[float, float]) -> None:
     """Measured by the joint that moves most; the line of the whole path stays."""
     view = _View()
-    view._latest.paths["left"] = PROPOSED
+    view.propose(PROPOSED)
     view.scrub_path("page", "left", share)
     ((page, ghost),) = view.ghosts
     assert (page, ghost.joints, ghost.tool_path) == ("page", (joints,), PROPOSED.tool_path)
@@ -46,7 +50,7 @@ def test_the_arm_stands_where_the_path_is_at_a_share_of_it(share: float, joints:
 @pytest.mark.parametrize(("robot", "share"), [("left", None), ("right", 0.5)])
 def test_without_a_proposed_path_or_a_share_there_is_no_ghost(robot: str, share: float | None) -> None:
     view = _View()
-    view._latest.paths["left"] = PROPOSED
+    view.propose(PROPOSED)
     view.scrub_path("page", robot, share)
     assert view.ghosts == [("page", PathPreview(robot=robot, state="none"))]
 
