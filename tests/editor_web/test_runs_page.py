@@ -128,7 +128,7 @@ def test_two_runs_stand_side_by_side(browser: Browser, shop: Workshop) -> None:
         expect(left.get_by_role("list", name="Nodes that wait")).to_have_text("root/first before its entry: paused")
         command(left, "Stop").click()
         expect(left.locator(".badge")).to_have_text("Stopped")
-        expect(right.locator(".badge")).to_have_text("running")
+        expect(right.locator(".badge")).to_have_text("Waiting for answer")
         left.get_by_role("link", name="Whole page").click()
         expect(page.locator("h1")).to_have_text("night")
 
