@@ -64,6 +64,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
                 offered.get_by_role("button", name="Go on with these answers").click()
                 expect(offered).to_have_count(0)
                 expect(node(page, "root/only")).to_have_attribute("data-status", "active")
+                page.get_by_role("tab", name="Log").click()
                 expect(page.get_by_role("log")).to_contain_text("resumed after event")
                 page.get_by_role("button", name="Stop", exact=True).click()
                 expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
