@@ -94,6 +94,7 @@ def in_motion(page: Page) -> None:
     drawn(page)
     start(page)
     expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=LIMIT_MS)
+    page.get_by_role("tab", name="Log").click()
     expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=LIMIT_MS)
 
 
@@ -118,6 +119,7 @@ def waiting(page: Page) -> None:
     page.get_by_role("combobox", name="person", exact=True).click()
     page.get_by_role("option", name="stays").click()
     start(page)
+    page.get_by_role("tab", name="Log").click()
     expect(page.get_by_role("log")).to_contain_text("pick —picked→ carry", timeout=LIMIT_MS)
     expect(page.get_by_role("list", name="Arms with a blocked path")).to_be_visible(timeout=LIMIT_MS)
 
@@ -132,7 +134,7 @@ def looked_back(page: Page) -> None:
     """Let the transfer end, and go back to where both arms carry their parts."""
     drawn(page)
     start(page)
-    expect(page.locator(".page-head .badge")).to_have_text("finished", timeout=LIMIT_MS)
+    expect(page.get_by_role("status", name="State of the run")).to_have_text("Succeeded", timeout=LIMIT_MS)
     page.get_by_role("tab", name="Timeline").click()
     ruler = page.get_by_role("slider", name="Moment of the run")
     expect(ruler).to_be_visible(timeout=LIMIT_MS)
@@ -167,7 +169,7 @@ PICTURES = (
     Picture(name="confirm", cell="ur10", address=CONFIRM, size=DESKTOP, prepare=asked),
     Picture(name="confirm-phone", cell="ur10", address=CONFIRM, size=PHONE, prepare=asked),
     Picture(name="editor", cell="dual_panda", address=EDITOR, size=LARGE, prepare=edited),
-    Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESKTOP, prepare=looked_back),
+    Picture(name="timeline", cell="dual_panda", address=TRANSFER + "?layout=debug", size=DESKTOP, prepare=looked_back),
     Picture(name="teach", cell="dual_panda", address="/teach", size=DESKTOP, prepare=taught),
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
     Picture(name="sweep", cell=None, address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),

@@ -55,7 +55,8 @@ def storable_cause(cause: Cause | None) -> Cause | None:
         escape_surrogates(cause.kind),
     )
     nodes = tuple(map(escape_surrogates, cause.nodes))
-    return Cause(message=message, where=where, kind=kind, because=storable_cause(cause.because), nodes=nodes)
+    because = storable_cause(cause.because)
+    return Cause(message=message, where=where, kind=kind, because=because, nodes=nodes, compared=cause.compared)
 
 
 def escape_surrogates(text: str) -> str:

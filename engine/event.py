@@ -9,12 +9,23 @@ from __future__ import annotations
 import msgspec
 
 
+class MeasuredValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, gc=False):
+    """A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit."""
+
+    quantity: str
+    measured: float
+    unit: str
+    least: float | None = None
+    most: float | None = None
+
+
 class CauseLink(msgspec.Struct, frozen=True, kw_only=True):
     """One link of the cause chain of a failure; those of a whole chain are in order, root cause first."""
 
     message: str
     where: str = ""
     kind: str = ""
+    compared: tuple[MeasuredValue, ...] = ()
 
 
 class Cause(CauseLink, frozen=True, kw_only=True, omit_defaults=True):

@@ -7,15 +7,20 @@ import logging
 import secrets
 import threading
 import time
+from collections.abc import Sequence
 
+import msgspec
 import viser
 
 from editor_web.cell_view.handles import DragHandle, DragHandles
+from editor_web.cell_view.layers.path_view import interpolate_joints
 from editor_web.cell_view.layers.scene_layers import SceneLayers
+from editor_web.cell_view.page_cameras import PageCameras
 from editor_web.cell_view.page_ghosts import PageGhosts
 from editor_web.cell_view.past_view import PastViews, StateListener
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import ClientLayerGroups, LayerGroup
+from editor_web.cell_view.rendering.transforms import poses_by_frame
 from editor_web.cell_view.rendering.viser_gateway import new_viser_server
 from editor_web.cell_view.topic_subscriptions import TopicSource, TopicSubscriptions
 from engine.errors import FlexcellError
@@ -43,6 +48,7 @@ class CellView:
         self._past: PastViews | None = None
         self._handles: DragHandles | None = None
         self._ghosts: PageGhosts | None = None
+        self._cameras: PageCameras | None = None
         self._backend = backend
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -71,6 +77,7 @@ class CellView:
         self._past = PastViews(server, self._groups, find=self._backend.recording_files)
         handles = self._handles = DragHandles(server, changed=self._latest.arrived.set)
         ghosts = self._ghosts = PageGhosts(server, changed=self._latest.arrived.set)
+        self._cameras = PageCameras(server)
         self._thread = threading.Thread(
             target=self._write, args=(server, handles, ghosts), name="cell-view", daemon=True
         )
@@ -105,6 +112,28 @@ class CellView:
         """Show a preview of an arm to a page, until another one has the same place; the state `none` hides it."""
         if self._ghosts is not None:
             self._ghosts.put(page, preview, place=place)
+
+    def scrub_path(self, page: str, robot: str, share: float | None) -> None:
+        """Show on a page where an arm is at a share, 0 to 1, of its proposed path; None shows nothing more.
+
+        The page hides the group of planned paths meanwhile: its own ghost has the line as well.
+        """
+        preview = self._latest.paths.get(robot)
+        if share is None or preview is None or preview.state != "proposed" or not preview.joints:
+            self.show_ghost(page, PathPreview(robot=robot, state="none"))
+            return
+        # One configuration is a ghost that stands.
+        joints = (interpolate_joints(preview.joints, share),)
+        self.show_ghost(page, msgspec.structs.replace(preview, joints=joints))
+
+    def look_at(self, page: str, names: Sequence[str]) -> None:
+        """Turn the camera of a page to the first of these parts, frames or arms that the cell shows."""
+        poses = poses_by_frame(self._latest.frames)
+        arms = self._latest.descriptions
+        frames = (arms[name].tool_frame if name in arms else name for name in names)
+        found = next((poses[frame] for frame in frames if frame in poses), None)
+        if found is not None and self._cameras is not None:
+            self._cameras.look_at(page, found.xyz)
 
     async def subscribe(self) -> None:
         """Subscribe to the cell's topics, on the event loop's thread."""

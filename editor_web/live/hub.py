@@ -113,7 +113,7 @@ class LiveClient:
             run=live.run_id if live else "",
             seq=live.state.seq if live else 0,
             now_s=self._hub.now_s(live),
-            ticking=_ticking(live),
+            ticking=self._hub.ticking(live),
             runs=self._hub.backend.runs(),
             nodes=dict(live.state.nodes) if live else {},
             log=tuple(live.log) if live else (),
@@ -129,7 +129,7 @@ class LiveClient:
             after=self._sent_seq,
             seq=live.state.seq if live else 0,
             now_s=self._hub.now_s(live),
-            ticking=_ticking(live),
+            ticking=self._hub.ticking(live),
             runs=tuple(self._hub.backend.run(run_id) for run_id in self._runs),
             nodes=self._nodes,
             log=tuple(self._log),
@@ -203,12 +203,19 @@ class LiveHub:
             return LiveRun(run_id)
 
     def now_s(self, live: LiveRun | None) -> float:
-        """Return the current run time, extrapolated with wall time since the last event while the clock ticks."""
+        """Return the displayed run time: of the last event, extrapolated with wall time while it advances."""
         if live is None:
             return 0.0
-        if not _ticking(live):
+        if not self.ticking(live):
             return live.state.time_s
         return live.state.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
+
+    def ticking(self, live: LiveRun | None) -> bool:
+        """Return whether the displayed time of a run advances: not while it is paused, or in virtual time."""
+        if live is None or not live.state.real_time or live.state.ended:
+            return False
+        control = self.control_of(live)
+        return control is None or not control.paused or control.stepping
 
     def control_of(self, live: LiveRun | None) -> ControlView | None:
         """Return the current control state of a run; None if it has ended or is unknown."""
@@ -238,7 +245,3 @@ class LiveHub:
     def _on_documents(self, changed: dict[str, str | None]) -> None:
         for client in self._clients:
             client.note_documents(changed)
-
-
-def _ticking(live: LiveRun | None) -> bool:
-    return live is not None and live.state.real_time and not live.state.ended

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
 
 from editor_web.cell_view import LayerGroup
@@ -25,8 +27,9 @@ class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k
 class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
     """The complete state of the watched run (empty if none), all runs, newest first, and all arms.
 
-    `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run
-    is active; `lock_reasons` are the texts of the operator, by the path of the locked node.
+    `now_s` is the run's clock at sending; it advances with wall time while `ticking`, and stands while the run is
+    paused. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the
+    locked node.
     """
 
     run: str
@@ -98,9 +101,27 @@ class ShowLayers(msgspec.Struct, frozen=True, kw_only=True, tag="show", tag_fiel
     groups: tuple[LayerGroup, ...]
 
 
+class ScrubPath(msgspec.Struct, frozen=True, kw_only=True, tag="scrub", tag_field="k"):
+    """From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: none."""
+
+    page: str
+    robot: str
+    share: Annotated[float, msgspec.Meta(ge=0, le=1)] | None
+
+
+class LookAt(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):
+    """From the client: turn the camera of its 3D view to the first of these names that the cell has.
+
+    A name is that of a part, a frame or an arm.
+    """
+
+    page: str
+    names: Annotated[tuple[str, ...], msgspec.Meta(max_length=50)]
+
+
 class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k"):
     """From the client: answer to a ping."""
 
 
 Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | Ping
-Request = WatchRun | OperateRun | ShowLayers | Pong
+Request = WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | Pong

@@ -21,11 +21,13 @@ _AROUND_KINDS = frozenset(
 class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     """A failed run: the failure originated at event `seq`, at node `path` (empty if in no node).
 
+    `entered_seq` is the entry into that node, from where the run can be tried again; 0 if it is in no node.
     `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin
     ended, `around` are the requests, answers and writes of the origin.
     """
 
     seq: int
+    entered_seq: int
     time_s: float
     path: str
     text: str
@@ -48,6 +50,7 @@ def failure_of(history: RunStateHistory) -> RunFailure | None:
     first = links[0] if links else None
     return RunFailure(
         seq=origin.seq,
+        entered_seq=_entry(events, steps, path, origin.seq).seq if path else 0,
         time_s=origin.time_s,
         path=path,
         text=first.message if first is not None else log_line(end).text,
@@ -115,10 +118,15 @@ def _steps(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, si
             yield log_line(ends[node])
 
 
+def _entry(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, seq: int) -> Event:
+    """Return the entry of the node's last visit before an event; the first event if it was never entered."""
+    entries = (e for e in reversed(events) if e.seq <= seq and _path(e) == path and _is_entry(steps, e))
+    return next(entries, events[0])
+
+
 def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, seq: int) -> tuple[LogLine, ...]:
     """Return the last log lines of the node's last visit, including its end."""
-    entries = (e for e in reversed(events) if e.seq <= seq and _path(e) == path and _is_entry(steps, e))
-    begun = next(entries, events[0])
+    begun = _entry(events, steps, path, seq)
     lines = [
         log_line(event, duration_s=event.time_s - begun.time_s)
         for event in events
@@ -129,7 +137,7 @@ def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, s
 
 def _link_and_hint(cause: Cause) -> tuple[CauseLink, str]:
     message, hint = _split_hint(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
-    return CauseLink(message=message, where=cause.where, kind=cause.kind), hint
+    return CauseLink(message=message, where=cause.where, kind=cause.kind, compared=cause.compared), hint
 
 
 def _family(kind: type[FlexcellError]) -> frozenset[str]:

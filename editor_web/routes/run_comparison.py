@@ -10,7 +10,7 @@ from fastapi import HTTPException, Query, Request, Response
 from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
-from engine.archive import Archive, ArchivedRun, RunComparison, RunTrend, RunTrends, compare_runs
+from engine.archive import Archive, ArchivedRun, PastRun, RunComparison, RunTrend, RunTrends, compare_runs
 from engine.errors import JournalError, RecordingError
 
 _PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
@@ -32,6 +32,18 @@ async def compare(services: ServicesOf, right: RunName, left: RunName = "") -> R
     Without `left`, the last run before `right` of the same behavior that succeeded is the left one.
     """
     return await asyncio.to_thread(lambda: json_response(_compared(services.backend.archive, left, right)))
+
+
+@router.get("/runs/{run_id}/last-good-run", responses=_found(PastRun | None))
+async def last_good_run(run_id: str, services: ServicesOf) -> Response:
+    """Return the last run of the same behavior that succeeded before this one; null if there is none."""
+    archive = services.backend.archive
+
+    def found() -> PastRun | None:
+        run = next((each for each in archive.runs() if each.id == run_id), None)
+        return archive.last_good_run(run) if run is not None else None
+
+    return await asyncio.to_thread(lambda: json_response(found()))
 
 
 @router.get("/past-runs/trend", responses=_found(RunTrend))

@@ -11,7 +11,17 @@ from fastapi import APIRouter, WebSocket
 
 from editor_web.cell_view import CellView
 from editor_web.live.hub import LiveClient
-from editor_web.live.live_frames import PROTOCOL_VERSION, Hello, OperateRun, Ping, Request, ShowLayers, WatchRun
+from editor_web.live.live_frames import (
+    PROTOCOL_VERSION,
+    Hello,
+    LookAt,
+    OperateRun,
+    Ping,
+    Request,
+    ScrubPath,
+    ShowLayers,
+    WatchRun,
+)
 from editor_web.routes.services import role_of, services_of
 from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, disconnect_page, read_message, send_message
@@ -35,16 +45,18 @@ async def live(socket: WebSocket) -> None:
     client = services.hub.join()
     role = role_of(socket)
     operator = _Operator(services.backend, allowed=role == OPERATOR)
+    scrub = _Scrub(services.cell_view)
     hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role, server_time_s=time.time())
     try:
         await send_message(socket, hello)
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, client, operator, services.cell_view), name="live-receive")
+            tasks.create_task(_receive(socket, client, operator, services.cell_view, scrub), name="live-receive")
             tasks.create_task(_stream(socket, client), name="live-stream")
     except* PageDisconnected:
         pass
     finally:
         operator.lose()
+        scrub.end()
         services.hub.leave(client)
 
 
@@ -76,7 +88,31 @@ class _Operator:
             self._attached = None
 
 
-async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, view: CellView | None) -> None:
+class _Scrub:
+    """The planned path along which the page of one connection goes, one at a time."""
+
+    def __init__(self, view: CellView | None) -> None:
+        self._view = view
+        self._shown: ScrubPath | None = None
+
+    def go(self, request: ScrubPath) -> None:
+        """Show the arm at this share of its path, and no other arm."""
+        if self._shown is not None and (self._shown.page, self._shown.robot) != (request.page, request.robot):
+            self.end()
+        self._shown = request if request.share is not None else None
+        if self._view is not None:
+            self._view.scrub_path(request.page, request.robot, request.share)
+
+    def end(self) -> None:
+        """Show the path as every page sees it."""
+        if self._shown is not None and self._view is not None:
+            self._view.scrub_path(self._shown.page, self._shown.robot, None)
+        self._shown = None
+
+
+async def _receive(
+    socket: WebSocket, client: LiveClient, operator: _Operator, view: CellView | None, scrub: _Scrub
+) -> None:
     while True:
         try:
             async with asyncio.timeout(SILENCE_S):
@@ -93,6 +129,11 @@ async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, v
             case ShowLayers():
                 if view is not None:
                     view.show(request.page, frozenset(request.groups))
+            case ScrubPath():
+                scrub.go(request)
+            case LookAt():
+                if view is not None:
+                    view.look_at(request.page, request.names)
             case _:
                 pass
 

@@ -62,6 +62,10 @@ class SessionRun:
     def view(self, now_s: float) -> RunView:
         """Return the status of the run at this time of the cell's clock."""
         result = self.result
+        control = self.run.control.view() if result is None and not self.run.ended else None
+        # The time of a paused run stands.
+        is_held = control is not None and control.paused and not control.stepping
+        run_s = self.live.state.time_s if is_held else now_s - self.started_s
         return RunView(
             id=self.run.id,
             behavior=self.behavior_id,
@@ -70,8 +74,8 @@ class SessionRun:
             success=result.success if result else False,
             cause=describe_cause(result.cause) if result and result.cause and not result.success else "",
             started_at_s=self.started_at_s,
-            duration_s=result.duration_s if result else now_s - self.started_s,
-            waits=self.run.control.view().waits if result is None and not self.run.ended else "",
+            duration_s=result.duration_s if result else run_s,
+            waits=control.waits if control is not None else "",
         )
 
 

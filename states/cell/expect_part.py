@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from engine.cause_chain import wrap_cause
 from engine.errors import StateError
-from engine.event import Cause
+from engine.event import Cause, MeasuredValue
 from engine.messages import FramePoses, Vector3
 from engine.state import Context, Outcome, State, nothing_to_undo
 from engine.suggestions import did_you_mean
@@ -71,9 +71,9 @@ class ExpectPart(State, frozen=True, kw_only=True):
             return self._elsewhere(ctx, pose)
         xyz = pose.xyz
         fault = _region_fault(self.region, xyz) if self.region else await self._frame_fault(ctx, xyz)
-        return self._elsewhere(ctx, Cause(message=fault, where=PARTS_TOPIC)) if fault else Outcome("there")
+        return self._elsewhere(ctx, fault) if fault is not None else Outcome("there")
 
-    async def _frame_fault(self, ctx: Context, xyz: Vector3) -> str:
+    async def _frame_fault(self, ctx: Context, xyz: Vector3) -> Cause | None:
         frames = await ctx.latest(FRAMES_TOPIC, FramePoses)
         if self.frame not in frames.names:
             raise StateError(
@@ -81,8 +81,17 @@ class ExpectPart(State, frozen=True, kw_only=True):
             )
         distance_m = math.dist(xyz, frames.xyz[frames.names.index(self.frame)])
         if distance_m <= self.tolerance_m:
-            return ""
-        return f"it lies at {_format_xyz(xyz)}, {distance_m:.3f} m from {self.frame}, {self.tolerance_m:.3f} m allowed"
+            return None
+        distance = f"{distance_m:.3f} m from {self.frame}, {self.tolerance_m:.3f} m allowed"
+        return Cause(
+            message=f"it lies at {_format_xyz(xyz)}, {distance}",
+            where=PARTS_TOPIC,
+            compared=(
+                MeasuredValue(
+                    quantity=f"distance from {self.frame}", measured=distance_m, unit="m", most=self.tolerance_m
+                ),
+            ),
+        )
 
     def _elsewhere(self, ctx: Context, because: Cause) -> Outcome:
         expected = self.frame or "its region"
@@ -90,8 +99,10 @@ class ExpectPart(State, frozen=True, kw_only=True):
         return Outcome("elsewhere", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))
 
 
-def _region_fault(region: Region, xyz: Vector3) -> str:
-    return "" if region.contains(xyz) else f"it lies at {_format_xyz(xyz)}, not {region}"
+def _region_fault(region: Region, xyz: Vector3) -> Cause | None:
+    if region.contains(xyz):
+        return None
+    return Cause(message=f"it lies at {_format_xyz(xyz)}, not {region}", where=PARTS_TOPIC)
 
 
 def _format_xyz(xyz: Vector3) -> str:

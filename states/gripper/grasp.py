@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 from msgspec import Meta
 
 from engine.cause_chain import wrap_cause
-from engine.event import Cause
+from engine.event import Cause, MeasuredValue
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
 from engine.skills.part_label import PartLabel, part_label
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
@@ -83,5 +83,14 @@ class Grasp(State, frozen=True, kw_only=True):
         return Cause(
             message=f"{opening}, pressing with {result.force_n:.1f} N",
             where=address,
+            compared=(
+                MeasuredValue(
+                    quantity="opening",
+                    measured=result.width_m * 1e3,
+                    unit="mm",
+                    least=(self.width_m - self.tolerance_inner_m) * 1e3,
+                    most=(self.width_m + self.tolerance_outer_m) * 1e3,
+                ),
+            ),
             because=Cause(message=result.reason, where=address) if result.reason else None,
         )

@@ -16,7 +16,7 @@ def require_run_finishes(page: Page) -> None:
     """The run page is there; start, and see the behavior finish."""
     expect(page.locator(".step.leaf").first).to_be_visible()
     page.get_by_role("button", name="Start", exact=True).click()
-    expect(page.locator(".page-head .badge")).to_have_text("finished")
+    expect(page.get_by_role("status", name="State of the run")).to_have_text("Succeeded")
 
 
 def require_two_steps(shop: Workshop) -> None:
@@ -101,7 +101,7 @@ def test_two_states_are_built_from_nothing_by_keyboard_only(browser: Browser, sh
         expect(page.get_by_role("button", name="Start", exact=True)).to_be_visible()
         require_two_steps(shop)
         page.get_by_role("button", name="Start", exact=True).press("Enter")
-        expect(page.locator(".page-head .badge")).to_have_text("finished")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Succeeded")
 
 
 def test_the_editor_is_reached_from_the_page_of_a_behavior_at_its_chosen_node(browser: Browser, shop: Workshop) -> None:

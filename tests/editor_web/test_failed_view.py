@@ -64,7 +64,7 @@ def test_a_form_that_fails_leaves_the_run_control(browser: Browser, shop: Worksh
         damaged(page, {"parameters": None})
         expect(page.get_by_role("alert", name="Failure of Start")).to_be_visible()
         page.get_by_role("button", name="Pause", exact=True).click()
-        expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused, everything rests")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused")
 
 
 def test_a_page_that_fails_leaves_stop_and_the_way_to_other_pages(browser: Browser, shop: Workshop) -> None:

@@ -212,7 +212,6 @@ def node(page: Page, path: str) -> Locator:
 
 def run(page: Page) -> None:
     """Start, pause, go on, to the end; then back in time; then once more, stopped."""
-    badge = page.locator(".page-head .badge")
     page.get_by_role("button", name="Start", exact=True).click()
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
     page.get_by_role("button", name="Take control", exact=True).click()
@@ -220,8 +219,9 @@ def run(page: Page) -> None:
     state = page.get_by_role("status", name="State of the run")
     expect(state).to_contain_text("Paused")
     page.get_by_role("button", name="Resume", exact=True).click()
-    expect(badge).to_have_text("finished", timeout=5 * GUARD_MS)
+    expect(state).to_have_text("Succeeded", timeout=5 * GUARD_MS)
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
+    page.get_by_text("Debug", exact=True).click()
     page.get_by_role("tab", name="Timeline").click()
     moment = page.get_by_role("slider", name="Moment of the run")
     box = moment.bounding_box()
@@ -233,4 +233,4 @@ def run(page: Page) -> None:
     page.get_by_role("button", name="Start", exact=True).click()
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
     page.get_by_role("button", name="Stop", exact=True).click()
-    expect(badge).to_have_text("stopped", timeout=GUARD_MS)
+    expect(state).to_have_text("Stopped", timeout=GUARD_MS)

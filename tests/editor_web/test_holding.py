@@ -107,7 +107,7 @@ def test_a_locked_node_is_held_with_its_reason_until_it_is_unlocked(browser: Bro
         expect(node(page, "root/set").locator(".lock-mark")).to_be_visible()
         page.get_by_role("button", name="Resume", exact=True).click()
         expect(waits(page)).to_have_text("root/set with done: locked")
-        expect(page.get_by_role("status", name="State of the run")).to_have_text("Waits at a lock")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Waiting at lock")
         page.reload()
         page.get_by_role("tab", name="Breakpoints").click()
         expect(page.get_by_text("locked: the tray is being changed")).to_be_visible()
@@ -124,16 +124,16 @@ def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Works
         expect(asked.get_by_role("listitem", name="Question of root/both/left")).to_contain_text(
             "root/both/left wants to end with a, which requires high"
         )
-        expect(page.get_by_role("status", name="State of the run")).to_have_text("Asks for 2 answers")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Waiting for answer")
         expect(node(page, "root/both/left")).to_contain_text("asks: a")
-        expect(page.get_by_role("navigation", name="Runs")).to_contain_text("running, asks")
+        expect(page.get_by_role("navigation", name="Runs")).to_contain_text("Waiting for answer")
         page.keyboard.press("a")
         expect(asked.get_by_role("button", name="Agree: a").first).to_be_focused()
         page.keyboard.press("Enter")
         expect(asked.get_by_role("listitem")).to_have_count(1)
         asked.get_by_role("button", name="Force outcome: b").click()
         expect(asked).to_have_count(0)
-        expect(page.locator(".page-head .badge")).to_have_text("finished: bad")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Failed: bad")
     ends = {event.path: event.outcome for event in shop.events(run) if isinstance(event, NodeExited)}
     assert ends["root/both"] == "odd"
 

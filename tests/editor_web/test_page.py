@@ -67,7 +67,7 @@ def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, si
         expect(node(page, "root/approach/left")).to_contain_text("reached")
         expect(page.locator(".course.is-taken")).to_have_count(1)
         page.get_by_role("button", name="Stop", exact=True).click()
-        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(page.get_by_role("log")).to_contain_text("stop requested: stopped in the dashboard")
         expect(page.locator(".leaf.is-active")).to_have_count(0)
     started = site.backend.events("run-001")[0]
@@ -89,7 +89,7 @@ def test_a_reload_in_mid_run_shows_what_is_running(visit: Visit, site: Site) -> 
             if is_reloaded:
                 page.reload()
             expect(page.locator(".leaf.is-active")).to_have_count(2)
-            expect(page.locator(".page-head .badge")).to_have_text("running")
+            expect(page.get_by_role("status", name="State of the run")).to_have_text("Running")
             expect(page.get_by_role("log")).to_contain_text("run started")
 
 
@@ -117,7 +117,7 @@ def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> 
         page.get_by_role("button", name="Start").click()
         expect(node(page, "root/grasp")).to_have_attribute("data-status", "failed")
         expect(node(page, "root/grasp").locator(".exit.is-taken")).to_have_text("failed")
-        expect(page.locator(".page-head .badge")).to_have_text("finished: failed")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Failed")
         page.get_by_role("log").get_by_role("button", name="3 causes").last.click()
         expect(page.locator(".causes li").first).to_contain_text("no contact on either pad")
 
@@ -128,7 +128,7 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
     with visit(address(TRANSFER.id)) as page:
         page.get_by_role("tab", name="Outline").click()
-        tree = page.get_by_role("tree")
+        tree = page.get_by_role("tree", name="Outline of the behavior")
         tree.get_by_role("treeitem").first.focus()
         for key in ("ArrowRight", "ArrowRight", "Enter"):
             page.keyboard.press(key)

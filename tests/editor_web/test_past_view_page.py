@@ -41,7 +41,7 @@ def test_the_view_shows_the_moment_of_the_timeline_until_one_goes_back(
     with Workshop(host=loopback, project=tmp_path, furnish=furnish, cell_view=True) as shop:
         run = shop.start(ID)
         shop.call(shop.session.wait(run))
-        with opened_page(browser, shop.running, f"/runs/{run}", quiet=False, size=(1100, 700)) as page:
+        with opened_page(browser, shop.running, f"/runs/{run}?layout=debug", quiet=False, size=(1100, 700)) as page:
             page.get_by_role("tab", name="Timeline").press("Enter")
             moment = page.get_by_role("slider", name="Moment of the run")
             mark = page.locator(".cell-past")

@@ -59,7 +59,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         page.get_by_role("button", name="Operation").click()
         switch(page.get_by_label("Begin paused"))
         page.get_by_role("button", name="Start").click()
-        expect(run_state(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused")
         expect(command(page, "Resume")).to_be_enabled()
         waits = page.get_by_role("list", name="Nodes that wait")
         expect(waits).to_have_text("root before its entry: paused")
@@ -81,9 +81,9 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
         expect(run_state(page)).to_have_text("Running")
         command(page, "Pause").click()
-        expect(run_state(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused")
         page.get_by_role("button", name="Stop", exact=True).click()
-        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(command(page, "Pause")).to_be_disabled()
     (run,) = shop.session.runs()
     expected = ["step", "step", "step", "step", "step", "step", "resume", "pause"]
@@ -113,7 +113,7 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
     shop.start(supervision=RunOptions(start_paused=True))
     file = shop.project / SHIFT_ID
     with at_shift(browser, shop, quiet=False) as page:
-        expect(run_state(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused")
         file.write_text(
             SHIFT.replace("value: 1}", "value: 2}").replace("set: {", "put: {").replace("a: set", "a: put"),
             encoding="utf-8",
@@ -142,7 +142,7 @@ def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Brow
     with at_shift(browser, shop, quiet=False) as page:
         expect(node(page, "root/first")).to_have_attribute("data-status", "active")
         command(page, "Pause").click()
-        expect(run_state(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused")
         other = "{state: flow.Wait, with: {duration_s: 0}, transitions: {done: set}}"
         given = '{state: test.Give, with: {after_s: "${dwell}"}, transitions: {a: set, b: bad, c: bad}}'
         assert given in slow
@@ -160,7 +160,7 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
     """A sheet lists them; nothing happens while somebody writes."""
     run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop) as page:
-        expect(run_state(page)).to_have_text("Paused, everything rests")
+        expect(run_state(page)).to_have_text("Paused")
         page.get_by_role("searchbox").or_(page.get_by_label("Find in the log")).first.fill("pp")
         assert shop.on_loop(lambda: shop.session.control(run).view().paused)
         page.locator("h1").click()
@@ -192,9 +192,9 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
         expect(page.get_by_role("dialog")).to_have_count(0)
         assert len(shop.events(run)) == before
         page.keyboard.press("p")
-        expect(run_state(page)).not_to_have_text("Paused, everything rests")
+        expect(run_state(page)).not_to_have_text("Paused")
         page.keyboard.press("Shift+S")
-        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
 
 
 def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Workshop) -> None:
@@ -214,7 +214,7 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
         expect(first.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
         expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
         command(second, "Resume").click()
-        expect(first.locator(".page-head .badge")).to_have_text("running")
+        expect(first.get_by_role("status", name="State of the run")).to_have_text("Waiting for answer")
         expect(first.get_by_role("region", name="The run asks")).to_be_visible()
         command(first, "Take control").click()
         expect(first.get_by_text("This run has no operator: it asks nothing.")).to_be_visible()
@@ -230,7 +230,7 @@ def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> No
             command(page, "Take control").click()
             expect(page.get_by_text("If this page is lost, 0.2 s later the run is stopped.")).to_be_visible()
         expect(watching.get_by_role("log")).to_contain_text("operator lost")
-        expect(watching.locator(".page-head .badge")).to_have_text("stopped")
+        expect(watching.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(watching.get_by_role("log")).to_contain_text("stop requested: the operator was lost")
 
 

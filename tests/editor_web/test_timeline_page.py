@@ -216,10 +216,10 @@ def test_the_present_goes_on_while_the_past_is_shown(browser: Browser, shop: Wor
         slider(page).press("Home")
         expect(node(page, "root/rest")).to_have_attribute("data-status", "idle")
         page.get_by_role("button", name="Pause").click()
-        expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused, everything rests")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused")
         expect(node(page, "root/rest")).to_have_attribute("data-status", "idle")
         shop.call(shop.session.stop(run, reason="enough"))
-        expect(page.locator(".page-head .badge")).to_contain_text("stopped")
+        expect(page.get_by_role("status", name="State of the run")).to_contain_text("Stopped")
         page.get_by_role("button", name="Back to live").click()
         expect(node(page, "root/rest")).to_have_attribute("data-status", "stopped")
 
@@ -228,7 +228,7 @@ def test_the_3d_view_gets_the_moment(browser: Browser, tmp_path: Path, loopback:
     """Where this server has one."""
     with Workshop(host=loopback, project=tmp_path, cell_view=True) as shop:
         run = shop.start(NAP_ID)
-        with at_timeline(browser, shop, f"/runs/{run}") as page:
+        with at_timeline(browser, shop, f"/runs/{run}?layout=debug") as page:
             with page.expect_websocket(lambda socket: "/cell/past/" in socket.url) as opened:
                 slider(page).press("Home")
             with opened.value.expect_event("framesent") as sent:

@@ -36,6 +36,7 @@ def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
         path=shown.path,
         text=shown.text,
         causes=tuple(
-            CauseLink(message=link.message, where=link.where, kind=link.kind) for link in links_from_root(shown.cause)
+            CauseLink(message=link.message, where=link.where, kind=link.kind, compared=link.compared)
+            for link in links_from_root(shown.cause)
         ),
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from websockets.exceptions import ConnectionClosedError
@@ -12,6 +14,7 @@ from editor_web.live.hub import LiveClient, LiveHub
 from editor_web.live.live_frames import LiveDelta, LiveSnapshot, SweepsChanged
 from editor_web.sockets import page_socket as sockets
 from engine.event import MessageLogged, NodeEntered, NodeExited, RunEnded, RunStarted
+from engine.runtime.control import Control, ControlView
 from engine.runtime.history.live_run import LOG_LINES
 from engine.sweep_library import SweepLive
 from tests.editor_web.conftest import Serve
@@ -36,6 +39,22 @@ def watching(hub: LiveHub, run: str) -> LiveClient:
     client.watch(run)
     assert isinstance(client.frame(), LiveSnapshot)
     return client
+
+
+def control_view(*, paused: bool, stepping: bool = False) -> ControlView:
+    """The control of a run at rest."""
+    return ControlView(
+        paused=paused,
+        confirmed=paused,
+        cannot=(),
+        waiting=(),
+        locks=(),
+        breakpoints=(),
+        autonomy="full",
+        operator="none",
+        active=(),
+        stepping=stepping,
+    )
 
 
 def delta(client: LiveClient) -> LiveDelta:
@@ -118,6 +137,31 @@ async def test_the_clock_of_a_run_goes_on_between_its_events() -> None:
     backend.emit("r", RunEnded, status="finished", outcome="finished")
     wall_s[0] += 100.0
     assert hub.now_s(live) == live.state.time_s
+
+
+class _PausedBackend(FakeBackend):
+    """A backend whose runs have a control that can be paused."""
+
+    def __init__(self, control: ControlView) -> None:
+        super().__init__()
+        self.view = control
+
+    def control(self, run_id: str) -> Control:
+        return cast("Control", SimpleNamespace(view=lambda: self.view))
+
+
+async def test_the_clock_of_a_paused_run_stands() -> None:
+    """It goes on with the next step, and from where the run then is."""
+    backend, wall_s = _PausedBackend(control_view(paused=True)), [50.0]
+    hub = open_hub(backend, wall_s)
+    client = hub.join()
+    client.watch("r")
+    backend.emit("r", RunStarted, **STARTED)
+    live = hub.live_run("r")
+    wall_s[0] += 2.5
+    assert (hub.now_s(live), hub.ticking(live)) == (live.state.time_s, False)
+    backend.view = control_view(paused=True, stepping=True)
+    assert hub.ticking(live)
 
 
 async def test_the_end_of_a_run_arrives_though_the_engine_files_it_later() -> None:

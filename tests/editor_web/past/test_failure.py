@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from editor_web.past.failure import RunFailure, failure_of
 from editor_web.past.state_history import RunStateHistory
-from engine.event import Event
+from engine.event import Event, NodeEntered
 from tests.engine.run_document import run_document
 
 DEEP = """
@@ -78,6 +78,9 @@ def test_of_several_attempts_the_last_one_is_reported() -> None:
     assert found.path == "root/broken"
     assert found.time_s == 3.0
     assert found.seq > len(events) / 2
+    # From its entry it can be tried again.
+    entries = [event.seq for event in events if isinstance(event, NodeEntered) and event.path == found.path]
+    assert found.entered_seq == entries[-1]
 
 
 def test_what_an_error_of_ours_suggests_is_reported_apart() -> None:

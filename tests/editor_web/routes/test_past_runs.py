@@ -240,6 +240,12 @@ def test_two_runs_are_compared(http: httpx.Client, restarted: tuple[Workshop, st
         assert answer.json()["message"], query
 
 
+def test_a_run_without_a_good_one_before_it_has_none(http: httpx.Client, restarted: tuple[Workshop, str]) -> None:
+    """Nor has one that the journal does not have."""
+    _, run = restarted
+    assert [got(http, f"/runs/{each}/last-good-run") for each in (run, "nowhere")] == [None, None]
+
+
 def test_the_runs_of_a_behavior_have_a_trend(http: httpx.Client) -> None:
     """Of a behavior that always fails, there are no durations."""
     found = got(http, "/past-runs/trend", behavior="goes wrong", last=5)

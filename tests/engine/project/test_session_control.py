@@ -77,6 +77,8 @@ async def test_a_run_is_controlled_and_shown_with_its_control(project: Path) -> 
         await recorded(session, run, waits("root"))
         view = session.control(run).view()
         assert session.run(run).waits == "paused"
+        # The time of a paused run stands.
+        assert session.run(run).duration_s == session.live(run).state.time_s
         assert (view.paused, view.confirmed, [each.path for each in view.waiting]) == (True, True, ["root"])
         session.control(run).resume()
         assert (await session.wait(run)).outcome == "good"

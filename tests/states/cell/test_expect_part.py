@@ -72,6 +72,10 @@ async def test_a_part_near_a_frame_is_there_and_a_far_one_is_not() -> None:
     outcome = await state.run(cell((0.06, -0.28, 0.0)))
     assert outcome.name == "elsewhere"
     assert "(0.060, -0.280, 0.000) m, 0.060 m from tray_south, 0.050 m allowed" in str(outcome.cause)
+    assert outcome.cause is not None
+    (compared,) = outcome.cause.chain()[1].compared
+    assert (compared.quantity, compared.unit, compared.most) == ("distance from tray_south", "m", 0.05)
+    assert compared.measured == pytest.approx(0.06)
 
 
 async def test_an_unknown_frame_is_an_error() -> None:

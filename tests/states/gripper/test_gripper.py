@@ -86,6 +86,9 @@ async def test_a_missed_part_is_named_with_what_the_fingers_measured() -> None:
         ),
         ("left/gripper/gripper_grasp", "the pads touch one another"),
     ]
+    (compared,) = outcome.cause.chain()[1].compared
+    assert (compared.quantity, compared.unit) == ("opening", "mm")
+    assert (compared.measured, compared.least, compared.most) == pytest.approx((1.2, 20.0, 40.0))
 
 
 async def test_a_part_still_held_is_held() -> None:

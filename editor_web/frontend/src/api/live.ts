@@ -1,5 +1,6 @@
 /** The live connection: one websocket, reopened when it is lost, folded into one store. */
-import { EMPTY, fold, isActive, type LiveState } from '../document/live'
+import { EMPTY, fold, type LiveState } from '../document/live'
+import { isActive } from '../document/runState'
 import { atMoment, type ShownMoment } from '../document/timelineMoment'
 import { wallTime } from '../document/time'
 import { api } from './client'
@@ -7,6 +8,7 @@ import { keepConnected, type LiveConnection } from './connection'
 import { OPERATED, useLive } from './liveStore'
 import { useSession } from './session'
 import { PAGE, useShownLayers } from './layerGroups'
+import { usePathScrub } from './pathScrub'
 import { afterStop } from './stopStore'
 import type { Frame } from './types'
 
@@ -89,12 +91,14 @@ export function connect(): () => void {
   })
   connection = opened
   const unsubscribe = useShownLayers.subscribe(sendShow)
+  const forgetScrub = usePathScrub.subscribe(sendScrub)
   const forgetSession = useSession.subscribe((now, before) => {
     // What was asked for meanwhile was refused.
     if (before.isLoggedOut && !now.isLoggedOut) useLive.setState((live) => ({ generation: live.generation + 1 }))
   })
   return () => {
     unsubscribe()
+    forgetScrub()
     forgetSession()
     opened.close()
   }
@@ -124,7 +128,21 @@ function sendOperate(): void {
 }
 
 function sendShow(): void {
-  connection?.send({ k: 'show', page: PAGE, groups: useShownLayers.getState().groups })
+  const { groups } = useShownLayers.getState()
+  // The ghost of the scrubbed path has the line of the path as well.
+  const shown = usePathScrub.getState().robot ? groups.filter((group) => group !== 'paths') : groups
+  connection?.send({ k: 'show', page: PAGE, groups: shown })
+}
+
+function sendScrub(now: { readonly robot: string; readonly share: number }, before: { readonly robot: string }): void {
+  if (now.robot) connection?.send({ k: 'scrub', page: PAGE, robot: now.robot, share: now.share })
+  else connection?.send({ k: 'scrub', page: PAGE, robot: before.robot, share: null })
+  if (now.robot !== before.robot) sendShow()
+}
+
+/** Turn the camera of the 3D view to the first of these parts, frames or arms that the cell has. */
+export function lookAt(names: readonly string[]): void {
+  connection?.send({ k: 'look', page: PAGE, names })
 }
 
 function sendWatch(): void {

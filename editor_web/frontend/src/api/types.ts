@@ -329,6 +329,7 @@ export interface Cause {
   readonly message: string
   readonly where?: string
   readonly kind?: string
+  readonly compared?: readonly MeasuredValue[]
   readonly because?: Cause | null
   readonly nodes?: readonly string[]
 }
@@ -346,6 +347,7 @@ export interface CauseLink {
   readonly message: string
   readonly where: string
   readonly kind: string
+  readonly compared: readonly MeasuredValue[]
 }
 
 /** Whether every device of the cell is connected; the latest value of `cell/connection`. `reason` names the lost devices with the causes; for a reconnected cell, the differences from before. */
@@ -1212,7 +1214,7 @@ export interface LiveDelta {
   readonly robots: Dict<RobotLive>
 }
 
-/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the locked node. */
+/** The complete state of the watched run (empty if none), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it advances with wall time while `ticking`, and stands while the run is paused. `control` is null unless the run is active; `lock_reasons` are the texts of the operator, by the path of the locked node. */
 export interface LiveSnapshot {
   readonly k: "snapshot"
   readonly run: string
@@ -1255,6 +1257,13 @@ export interface LoginLinkRequest {
   readonly role?: "operator" | "viewer"
 }
 
+/** From the client: turn the camera of its 3D view to the first of these names that the cell has. A name is that of a part, a frame or an arm. */
+export interface LookAt {
+  readonly k: "look"
+  readonly page: string
+  readonly names: readonly string[]
+}
+
 /** A state blocked the event loop; all other states had to wait. */
 export interface LoopBlocked {
   readonly event: "loop_blocked"
@@ -1270,6 +1279,15 @@ export interface MeasureSpread {
   readonly name: string
   readonly successes: Quantiles | null
   readonly failures: Quantiles | null
+}
+
+/** A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit. */
+export interface MeasuredValue {
+  readonly quantity: string
+  readonly measured: number
+  readonly unit: string
+  readonly least?: number | null
+  readonly most?: number | null
 }
 
 /** Lines that both sides changed differently; `line`, from 1, is their position in our text. */
@@ -1882,9 +1900,10 @@ export interface RunEnded {
   readonly cause?: Cause | null
 }
 
-/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
+/** A failed run: the failure originated at event `seq`, at node `path` (empty if in no node). `entered_seq` is the entry into that node, from where the run can be tried again; 0 if it is in no node. `hint` says what to do, `links` are the causes without it. `steps` say how the nodes from the root to the origin ended, `around` are the requests, answers and writes of the origin. */
 export interface RunFailure {
   readonly seq: number
+  readonly entered_seq: number
   readonly time_s: number
   readonly path: string
   readonly text: string
@@ -2005,6 +2024,14 @@ export interface ScopeView {
   readonly is_open: boolean
   readonly since_s: number
   readonly values: Dict<UserdataRecord>
+}
+
+/** From the client: show on its page alone where an arm is at a share, 0 to 1, of its proposed path; null: none. */
+export interface ScrubPath {
+  readonly k: "scrub"
+  readonly page: string
+  readonly robot: string
+  readonly share: number | null
 }
 
 /** How far a search for failures is. */

@@ -13,9 +13,9 @@ import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
-import { StatusBadge } from '../components/StatusBadge'
 import { ViewBoundary } from '../components/ViewBoundary'
-import { isActive } from '../document/live'
+import { proposedRequest } from '../document/plannedPaths'
+import { isActive, isFailed } from '../document/runState'
 import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
@@ -23,9 +23,11 @@ import { ShowMenu } from '../features/cell/ShowMenu'
 import { ChangeReport } from '../features/control/ChangeReport'
 import { Holds } from '../features/control/Holds'
 import { FORCE_ID, NodeCard } from '../features/control/NodeCard'
+import { PathScrubber } from '../features/control/PathScrubber'
 import { RefusalLine } from '../features/control/RefusalLine'
-import { Requests, REQUESTS_ID } from '../features/control/Requests'
+import { REQUESTS_ID } from '../features/control/Requests'
 import { RunBar } from '../features/control/RunBar'
+import { StatusRow } from '../features/control/StatusRow'
 import { ShortcutSheet } from '../features/control/ShortcutSheet'
 import { useCommands, type Commands } from '../features/control/useCommands'
 import { useShortcuts } from '../features/control/useShortcuts'
@@ -35,6 +37,8 @@ import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
 import { Breadcrumb } from './Breadcrumb'
 import { dockBodies } from './dock'
+import { LayoutChoice } from './LayoutChoice'
+import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
@@ -42,7 +46,7 @@ import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
-import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
+import { NarrowGraph, SideTabs, Wide, type Arrangement, type Tab } from './WorkSpace'
 
 export interface BehaviorPageProps {
   readonly id: string
@@ -77,6 +81,9 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const [shown, setShown] = useState<Shown>()
   const [tab, setTab] = useState<Tab>(hasErrors(behavior) ? 'problems' : 'parameters')
   const [isSheetOpen, setSheetOpen] = useState(false)
+  const [askedTab, askTab] = useState<{ readonly tab: string }>()
+  const hasView = hasCellView(session)
+  const { layout, arrangement, setLayout } = useArrangement(hasView)
   const isConnected = useLive((s) => s.connection === 'live')
   const obstacle = isConnected ? obstacleOf(behavior, active, session) : 'The server does not answer'
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
@@ -84,6 +91,10 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
   const mayOperate = session?.role === 'operator'
   useGoalsOf(run && isActive(run) ? run.id : undefined)
+  useFailed(run, () => {
+    setTab('failure')
+    askTab({ tab: 'Failure' })
+  })
 
   /** Choose a node on the canvas: what can be done with it comes forward. */
   function choose(path: string | undefined): void {
@@ -127,6 +138,13 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     },
   })
 
+  /** The view of the failure comes forward, where the layout has it. */
+  function showFailure(): void {
+    if (layout === '3d') setLayout('operate')
+    setTab('failure')
+    askTab({ tab: 'Failure' })
+  }
+
   function withNode(words: string, command: Parameters<Commands['obstacle']>[0], act: (path: string) => void): void {
     const why = commands.obstacle(command)
     if (why || !node) showRefusal(words, why ?? 'select a node in the graph first')
@@ -154,11 +172,16 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       tools={
         <>
           <span className="spacer" />
-          {hasCellView(session) && <ShowMenu />}
+          {hasView && <ShowMenu />}
           {mayOperate && <ResetParts isBusy={active.length > 0} />}
         </>
       }
-      foot={<RobotStrip />}
+      foot={
+        <>
+          {hasView && <PathScrubber />}
+          <RobotStrip />
+        </>
+      }
     >
       <CellFrame />
     </Panel>
@@ -187,7 +210,18 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       )}
     </div>
   )
-  const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show })
+  const page = {
+    behavior: behavior.id,
+    mayOperate,
+    hasView,
+    onEdit,
+    onParameters: () => {
+      if (arrangement === '3d') setLayout('operate')
+      setTab('parameters')
+    },
+    onStarted,
+  }
+  const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show, page })
   const outline = (
     <div className="tab-body is-flush">
       {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={setSelected} />}
@@ -212,9 +246,8 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           <h1>{behavior.name}</h1>
           {behavior.description && <p className="quiet">{behavior.description}</p>}
         </div>
-        {run && <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />}
-        {run && !isActive(run) && run.cause && <span className="page-cause" title={run.cause}>{run.cause}</span>}
         <span className="spacer" />
+        {hasView && !isNarrow && <LayoutChoice layout={arrangement === 'approval' ? undefined : layout} onLayout={setLayout} />}
         <Button variant="default" size="sm" leftSection={<IconPencil size={15} aria-hidden />} onClick={() => onEdit(selected ?? '')}>
           Edit
         </Button>
@@ -233,16 +266,17 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
       </ViewBoundary>
       <ViewBoundary name="Run control">
-        <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
+        <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} />
+      </ViewBoundary>
+      <ViewBoundary name="Status">
+        <StatusRow run={run} root={behavior.graph} commands={commands} onShow={show} onFailure={showFailure} notices={<BlockedPaths />} />
       </ViewBoundary>
       <ViewBoundary name="Timeline">
-        <PastLine run={run} hasCellView={hasCellView(session)} />
+        <PastLine run={run} hasCellView={hasView} />
       </ViewBoundary>
-      <RefusalLine />
-      <ViewBoundary name="Requests">
-        <BlockedPaths />
-        <Requests root={behavior.graph} commands={commands} onShow={show} />
-      </ViewBoundary>
+      <div className="refusal-place">
+        <RefusalLine />
+      </div>
       {isNarrow ? (
         <OpenedTabs
           label="Views"
@@ -251,7 +285,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
             Start: parameters,
             Graph: <NarrowGraph graph={graph} card={card} />,
             Cell: cell,
-            ...dock,
+            ...dock.all,
             Outline: outline,
             Breakpoints: held,
             Problems: problems,
@@ -259,15 +293,21 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         />
       ) : (
         <Wide
+          arrangement={arrangement}
           graph={graph}
-          log={<OpenedTabs label="Below the graph" bodies={dock} className="dock" />}
+          course={<OpenedTabs label="Course of the run" bodies={dock.course} className="dock" asked={askedTab} />}
+          records={<OpenedTabs label="Records of the run" bodies={dock.records} className="dock" />}
           cell={cell}
           tabs={
             <SideTabs
               tab={tab}
               onTab={setTab}
               counts={{ holds, problems: behavior.findings.length }}
-              bodies={{ parameters, node: nodeTab, outline, holds: held, problems }}
+              bodies={
+                arrangement === 'debug'
+                  ? { parameters, node: nodeTab, outline, holds: held, problems }
+                  : { parameters, node: nodeTab, log: dock.all.Log, failure: dock.all.Failure, problems }
+              }
             />
           }
         />
@@ -276,6 +316,32 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <ShortcutSheet isOpen={isSheetOpen} onClose={() => setSheetOpen(false)} areOn={keys.areOn} onSwitch={keys.setOn} />
     </div>
   )
+}
+
+/** Called when a run fails that was seen under way. */
+function useFailed(run: RunView | undefined, onFailed: () => void): void {
+  const [seen, setSeen] = useState<string>()
+  const failed = run && !isActive(run) && isFailed(run) ? run.id : undefined
+  const active = isActive(run) ? run?.id : undefined
+  if (active !== undefined && active !== seen) setSeen(active)
+  useEffect(() => {
+    if (failed !== undefined && failed === seen) onFailed()
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- called once for each run
+  }, [failed, seen])
+}
+
+/** The layout that was chosen; while the run asks about a planned path, the 3D view is large, unless another layout is chosen then. */
+function useArrangement(hasView: boolean) {
+  const [layout, choose] = useRunLayout(hasView)
+  const asked = useLive((s) => proposedRequest(s.control, s.nodes, s.robots)?.path)
+  const [declined, decline] = useState<string>()
+  const isApproval = asked !== undefined && declined !== asked && hasView && layout !== '3d'
+  const arrangement: Arrangement = isApproval ? 'approval' : layout
+  function setLayout(next: RunLayout): void {
+    decline(asked)
+    choose(next)
+  }
+  return { layout, arrangement, setLayout }
 }
 
 /** Put the keyboard on the first button of an area; false where there is none. */
@@ -293,7 +359,7 @@ function obstacleOf(behavior: BehaviorView, active: readonly RunView[], session:
   if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
   if (hasErrors(behavior)) return 'The document has errors; see its problems'
   if (behavior.fit.obstacle) return `It cannot be started here: ${behavior.fit.obstacle}`
-  return active.some((run) => run.behavior === behavior.id) ? 'This behavior is running' : undefined
+  return active.some((run) => run.behavior === behavior.id) ? 'A run of this behavior is active' : undefined
 }
 
 function placeOf(session: SessionBody | undefined, active: readonly RunView[]): string {

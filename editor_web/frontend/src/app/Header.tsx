@@ -7,6 +7,7 @@ import { useLive } from '../api/live'
 import type { RunView } from '../api/types'
 import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
+import { runStateOf, runWords } from '../document/runState'
 import { nameOf, RunTime } from '../features/runs/RunList'
 import { RUNS_HREF, TEACH_HREF } from './route'
 
@@ -57,9 +58,9 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
         </PageLink>
       )}
       {named && (
-        <div className="active-run">
-          <button type="button" className="active-run-name" onClick={() => onRun(named.id)}>
-            <StatusIcon status={named.status === 'stopping' ? 'stopped' : 'active'} size={14} />
+        <div className={`active-run is-${runStateOf(named).look}`}>
+          <button type="button" className="active-run-name" title={runWords(named)} onClick={() => onRun(named.id)}>
+            <StatusIcon status={runStateOf(named).look} size={14} />
             <span>{nameOf(named.behavior)}</span>
           </button>
           <RunTime run={named} />

@@ -4,7 +4,7 @@ import { useLive } from '../api/live'
 import { useTour } from '../api/tour'
 import { Empty } from '../components/Empty'
 import { Panel } from '../components/Panel'
-import { StatusBadge } from '../components/StatusBadge'
+import { RunBadge } from '../components/StatusBadge'
 import { TourButton } from '../components/TourButton'
 import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
@@ -12,7 +12,7 @@ import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import { nameOf, RunTime, waitsText } from '../features/runs/RunList'
+import { nameOf, RunTime } from '../features/runs/RunList'
 import { TourInvitation } from '../features/tour/TourInvitation'
 import { InterruptedHere } from './InterruptedHere'
 import { runHref } from './route'
@@ -42,7 +42,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
               <Table.Thead>
                 <Table.Tr>
                   <Table.Th>Behavior</Table.Th>
-                  <Table.Th>Result</Table.Th>
+                  <Table.Th>State</Table.Th>
                   <Table.Th>Started</Table.Th>
                   <Table.Th>Duration</Table.Th>
                 </Table.Tr>
@@ -61,11 +61,10 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
                       >
                         {nameOf(run.behavior)}
                       </a>
-                      {run.waits && <div className="run-cause run-asks">{waitsText(run)}</div>}
                       {run.cause && <div className="quiet run-cause">{run.cause}</div>}
                     </Table.Td>
                     <Table.Td>
-                      <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
+                      <RunBadge run={run} />
                     </Table.Td>
                     <Table.Td>{wallTime(run.started_at_s)}</Table.Td>
                     <Table.Td>

@@ -8,7 +8,7 @@ import type { OpenRunBody, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
-import { StatusBadge } from '../components/StatusBadge'
+import { RunBadge } from '../components/StatusBadge'
 import { duration, wallTime } from '../document/time'
 import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
@@ -19,7 +19,9 @@ import { RerunLine } from '../features/sweeps/RerunLine'
 import { PastLine } from '../features/timeline/PastLine'
 import { Breadcrumb } from './Breadcrumb'
 import { pastBodies } from './dock'
-import { compareHref, LAST_GOOD, sweepHref, trendHref } from './route'
+import { LayoutChoice } from './LayoutChoice'
+import { compareHref, LAST_GOOD, runHref, sweepHref, trendHref } from './route'
+import { useRunLayout } from './runLayout'
 import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
 import { Wide } from './WorkSpace'
@@ -57,6 +59,8 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
   const isOpen = useTimeline((s) => s.opened !== undefined)
+  const hasView = hasCellView(session)
+  const [layout, setLayout] = useRunLayout(hasView)
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
 
   const subject = useMemo(() => (isRecording ? recordingSubject(id, run.id) : runSubject(id, true)), [id, isRecording, run.id])
@@ -89,7 +93,14 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
       {node && <Selection node={node} />}
     </div>
   )
-  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show }, run.failed)
+  const page = {
+    behavior: behavior.id,
+    mayOperate: session?.role === 'operator',
+    hasView,
+    // The file may have changed since, and may be gone: what is executed then is what it says now.
+    onStarted: isRecording ? undefined : (started: string) => onOpen(runHref(started)),
+  }
+  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show, page }, run.failed)
   return (
     <div className="behavior-page">
       <header className="page-head">
@@ -99,13 +110,14 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
             {isRecording ? `Recording ${id}` : 'Past run'} of {wallTime(run.started_at_s)}, {duration(run.duration_s)}, read-only
           </p>
         </div>
-        <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
+        <RunBadge run={run} />
         {run.cause && (
           <span className="page-cause" title={run.cause}>
             {run.cause}
           </span>
         )}
         <span className="spacer" />
+        {hasView && !isNarrow && <LayoutChoice layout={layout} onLayout={setLayout} />}
         <Button variant="default" size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} onClick={() => onOpen(compareHref(LAST_GOOD, id))}>
           Compare with the last good run
         </Button>
@@ -117,11 +129,18 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
         </button>
       </header>
       {isRecording && <RerunLine recording={id} href={sweepHref} onOpen={(sweep, number) => onOpen(sweepHref(sweep, number))} />}
-      <PastLine run={run} hasCellView={hasCellView(session)} />
+      <PastLine run={run} hasCellView={hasView} />
       {isNarrow ? (
-        <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock, Graph: graph, Cell: cell, Outline: outline }} />
+        <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock.all, Graph: graph, Cell: cell, Outline: outline }} />
       ) : (
-        <Wide graph={graph} log={<OpenedTabs label="Below the graph" bodies={dock} className="dock" />} cell={cell} tabs={<Panel title="Outline">{outline}</Panel>} below={40} />
+        <Wide
+          arrangement={layout}
+          graph={graph}
+          cell={cell}
+          tabs={layout === 'debug' ? <Panel title="Outline">{outline}</Panel> : <OpenedTabs label="Below the graph" bodies={{ ...dock.all, Outline: outline }} />}
+          course={<OpenedTabs label="Course of the run" bodies={dock.course} className="dock" />}
+          records={<OpenedTabs label="Records of the run" bodies={dock.records} className="dock" />}
+        />
       )}
     </div>
   )

@@ -56,10 +56,10 @@ it('tells on each card of its own run', async () => {
   expect(card('nap').getByRole('list', { name: 'Active nodes' })).toHaveTextContent('only')
   expect(card('nap').getAllByRole('definition').at(-1)).toHaveTextContent('left')
   expect(await card('nap').findByRole('img', { name: '0 of 2 steps done, 1 active' })).toBeVisible()
-  expect(card('shift').getByRole('status')).toHaveTextContent('Asks for an answer')
+  expect(card('shift').getByRole('status')).toHaveTextContent('Waiting for answer')
   expect(card('shift').getByRole('listitem', { name: 'Question of root/left' })).toHaveTextContent('which requires high')
   expect(card('shift').getAllByRole('definition').at(-1)).toHaveTextContent('no arm or device')
-  expect(card('night').getByRole('status')).toHaveTextContent('Paused, everything rests')
+  expect(card('night').getByRole('status')).toHaveTextContent('Paused')
   expect(card('night').getByRole('list', { name: 'Nodes that wait' })).toHaveTextContent('root before its entry: paused')
 })
 
@@ -95,7 +95,7 @@ it('tells a viewer of every run, and why each command is not for them', () => {
   const socket = follow(SHIFT, {})
   socket.tell({ k: 'hello', version: 1, epoch: 'e1', role: 'viewer', server_time_s: 1000 })
   socket.tell(snapshot({ run: 'r2', runs: OPEN, control: control({ waiting: [ASKS, { ...ASKS, path: 'root/right' }] }) }))
-  expect(card('shift').getByRole('status')).toHaveTextContent('Asks for 2 answers')
+  expect(card('shift').getByRole('status')).toHaveTextContent('Waiting for answer')
   for (const name of ['Pause', 'Take control', 'Stop']) {
     expect(card('shift').getByRole('button', { name })).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
   }
@@ -137,6 +137,6 @@ it('says what to do while no run is active', async () => {
   show(<RunsPage onOpen={opened} />)
   expect(screen.getByText('None is active')).toBeVisible()
   expect(screen.getByText(/Choose a behavior in the menu and start it/)).toBeVisible()
-  expect(screen.getByRole('list', { name: 'Runs that ended last' })).toHaveTextContent('stopped')
+  expect(screen.getByRole('list', { name: 'Runs that ended last' })).toHaveTextContent('Stopped')
   await waitFor(() => expect(server().asked.map((each) => each.what)).toContain('GET /interrupted'))
 })

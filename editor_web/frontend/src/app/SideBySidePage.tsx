@@ -5,19 +5,17 @@ import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { useLive } from '../api/live'
 import { clearRefusal } from '../api/refusal'
 import type { RunView } from '../api/types'
-import { Elapsed } from '../components/Elapsed'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
 import { PageLink } from '../components/PageLink'
-import { StatusBadge } from '../components/StatusBadge'
 import { ViewBoundary } from '../components/ViewBoundary'
-import { isActive } from '../document/live'
+import { isActive } from '../document/runState'
 import { nodeAt } from '../document/tree'
-import { duration, wallTime } from '../document/time'
+import { wallTime } from '../document/time'
 import { RefusalLine } from '../features/control/RefusalLine'
-import { Requests } from '../features/control/Requests'
 import { RunBar } from '../features/control/RunBar'
 import { StopRun } from '../features/control/RunButtons'
+import { StatusRow } from '../features/control/StatusRow'
 import { useCommands } from '../features/control/useCommands'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { EventLog } from '../features/log/EventLog'
@@ -152,16 +150,14 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
     <section className="run-column" aria-label={`Run on the ${side}`}>
       <header className="run-column-head">
         {choice}
-        <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
-        {isActive(run) ? <Elapsed sinceS={0} /> : <span className="elapsed">{duration(run.duration_s)}</span>}
         <span className="spacer" />
         <PageLink href={runHref(run.id)} onOpen={onOpen}>
           Whole page
         </PageLink>
         {isActive(run) && <StopRun commands={commands} />}
       </header>
-      {isActive(run) && <RunBar run={run} commands={commands} of={name} onShow={show} />}
-      <Requests root={root} commands={commands} onShow={show} of={name} />
+      {isActive(run) && <RunBar run={run} commands={commands} of={name} />}
+      <StatusRow run={run} root={root} commands={commands} onShow={show} of={name} />
       <Group orientation="vertical" className="run-column-body">
         <Pane id={`${side}-graph`} defaultSize="60%" minSize="20%">
           {root ? (

@@ -2,6 +2,7 @@
 import { type ComponentType, type ReactNode } from 'react'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { lazyView } from '../components/lazyView'
+import type { FailurePage } from '../features/timeline/FailureActions'
 import { EventLog } from '../features/log/EventLog'
 
 export interface DockProps {
@@ -13,17 +14,21 @@ export interface DockProps {
   readonly session: SessionBody | undefined
   /** Choose a node and bring it into view. */
   readonly onShow: (path: string) => void
+  /** What the view of a failure can do here. */
+  readonly page: FailurePage
 }
 
 interface DockTab {
-  readonly name: string
+  readonly name: TabName
   readonly Body: ComponentType<DockProps>
 }
 
 /** A tab of a module that is loaded when it is first opened. */
-function later(name: string, load: () => Promise<ComponentType<DockProps>>): DockTab {
+function later(name: TabName, load: () => Promise<ComponentType<DockProps>>): DockTab {
   return { name, Body: lazyView(load) }
 }
+
+type TabName = 'Log' | 'Timeline' | 'Failure' | 'Data' | 'Plots' | 'Bus'
 
 const DOCK_TABS: readonly DockTab[] = [
   { name: 'Log', Body: () => <EventLog /> },
@@ -34,14 +39,27 @@ const DOCK_TABS: readonly DockTab[] = [
   later('Bus', async () => (await import('../features/bus/Bus')).Bus),
 ]
 
+export interface DockBodies {
+  readonly all: Record<string, ReactNode>
+  /** The course of the run over time. */
+  readonly course: Record<string, ReactNode>
+  /** What it said, wrote and sent. */
+  readonly records: Record<string, ReactNode>
+}
+
 /** The bodies of all tabs by their names. */
-export function dockBodies(props: DockProps): Record<string, ReactNode> {
-  return Object.fromEntries(DOCK_TABS.map(({ name, Body }) => [name, <Body key={name} {...props} />]))
+export function dockBodies(props: DockProps): DockBodies {
+  const all = Object.fromEntries(DOCK_TABS.map(({ name, Body }) => [name, <Body key={name} {...props} />]))
+  return { all, course: only(all, ['Timeline', 'Failure', 'Plots']), records: only(all, ['Log', 'Data', 'Bus']) }
 }
 
 /** Those that tell of the past, the most telling one first. */
-export function pastBodies(props: DockProps, isFailed: boolean): Record<string, ReactNode> {
-  const bodies = dockBodies(props)
-  const names = isFailed ? ['Failure', 'Timeline', 'Log', 'Data', 'Plots'] : ['Timeline', 'Log', 'Data', 'Plots']
+export function pastBodies(props: DockProps, isFailed: boolean): DockBodies {
+  const { all } = dockBodies(props)
+  const course: readonly TabName[] = isFailed ? ['Failure', 'Timeline', 'Plots'] : ['Timeline', 'Plots']
+  return { all: only(all, [...course, 'Log', 'Data']), course: only(all, course), records: only(all, ['Log', 'Data']) }
+}
+
+function only(bodies: Record<string, ReactNode>, names: readonly TabName[]): Record<string, ReactNode> {
   return Object.fromEntries(names.map((name) => [name, bodies[name]]))
 }

@@ -24,7 +24,7 @@ export function useMomentAddress(subject: Subject | undefined, node: string | un
     if (address === undefined || !isOfRun()) return
     const timer = setTimeout(() => {
       const text = momentText(timeS, node)
-      history.replaceState(null, '', `${location.pathname}${text && `#${text}`}`)
+      history.replaceState(null, '', `${location.pathname}${location.search}${text && `#${text}`}`)
     }, PATIENCE_MS)
     return () => clearTimeout(timer)
   }, [address, timeS, node])

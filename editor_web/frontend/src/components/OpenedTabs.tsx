@@ -7,17 +7,25 @@ interface OpenedTabsProps {
   readonly label: string
   readonly bodies: Readonly<Record<string, ReactNode>>
   readonly className?: string
+  /** Brings this tab to the front, each time that it is another object. */
+  readonly asked?: { readonly tab: string } | undefined
 }
 
-export function OpenedTabs({ label, bodies, className = '' }: OpenedTabsProps) {
+export function OpenedTabs({ label, bodies, className = '', asked }: OpenedTabsProps) {
   const names = Object.keys(bodies)
   const first = names[0] ?? ''
-  const [tab, setTab] = useState(first)
-  const [opened, setOpened] = useState<ReadonlySet<string>>(new Set([first]))
+  const [tab, setTab] = useState(asked?.tab ?? first)
+  const [answered, setAnswered] = useState(asked)
+  const [opened, setOpened] = useState<ReadonlySet<string>>(new Set([tab]))
 
   function open(name: string | null): void {
     setTab(name ?? first)
     setOpened(new Set([...opened, name ?? first]))
+  }
+
+  if (asked !== answered) {
+    setAnswered(asked)
+    if (asked && names.includes(asked.tab)) open(asked.tab)
   }
 
   return (

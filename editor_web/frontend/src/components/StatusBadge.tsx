@@ -1,19 +1,18 @@
-/** A run's status as a small label. */
-import { StatusIcon, statusOf } from './StatusIcon'
+/** A status in words as a small label. */
+import { runStateOf, runWords, type RunFacts, type Status } from '../document/runState'
+import type { ControlView } from '../api/types'
+import { StatusIcon } from './StatusIcon'
 
-export interface StatusBadgeProps {
-  readonly status: string
-  readonly outcome?: string | null
-  /** Whether a finished run ended well. */
-  readonly success?: boolean
-}
-
-export function StatusBadge({ status, outcome, success = true }: StatusBadgeProps) {
-  const shown = status === 'finished' && !success ? 'failed' : statusOf(status)
+export function StatusBadge({ look, words }: { readonly look: Status; readonly words: string }) {
   return (
-    <span className={`badge is-${shown}`}>
-      <StatusIcon status={shown} size={13} />
-      {outcome && outcome !== status ? `${status}: ${outcome}` : status}
+    <span className={`badge is-${look}`}>
+      <StatusIcon status={look} size={13} />
+      {words}
     </span>
   )
+}
+
+/** How a run is, or how it ended; `control` is that of the watched run. */
+export function RunBadge({ run, control = null }: { readonly run: RunFacts | undefined; readonly control?: ControlView | null }) {
+  return <StatusBadge look={runStateOf(run, control).look} words={runWords(run, control)} />
 }

@@ -4,34 +4,13 @@ import {
   IconCircleCheckFilled,
   IconCircleDashed,
   IconCircleXFilled,
+  IconHelpCircleFilled,
+  IconLockFilled,
+  IconPlayerPauseFilled,
   IconPlayerPlayFilled,
   IconPlayerStopFilled,
 } from '@tabler/icons-react'
-
-export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'warning'
-
-/** Statuses of nodes and of runs, and the severities of findings, in one vocabulary. */
-export function statusOf(word: string): Status {
-  switch (word) {
-    case 'active':
-    case 'running':
-      return 'active'
-    case 'done':
-    case 'finished':
-      return 'done'
-    case 'failed':
-    case 'errored':
-    case 'error':
-      return 'failed'
-    case 'stopped':
-    case 'stopping':
-      return 'stopped'
-    case 'warning':
-      return 'warning'
-    default:
-      return 'idle'
-  }
-}
+import type { Status } from '../document/runState'
 
 const ICONS = {
   idle: IconCircleDashed,
@@ -40,6 +19,9 @@ const ICONS = {
   failed: IconCircleXFilled,
   stopped: IconPlayerStopFilled,
   warning: IconAlertTriangleFilled,
+  paused: IconPlayerPauseFilled,
+  waiting: IconHelpCircleFilled,
+  locked: IconLockFilled,
 }
 
 export function StatusIcon({ status, size = 16 }: { status: Status; size?: number }) {

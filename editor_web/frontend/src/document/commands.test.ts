@@ -1,7 +1,7 @@
 /** Which commands are possible, and why not. */
 import { describe, expect, it } from 'vitest'
 import type { ControlView, RunView, GateWait } from '../api/types'
-import { disabledReason, operatorWords, requestsOf, runStatusText, waitingWords, type Command, type Situation } from './commands'
+import { disabledReason, operatorWords, waitingWords, type Command, type Situation } from './commands'
 
 const run: RunView = {
   id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '',
@@ -41,18 +41,6 @@ describe('a command', () => {
 })
 
 describe('the words of a run', () => {
-  it.each<[Partial<ControlView>, string]>([
-    [{}, 'Running'],
-    [{ paused: true }, 'Pausing: motions come to rest'],
-    [{ paused: true, confirmed: true }, 'Paused, everything rests'],
-    [{ paused: true, confirmed: true, cannot: ['g1'] }, 'Paused; cannot be held: g1'],
-    [{ paused: true, stepping: true }, 'Stepping: runs to the next stop'],
-    [{ waiting: [asks] }, 'Asks for an answer'],
-    [{ waiting: [{ ...asks, reasons: ['lock'] }] }, 'Waits at a lock'],
-  ])('%j: %s', (given, words) => {
-    expect(runStatusText(run, { ...control, ...given })).toBe(words)
-  })
-
   it('says where a node waits and for what', () => {
     expect(waitingWords(asks)).toBe('with held: asks for your agreement')
     expect(waitingWords({ ...asks, point: 'before', outcome: '', reasons: ['pause', 'lock'] })).toBe(
@@ -66,10 +54,4 @@ describe('the words of a run', () => {
       'The operator was lost: the run is stopped',
     )
   })
-})
-
-it('asks only for what waits for agreement', () => {
-  const waiting = [asks, { ...asks, path: 'root/b', reasons: ['lock'] }]
-  expect(requestsOf({ ...control, waiting }).map((each) => each.path)).toEqual(['root/a'])
-  expect(requestsOf(null)).toEqual([])
 })

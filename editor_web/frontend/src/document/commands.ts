@@ -1,6 +1,6 @@
 /** Which commands a run takes now, and in words why it does not take the others. Pure. */
 import type { ControlView, RunView, GateWait } from '../api/types'
-import { isActive } from './live'
+import { isActive } from './runState'
 
 export const LEVELS = ['off', 'low', 'high', 'full'] as const
 export type Level = (typeof LEVELS)[number]
@@ -61,31 +61,12 @@ function obstacleToOrder({ control, node, nodeStatus }: Situation): string | und
   return waits || nodeStatus === 'active' ? undefined : 'this node is not active'
 }
 
-/** The questions of a run to its operator. */
-export function requestsOf(control: ControlView | null): readonly GateWait[] {
-  return control?.waiting.filter((each) => each.reasons.includes('autonomy')) ?? []
-}
-
 const REASONS: Record<string, string> = { pause: 'paused', lock: 'locked', autonomy: 'asks for your agreement' }
 
 /** `before its entry: paused`, `with held: locked`. */
 export function waitingWords({ point, outcome, reasons }: GateWait): string {
   const place = point === 'before' ? 'before its entry' : outcome ? `with ${outcome}` : 'after its end'
   return `${place}: ${reasons.map((reason) => REASONS[reason] ?? `held by ${reason}`).join(', ')}`
-}
-
-/** How a run stands, in one line. */
-export function runStatusText(run: RunView | undefined, control: ControlView | null): string {
-  if (!run || !isActive(run) || !control) return ''
-  if (run.status === 'stopping') return 'Stopping: states clean up, robots come to rest'
-  const asked = requestsOf(control).length
-  if (control.stepping) return 'Stepping: runs to the next stop'
-  if (control.paused && !control.confirmed) return 'Pausing: motions come to rest'
-  if (control.paused) {
-    return control.cannot.length > 0 ? `Paused; cannot be held: ${control.cannot.join(', ')}` : 'Paused, everything rests'
-  }
-  if (asked > 0) return asked === 1 ? 'Asks for an answer' : `Asks for ${asked} answers`
-  return control.waiting.some((each) => each.reasons.includes('lock')) ? 'Waits at a lock' : 'Running'
 }
 
 const LOSSES: Record<string, string> = {

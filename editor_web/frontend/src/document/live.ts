@@ -109,8 +109,3 @@ function mergeRuns(runs: readonly RunView[], changed: readonly RunView[]): reado
   const added = changed.filter((run) => !known.has(run.id))
   return [...added, ...kept].toSorted((a, b) => b.started_at_s - a.started_at_s)
 }
-
-/** Is this run still going? */
-export function isActive(run: RunView | undefined): boolean {
-  return run?.status === 'running' || run?.status === 'stopping'
-}

@@ -1,6 +1,7 @@
 /** Planned paths in words: what a run that asks has planned, and which arms wait for a free path. Pure. */
-import type { Dict } from './dict'
-import type { NodeLive, PlanLive, RobotLive, PathLive } from '../api/types'
+import { lookup, type Dict } from './dict'
+import { requestsOf } from './runState'
+import type { ControlView, GateWait, NodeLive, PlanLive, RobotLive, PathLive } from '../api/types'
 import { duration } from './time'
 
 /** The paths that a node, or what lies inside it, has planned. */
@@ -17,6 +18,11 @@ export function planWords(plan: PlanLive): string {
 /** Is the path that is shown for this arm one that nobody follows yet? */
 export function isProposed(robot: RobotLive | undefined): boolean {
   return robot?.path?.state === 'proposed'
+}
+
+/** The first question that is about paths which the 3D view shows. */
+export function proposedRequest(control: ControlView | null, nodes: Dict<NodeLive>, robots: Dict<RobotLive>): GateWait | undefined {
+  return requestsOf(control).find(({ path }) => plansOf(nodes, path).some((plan) => isProposed(lookup(robots, plan.robot))))
 }
 
 export interface BlockedPath {

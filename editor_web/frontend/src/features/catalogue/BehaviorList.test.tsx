@@ -23,7 +23,7 @@ it('lists them with folder, problems, and whether they run', async () => {
   const [shift, nap] = screen.getAllByRole('link')
   expect(shift).toHaveTextContent('day')
   expect(shift).toHaveTextContent('2 warnings')
-  expect(within(shift ?? document.body).getByRole('img', { name: 'running' })).toBeVisible()
+  expect(within(shift ?? document.body).getByRole('img', { name: 'active' })).toBeVisible()
   expect(nap).toHaveTextContent('1 error')
   expect(nap).toHaveAttribute('aria-current', 'page')
   await user.click(screen.getByRole('link', { name: /shift/ }))

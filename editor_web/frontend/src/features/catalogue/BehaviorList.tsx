@@ -6,7 +6,7 @@ import { useLive } from '../../api/live'
 import type { BehaviorSummary } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
-import { isActive } from '../../document/live'
+import { isActive } from '../../document/runState'
 import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
@@ -90,7 +90,7 @@ function Item({ behavior, current, href, onOpen, isRunning }: ItemProps) {
       >
         <span className="side-item-name">
           {behavior.name}
-          {isRunning && <span className="live-dot" role="img" aria-label="running" />}
+          {isRunning && <span className="live-dot" role="img" aria-label="active" />}
         </span>
         <span className="side-item-text">{fits(behavior) ? folderOf(behavior.id) : `cell ${behavior.fit.cell}`}</span>
         {(behavior.errors > 0 || behavior.warnings > 0) && (

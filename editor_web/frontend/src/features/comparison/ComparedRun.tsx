@@ -1,7 +1,7 @@
 /** One of the two runs: which it is, how it ended, and the way to its page. */
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
-import { StatusBadge } from '../../components/StatusBadge'
+import { RunBadge } from '../../components/StatusBadge'
 import type { Side } from '../../document/comparison'
 import { duration, wallTime } from '../../document/time'
 import styles from './comparison.module.css'
@@ -20,7 +20,7 @@ export function ComparedRun({ side, run, href, onOpen }: ComparedRunProps) {
       <PageLink href={href} onOpen={onOpen}>
         {run.behavior}
       </PageLink>
-      <StatusBadge status={run.status === 'running' ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+      <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
       <span className="quiet">
         {wallTime(run.started_at_s)}, {duration(run.duration_s)}
       </span>

@@ -4,7 +4,7 @@ import { IconMessageQuestion, IconRoute } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import type { GraphNode, GateWait } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
-import { requestsOf } from '../../document/commands'
+import { requestsOf } from '../../document/runState'
 import { nodeAt } from '../../document/tree'
 import { isProposed, plansOf, planWords } from '../../document/plannedPaths'
 import type { Commands } from './useCommands'
@@ -78,7 +78,7 @@ function Planned({ path }: { path: string }) {
   const nodes = useLive((s) => s.nodes)
   const robots = useLive((s) => s.robots)
   return plansOf(nodes, path).map((plan) => (
-    <span key={plan.robot} className="request-plan">
+    <span key={plan.robot} className="request-plan" title={planWords(plan)}>
       <IconRoute size={15} aria-hidden />
       <span>
         <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}

@@ -7,6 +7,7 @@ import type { LiveSnapshot, RunView } from '../../api/types'
 import { ChangeReport } from './ChangeReport'
 import { RefusalLine } from './RefusalLine'
 import { RunBar } from './RunBar'
+import { StatusRow } from './StatusRow'
 import { useCommands } from './useCommands'
 
 const COMMANDS = ['Pause', 'Step into', 'Step over', 'Step out', 'Step back', 'Take control', 'Apply changes', 'Apply changes and preempt']
@@ -18,7 +19,8 @@ function Bar({ of }: { readonly of?: RunView }) {
   return (
     <>
       <RefusalLine />
-      <RunBar run={of} commands={commands} onSheet={() => undefined} onShow={() => undefined} />
+      <RunBar run={of} commands={commands} onSheet={() => undefined} />
+      <StatusRow run={of} root={null} commands={commands} onShow={() => undefined} />
       <ChangeReport commands={commands} />
     </>
   )
@@ -58,7 +60,7 @@ it.each([
   server().on(`POST /runs/r1/control/${command}`, {})
   live(PAUSED)
   const user = show(<Bar of={RUN} />)
-  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Paused, everything rests')
+  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent(/^Paused$/)
   await user.click(button(name))
   expect(server().bodies(`POST /runs/r1/control/${command}`)).toEqual([body])
 })
@@ -80,10 +82,10 @@ it('tells how the run stands and where it waits, as it changes', () => {
   const waiting = [asks('root/first', { point: 'before', outcome: '', required: '', reasons: ['pause'] })]
   const socket = live({ ...PAUSED, control: control({ paused: true, confirmed: false, waiting }) })
   show(<Bar of={RUN} />)
-  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Pausing: motions come to rest')
+  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent(/^Pausing$/)
   expect(screen.getByRole('list', { name: 'Nodes that wait' })).toHaveTextContent('root/first before its entry: paused')
   socket.tell(snapshot({ run: 'r1', runs: [RUN], control: control() }))
-  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Running')
+  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent(/^Running$/)
   expect(screen.queryByRole('list', { name: 'Nodes that wait' })).toBeNull()
   expect(button('Pause')).not.toHaveAttribute('aria-disabled')
 })
@@ -113,7 +115,7 @@ it('follows the autonomy that another console sets', () => {
 it('tells a viewer how the run stands, and why no command is for them', () => {
   live(PAUSED, 'viewer')
   show(<Bar of={RUN} />)
-  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent('Paused, everything rests')
+  expect(screen.getByRole('status', { name: 'State of the run' })).toHaveTextContent(/^Paused$/)
   for (const name of ['Resume', 'Step into', 'Take control', 'Apply changes']) {
     expect(button(name)).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
   }

@@ -1,4 +1,4 @@
-/** The operator's bar: pause, steps, autonomy, operating, hot change; and how the run stands. */
+/** The operator's bar: pause, steps, autonomy, operating, hot change. */
 import {
   IconArrowBarDown,
   IconArrowBarUp,
@@ -16,8 +16,7 @@ import { useOperated } from '../../api/liveStore'
 import type { RunView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
-import { isActive } from '../../document/live'
-import { LEVEL_WORDS, LEVELS, operatorWords, runStatusText, waitingWords, type Command } from '../../document/commands'
+import { LEVEL_WORDS, LEVELS, type Command } from '../../document/commands'
 import type { Commands } from './useCommands'
 
 export interface RunBarProps {
@@ -27,18 +26,14 @@ export interface RunBarProps {
   readonly onSheet?: () => void
   /** What it is the bar of, where there are several. */
   readonly of?: string
-  /** Choose a node and bring it into view. */
-  readonly onShow: (path: string) => void
 }
 
-export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps) {
+export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
   const control = useLive((s) => s.control)
   const operated = useOperated()
   const key = (letter: string) => (onSheet ? letter : undefined)
   const named = (label: string) => (of ? `${label} of ${of}` : label)
   const isHeld = control?.paused === true && !control.stepping
-  // What asks has its own place below the bar.
-  const waiting = control?.waiting.filter((each) => !each.reasons.includes('autonomy')) ?? []
   const isMine = operated === run?.id
   const bar = (command: Command, label: string) => ({
     label,
@@ -95,29 +90,6 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
         />
         {onSheet && <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />}
       </div>
-      {run && isActive(run) && control && (
-        <div className="run-state">
-          <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'} className={`run-status${control.paused ? ' is-paused' : ''}`}>
-            {runStatusText(run, control)}
-          </span>
-          <span className="quiet run-autonomy">
-            Autonomy {control.autonomy}: {LEVEL_WORDS[control.autonomy]}.
-          </span>
-          <span className={control.operator === 'lost' ? 'is-lost' : 'quiet'}>{operatorWords(control, isMine)}</span>
-          {waiting.length > 0 && (
-            <ul className="plain-list run-waits" aria-label="Nodes that wait">
-              {waiting.map((each) => (
-                <li key={`${each.path}|${each.point}`}>
-                  <button type="button" className="link" onClick={() => onShow(each.path)}>
-                    {each.path}
-                  </button>{' '}
-                  {waitingWords(each)}
-                </li>
-              ))}
-            </ul>
-          )}
-        </div>
-      )}
     </section>
   )
 }

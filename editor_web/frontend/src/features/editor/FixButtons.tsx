@@ -1,8 +1,9 @@
 /** What would fix a problem, each to be chosen; and the problems of one node in its form. */
 import { IconBulb } from '@tabler/icons-react'
 import type { Fix } from '../../api/types'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { StatusIcon } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
+import { statusOf } from '../../document/runState'
 import { makeFix } from './fixes'
 import { goTo } from './problems'
 import { draftOf, useEditor } from './store'

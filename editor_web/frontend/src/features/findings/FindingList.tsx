@@ -2,7 +2,8 @@
 import { IconCircleCheck } from '@tabler/icons-react'
 import type { FindingView } from '../../api/types'
 import { Empty } from '../../components/Empty'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { StatusIcon } from '../../components/StatusIcon'
+import { statusOf } from '../../document/runState'
 
 export interface FindingListProps {
   readonly document: string

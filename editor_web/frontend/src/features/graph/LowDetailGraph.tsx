@@ -2,8 +2,8 @@
 import { ViewportPortal, type NodeProps } from '@xyflow/react'
 import { createContext, memo, useContext, useMemo, type ComponentType } from 'react'
 import { useNodeLive } from '../../api/liveParts'
-import { statusOf } from '../../components/StatusIcon'
 import type { Course } from '../../document/layout'
+import { statusOf } from '../../document/runState'
 import type { CanvasNode } from './elements'
 
 /** More nodes than this are drawn in full only where they are seen. */

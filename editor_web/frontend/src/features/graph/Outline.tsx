@@ -3,7 +3,8 @@ import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
 import { useNodeLive } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { StatusIcon } from '../../components/StatusIcon'
+import { statusOf } from '../../document/runState'
 import { kindLabel } from '../../document/tree'
 
 export interface OutlineProps {

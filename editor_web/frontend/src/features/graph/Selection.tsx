@@ -4,6 +4,7 @@ import { useLive } from '../../api/live'
 import type { GraphNode } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { StatusBadge } from '../../components/StatusBadge'
+import { nodeWords, statusOf } from '../../document/runState'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 
@@ -13,7 +14,7 @@ export function Selection({ node }: { node: GraphNode }) {
     <section className="selection" aria-label={`Selected: ${node.name}`}>
       <div className="selection-head">
         <strong>{node.name}</strong>
-        {live && <StatusBadge status={live.status} outcome={live.status === 'done' || live.status === 'failed' ? live.outcome : null} />}
+        {live && <StatusBadge look={statusOf(live.status)} words={nodeWords(live.status, live.status === 'active' ? '' : live.outcome)} />}
       </div>
       <dl className="facts">
         <dt>Kind</dt>

@@ -6,9 +6,9 @@ import type { LogLine } from '../../api/types'
 import { EventLog } from './EventLog'
 
 const CAUSES = [
-  { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed' },
-  { message: 'the part has slipped', where: '', kind: 'PartLost' },
-  { message: 'root/grasp failed', where: 'root/grasp', kind: 'StateError' },
+  { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed', compared: [] },
+  { message: 'the part has slipped', where: '', kind: 'PartLost', compared: [] },
+  { message: 'root/grasp failed', where: 'root/grasp', kind: 'StateError', compared: [] },
 ]
 
 function line(seq: number, told: Partial<LogLine> = {}): LogLine {

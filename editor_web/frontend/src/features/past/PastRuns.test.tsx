@@ -52,9 +52,9 @@ async function at(runs: readonly PastRunBody[], total = runs.length) {
 it('lists the runs with how they ended, and opens one', async () => {
   const user = await at(RUNS)
   const [good, lost, bad] = await screen.findAllByRole('listitem')
-  expect(good).toHaveTextContent('finished: good')
+  expect(good).toHaveTextContent('Succeeded: good')
   expect(good).toHaveTextContent('2.50 s · 40 events · recorded')
-  expect(lost).toHaveTextContent('interrupted')
+  expect(lost).toHaveTextContent('Interrupted')
   expect(bad).toHaveTextContent('no contact')
   expect(screen.getByRole('button', { name: 'Failed 1' })).toHaveAttribute('aria-pressed', 'false')
   await user.click(screen.getAllByRole('link')[2] ?? document.body)

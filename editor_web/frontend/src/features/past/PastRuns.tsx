@@ -8,14 +8,14 @@ import { useLive } from '../../api/live'
 import { pastApi, type PastQuery } from '../../api/timeline'
 import type { PastRunBody, PastRunsBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
-import { StatusBadge } from '../../components/StatusBadge'
+import { RunBadge } from '../../components/StatusBadge'
 import { duration, wallTime } from '../../document/time'
 import { dayEndS, dayStartS } from './days'
 
 const KINDS = [
   ['all', 'All'],
   ['failed', 'Failed'],
-  ['finished', 'Finished'],
+  ['finished', 'Succeeded'],
   ['stopped', 'Stopped'],
   ['running', 'Not ended'],
 ] as const
@@ -129,7 +129,7 @@ function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: (
         }}
       >
         <span className="past-item-name">{run.behavior}</span>
-        <StatusBadge status={run.status === 'running' && !run.here ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+        <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
         <span className="quiet past-item-facts">
           {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
         </span>

@@ -7,7 +7,8 @@ import { useLive } from '../../api/live'
 import type { RobotLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
-import { StatusIcon, type Status } from '../../components/StatusIcon'
+import { StatusIcon } from '../../components/StatusIcon'
+import type { Status } from '../../document/runState'
 
 const LOOKS: Record<string, Status> = {
   moving: 'active',

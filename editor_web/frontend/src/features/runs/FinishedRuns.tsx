@@ -1,10 +1,11 @@
 /** The runs that ended last, one line each. */
 import { Checkbox } from '@mantine/core'
 import type { RunView } from '../../api/types'
-import { StatusBadge } from '../../components/StatusBadge'
+import { RunBadge } from '../../components/StatusBadge'
 import { PageLink } from '../../components/PageLink'
+import { isFailed } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
-import { isFailure, nameOf } from './RunList'
+import { nameOf } from './RunList'
 
 interface FinishedRunsProps {
   readonly runs: readonly RunView[]
@@ -19,7 +20,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
     <ul className="plain-list finished-runs" aria-label="Runs that ended last">
       {runs.map((run) => (
         <li key={run.id}>
-          <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
+          <RunBadge run={run} />
           <PageLink href={href(run.id)} onOpen={() => onOpen(run.id)}>
             {nameOf(run.behavior)}
           </PageLink>
@@ -27,7 +28,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
             {wallTime(run.started_at_s)}, {duration(run.duration_s)}
           </span>
           {run.cause && (
-            <span className={`finished-cause${isFailure(run) ? '' : ' quiet'}`} title={run.cause}>
+            <span className={`finished-cause${isFailed(run) ? '' : ' quiet'}`} title={run.cause}>
               {run.cause}
             </span>
           )}

@@ -6,9 +6,10 @@ import { useNodePart } from '../../api/liveParts'
 import type { GraphNode, RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { PageLink } from '../../components/PageLink'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
-import { runStatusText, waitingWords } from '../../document/commands'
+import { StatusIcon } from '../../components/StatusIcon'
+import { waitingWords } from '../../document/commands'
 import { activeLeaves, pathWords } from '../../document/runProgress'
+import { runStateOf } from '../../document/runState'
 import { wallTime } from '../../document/time'
 import { nameOf } from './RunList'
 import { RunStrip } from './RunStrip'
@@ -33,10 +34,11 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
   const control = useLive((s) => s.control)
   const isKnown = useLive((s) => s.run === run.id)
   const name = nameOf(run.behavior)
+  const state = runStateOf(run, control)
   return (
     <article className={`run-card${run.waits ? ' is-waiting' : ''}`} aria-label={`Run of ${name}`}>
       <header className="run-card-head">
-        <StatusIcon status={run.waits ? 'warning' : statusOf(run.status)} size={17} />
+        <StatusIcon status={state.look} size={17} />
         <h2>
           <PageLink href={href} onOpen={onOpen}>
             {name}
@@ -53,8 +55,11 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
           onChange={(event) => onChoose(event.currentTarget.checked)}
         />
       </header>
-      <p className={`run-status${run.waits ? ' is-paused' : ''}`} role="status" aria-label={`State of ${name}`}>
-        {runStatusText(run, control) || 'Connecting'}
+      <p className={`run-card-state is-${state.look}`}>
+        <strong role="status" aria-label={`State of ${name}`}>
+          {state.word}
+        </strong>
+        {state.reason && <span className="quiet"> {state.reason}</span>}
       </p>
       {root && <RunStrip root={root} />}
       <dl className="run-facts">

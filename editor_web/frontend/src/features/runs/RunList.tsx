@@ -5,8 +5,8 @@ import type { RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
-import { isActive } from '../../document/live'
+import { StatusIcon } from '../../components/StatusIcon'
+import { isActive, runStateOf, runWords } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
 
 export interface RunListProps {
@@ -31,7 +31,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
               isCurrent={run.id === current}
               onOpen={() => onOpen(run.id)}
             >
-              <StatusIcon status={run.waits ? 'warning' : statusOf(isFailure(run) ? 'failed' : run.status)} size={15} />
+              <StatusIcon status={runStateOf(run).look} size={15} />
               <span className="side-item-name">{nameOf(run.behavior)}</span>
               <span className="side-item-text">
                 {wallTime(run.started_at_s)} · {runText(run)}
@@ -44,21 +44,8 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
   )
 }
 
-const WAITS: Record<string, string> = { asks: 'asks', paused: 'paused', locked: 'waits at a lock' }
-
-/** What a run waits for that somebody has to give, in words. */
-export function waitsText(run: RunView): string {
-  return WAITS[run.waits] ?? run.waits
-}
-
 function runText(run: RunView): string {
-  if (isActive(run)) return [run.status, waitsText(run)].filter(Boolean).join(', ')
-  return `${run.outcome ?? run.status}, ${duration(run.duration_s)}`
-}
-
-/** Did it end badly? */
-export function isFailure(run: RunView): boolean {
-  return run.status === 'errored' || (run.status === 'finished' && !run.success)
+  return isActive(run) ? runWords(run) : `${runWords(run)}, ${duration(run.duration_s)}`
 }
 
 /** The file name without its ending. */
@@ -69,7 +56,9 @@ export function nameOf(behavior: string): string {
 /** How long a run takes or took. */
 export function RunTime({ run }: { run: RunView }) {
   const watched = useLive((s) => s.run)
-  if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <SinceStart startedS={run.started_at_s} />
+  // The time of a paused run stands.
+  if (isActive(run) && run.id === watched) return <Elapsed sinceS={0} />
+  if (isActive(run) && run.waits !== 'paused') return <SinceStart startedS={run.started_at_s} />
   return <span className="elapsed">{duration(run.duration_s)}</span>
 }
 

@@ -3,8 +3,8 @@ import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
-import { statusOf } from '../../components/StatusIcon'
 import { stripCells, pathWords, progressText } from '../../document/runProgress'
+import { statusOf } from '../../document/runState'
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])

@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { recordRun, sweepsApi } from '../../api/sweeps'
 import type { RecordedTrial, TrialResult } from '../../api/types'
-import { StatusBadge } from '../../components/StatusBadge'
+import { RunBadge } from '../../components/StatusBadge'
 import { labelOf, short } from '../../document/sweeps'
 import { duration } from '../../document/time'
 import { ShrinkRun } from './ShrinkRun'
@@ -44,7 +44,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
     <section ref={element} className="sweep-card sweep-details" aria-label={`Run ${number}`}>
       <header className="sweep-card-head">
         <h2>Run {number}</h2>
-        {run && <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />}
+        {run && <RunBadge run={run} />}
         <span className="spacer" />
         <button type="button" className="command is-quiet" aria-label={`Close run ${number}`} onClick={onClose}>
           <IconX size={15} aria-hidden />

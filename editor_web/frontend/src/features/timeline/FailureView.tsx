@@ -1,21 +1,25 @@
-/** How a run failed: what to do, the way down to the node where it began, the causes, and what happened there. */
+/** How a run failed: the innermost cause, what was measured, what can be done, and what differs from the last good run. */
 import './styles/timeline.css'
 import { IconCircleCheck, IconCircleX, IconHistory } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { pastApi, seekEvent, type Subject } from '../../api/timeline'
+import type { ReactNode } from 'react'
+import { seekEvent } from '../../api/timeline'
 import type { RunFailure, RunView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { isActive } from '../../document/live'
+import { reportOf } from '../../document/failure'
+import { isActive } from '../../document/runState'
+import { FailureActions, type FailurePage } from './FailureActions'
+import { Around, Causes, LastGood, Measured, Steps, type At } from './FailureParts'
+import { useFailure, useLastGoodRun } from './useFailure'
 import { useSubject } from './useSubject'
 
 export interface FailureViewProps {
   readonly run: RunView | undefined
+  readonly page: FailurePage
   readonly onShow: (path: string) => void
 }
 
-export function FailureView({ run, onShow }: FailureViewProps) {
+export function FailureView({ run, page, onShow }: FailureViewProps) {
   const subject = useSubject(run)
   const isOver = run !== undefined && !isActive(run)
   const { failure, problem } = useFailure(subject, isOver)
@@ -27,8 +31,8 @@ export function FailureView({ run, onShow }: FailureViewProps) {
 
   return (
     <Panel title="Failure" tools={failure && subject && <Tools failure={failure} onShow={show} />}>
-      {failure && subject ? (
-        <FailureText failure={failure} onShow={show} />
+      {failure && run ? (
+        <FailureText run={run} failure={failure} page={page} onShow={show} />
       ) : (
         <Empty icon={<IconCircleCheck size={26} stroke={1.4} aria-hidden />} title={problem || emptyTitle(run, isOver, failure)}>
           When a run fails, this tab tells where it began, why, and what to do.
@@ -36,12 +40,6 @@ export function FailureView({ run, onShow }: FailureViewProps) {
       )}
     </Panel>
   )
-}
-
-interface At {
-  readonly seq: number
-  readonly time_s: number
-  readonly path: string
 }
 
 function Tools({ failure, onShow }: { failure: RunFailure; onShow: (at: At) => void }) {
@@ -65,91 +63,60 @@ function emptyTitle(run: RunView | undefined, isOver: boolean, failure: RunFailu
   return failure === undefined ? 'Reading…' : 'This run did not fail'
 }
 
-interface Found {
-  /** Undefined until the server has answered. */
-  readonly failure: RunFailure | null | undefined
-  readonly problem: string
+interface FailureTextProps {
+  readonly run: RunView
+  readonly failure: RunFailure
+  readonly page: FailurePage
+  readonly onShow: (at: At) => void
 }
 
-function useFailure(subject: Subject | undefined, isOver: boolean): Found {
-  const [found, setFound] = useState<Found>({ failure: undefined, problem: '' })
-  useEffect(() => {
-    setFound({ failure: undefined, problem: '' })
-    if (!subject || !isOver) return
-    let isCurrent = true
-    pastApi.failure(subject).then(
-      (failure) => isCurrent && setFound({ failure, problem: '' }),
-      (error: unknown) => isCurrent && setFound({ failure: null, problem: wordsOf(error) }),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [subject, isOver])
-  return found
-}
-
-function FailureText({ failure, onShow: show }: { failure: RunFailure; onShow: (at: At) => void }) {
-  const { links, steps, around, hint, path } = failure
+function FailureText({ run, failure, page, onShow }: FailureTextProps) {
+  const comparison = useLastGoodRun(run.id, true)
+  const { links, steps, around, hint } = failure
+  const report = reportOf(run, failure, comparison ?? undefined, location.href)
   return (
     <div className="failure" tabIndex={0} role="region" aria-label="How the run failed">
       <div className="failure-head">
         <IconCircleX size={19} aria-hidden />
         <h3>{failure.text}</h3>
       </div>
+      <Measured values={links.flatMap((link) => link.compared)} />
       {hint && (
         <p className="failure-hint">
           <strong>What to do: </strong>
           {hint}
         </p>
       )}
+      <FailureActions {...page} run={run} failure={failure} report={report} />
       <div className="failure-parts">
-        {steps.length > 0 && (
-          <section>
-            <h4>Where</h4>
-            <ol className="failure-steps">
-              {steps.map((step, index) => (
-                <li key={step.path} className={step.path === path ? 'is-origin' : undefined} style={{ marginInlineStart: Math.max(0, index - 1) * 14 }}>
-                  <button type="button" className="link-row" onClick={() => show(step)}>
-                    {step.path.split('/').pop()}
-                  </button>{' '}
-                  <span className="quiet">
-                    {step.text} at {step.time_s.toFixed(2)} s
-                  </span>
-                </li>
-              ))}
-            </ol>
-          </section>
-        )}
         {links.length > 0 && (
-          <section>
-            <h4>Why</h4>
-            <ol>
-              {links.map((link, index) => (
-                <li key={index} className={index === 0 ? 'is-origin' : undefined}>
-                  {index > 0 && <span className="quiet">so </span>}
-                  {link.message}
-                  <div className="quiet mono">{[link.kind, link.where].filter(Boolean).join(' · ')}</div>
-                </li>
-              ))}
-            </ol>
-          </section>
+          <Section title="Why">
+            <Causes links={links} />
+          </Section>
         )}
+        {steps.length > 0 && (
+          <Section title="Where">
+            <Steps failure={failure} onShow={onShow} />
+          </Section>
+        )}
+        <Section title="Against the last good run">
+          <LastGood comparison={comparison} />
+        </Section>
         {around.length > 0 && (
-          <section>
-            <h4>What happened there</h4>
-            <ol>
-              {around.map((line) => (
-                <li key={line.seq}>
-                  <button type="button" className="link-row" onClick={() => show(line)}>
-                    {line.time_s.toFixed(2)} s
-                  </button>{' '}
-                  {line.text}
-                </li>
-              ))}
-            </ol>
-          </section>
+          <Section title="What happened there">
+            <Around lines={around} onShow={onShow} />
+          </Section>
         )}
       </div>
     </div>
+  )
+}
+
+function Section({ title, children }: { readonly title: string; readonly children: ReactNode }) {
+  return (
+    <section>
+      <h4>{title}</h4>
+      {children}
+    </section>
   )
 }

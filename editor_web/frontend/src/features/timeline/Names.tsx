@@ -2,7 +2,8 @@
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useRef, useState, type KeyboardEvent } from 'react'
 import type { ActivationInterval } from '../../api/types'
-import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { StatusIcon } from '../../components/StatusIcon'
+import { statusOf } from '../../document/runState'
 import { spanAt, type ShownRow } from '../../document/timeline'
 import { ROW } from './draw'
 

@@ -3,7 +3,7 @@ import { useEffect, useMemo } from 'react'
 import { streamedSeq, useLive } from '../../api/live'
 import { forget, refresh, runSubject, useTimeline, type Subject } from '../../api/timeline'
 import type { RunView } from '../../api/types'
-import { isActive } from '../../document/live'
+import { isActive } from '../../document/runState'
 
 export function useSubject(run: RunView | undefined): Subject | undefined {
   const opened = useTimeline((s) => s.opened)

@@ -104,7 +104,7 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Watch it run',
-    words: 'The active state is highlighted. The log below lists the events, with times. Wait until it has finished.',
+    words: 'The active state is highlighted. The tab Log lists the events, with times. Wait until it has ended.',
     keys: 'The outline shows the same as text.',
     page: 'behavior',
     targets: ['.react-flow__node .step[data-status="active"]', '.react-flow'],

@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'react'
 import { useLive } from '../../api/live'
 import { setTour, useTour } from '../../api/tour'
-import { isActive } from '../../document/live'
+import { isActive } from '../../document/runState'
 import type { Box } from './place'
 import { STEPS, targetOf, type Facts } from './steps'
 

@@ -2,7 +2,7 @@
 import { Checkbox } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
-import { StatusBadge } from '../../components/StatusBadge'
+import { RunBadge } from '../../components/StatusBadge'
 import { duration, wallTime } from '../../document/time'
 import styles from './trend.module.css'
 
@@ -24,7 +24,7 @@ export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) 
           <PageLink href={href(run.id)} title={run.cause} onOpen={() => onOpen(run.id)}>
             {wallTime(run.started_at_s)}
           </PageLink>
-          <StatusBadge status={run.status === 'running' ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+          <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
           <span className={styles.track} aria-hidden>
             <span className={`${styles.bar} ${styles[endOf(run)]}`} style={{ inlineSize: `${(run.duration_s / longestS) * 100}%` }} />
           </span>
