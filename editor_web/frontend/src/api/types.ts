@@ -552,6 +552,7 @@ export interface DocumentNode {
   readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
+  readonly disabled: boolean | string
   readonly label: string
   readonly role: string
   readonly line: number
@@ -685,7 +686,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -962,6 +963,7 @@ export interface GraphNode {
   readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
+  readonly disabled: boolean | string
 }
 
 /** A transition of a state machine; the outcome of a timeout is `after 30 s`, that of on_error is `error`. */
@@ -1370,7 +1372,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1391,6 +1393,15 @@ export interface NodeRetried {
   readonly attempt: number
   readonly wait_s: number
   readonly cause: Cause | null
+}
+
+/** A disabled node was passed over with an outcome; it was not entered. In a tree its status is `skipped`. */
+export interface NodeSkipped {
+  readonly event: "skipped"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly outcome: string
 }
 
 /** The activations of a node that ended in a run, and the seconds that they took on its clock. */
@@ -1972,7 +1983,7 @@ export interface SetDocument {
   readonly changes: Dict<unknown>
 }
 
-/** Set one field of a node; null removes it. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
+/** Set one field of a node; null removes it. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, disabled, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
 export interface SetField {
   readonly edit: "set_field"
   readonly path: string
