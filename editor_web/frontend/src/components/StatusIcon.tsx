@@ -6,9 +6,10 @@ import {
   IconCircleXFilled,
   IconPlayerPlayFilled,
   IconPlayerStopFilled,
+  IconPlayerTrackNextFilled,
 } from '@tabler/icons-react'
 
-export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'warning'
+export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'skipped' | 'warning'
 
 /** Statuses of nodes and of runs, and the severities of findings, in one vocabulary. */
 export function statusOf(word: string): Status {
@@ -26,6 +27,8 @@ export function statusOf(word: string): Status {
     case 'stopped':
     case 'stopping':
       return 'stopped'
+    case 'skipped':
+      return 'skipped'
     case 'warning':
       return 'warning'
     default:
@@ -39,6 +42,7 @@ const ICONS = {
   done: IconCircleCheckFilled,
   failed: IconCircleXFilled,
   stopped: IconPlayerStopFilled,
+  skipped: IconPlayerTrackNextFilled,
   warning: IconAlertTriangleFilled,
 }
 
