@@ -25,7 +25,18 @@ from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
 from engine.project.cell_runner import CellRunner, PreparedRun
 from engine.project.resume_plan import plan_resume
-from engine.project.run_request import RunPosition, RunRequest, require_names, require_simulation, start_at
+from engine.project.run_request import (
+    RunPosition,
+    RunRequest,
+    RunStart,
+    StartData,
+    latest_entry,
+    require_entered,
+    require_names,
+    require_simulation,
+    start_at,
+    start_without_run,
+)
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
 from engine.project.session_recordings import SessionRecordings
@@ -44,6 +55,8 @@ from engine.suggestions import did_you_mean
 
 RunCallback = Callable[[LiveRun, LiveRunChange], None]
 _KEPT_RUNS = 200
+_LOOKED_AT = 20
+"""Earlier runs in which the entry of a node is looked for."""
 
 
 class Session:
@@ -132,6 +145,7 @@ class Session:
         supervision: RunOptions | None = None,
         breakpoints: bool = False,
         begin: RunPosition | None = None,
+        until: str | None = None,
         faults: Faults | None = None,
     ) -> str:
         """Start a run after every earlier STOP has ended, and return its id.
@@ -143,7 +157,8 @@ class Session:
             inputs: Initial values of userdata keys.
             supervision: Autonomy, whether an operator is demanded, time-outs.
             breakpoints: Whether to use the breakpoints file of the behavior.
-            begin: The event of a run in the journal to start from; the cell is not restored.
+            begin: Where to start instead of at the beginning; the cell is not restored, and `inputs` replace values.
+            until: A node before which it pauses once.
             faults: Faults injected into this run only.
 
         Raises:
@@ -154,10 +169,16 @@ class Session:
         watched = supervision or RunOptions()
         if breakpoints:
             watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
+        if until is not None:
+            require_entered(plan, until)
+            watched = msgspec.structs.replace(
+                watched, breakpoints=(*watched.breakpoints, Breakpoint(path=until, once=True))
+            )
         start = None
         if begin is not None:
-            start = start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
+            start = self._start_of(begin, plan)
             parameters = start.parameters(plan, parameters)
+            start, inputs = start.with_userdata(plan, inputs or {}), {}
         if self.cell.document is not None:
             catalogue = self._library.catalogue
             await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
@@ -174,6 +195,28 @@ class Session:
         await self._stops.over()
         prepared = await self._runner.start(request)
         return self._add(behavior_id, prepared)
+
+    def _start_of(self, begin: RunPosition, plan: Plan) -> RunStart:
+        if begin.run and begin.seq is not None:
+            return start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
+        if begin.run or begin.path is None:
+            hint = "give `path` without `run`, or both `run` and `seq`"
+            raise ControlError("this is no place to start at", where=begin.run or plan.name, hint=hint)
+        return start_without_run(plan, begin.path)
+
+    async def start_data(self, behavior_id: str, path: str) -> StartData:
+        """Return the data with which a run of a behavior can start at a node: of the last run that entered it.
+
+        Raises:
+            FlexcellError: there is no such behavior, or it has errors.
+        """
+        _, plan = await asyncio.to_thread(self._planned, behavior_id)
+        return await asyncio.to_thread(self._latest_entry, plan, path)
+
+    def _latest_entry(self, plan: Plan, path: str) -> StartData:
+        place = self._journal.path
+        known = [each for each in reversed(list_runs(place)) if each.behavior == plan.name and not each.damage]
+        return latest_entry(plan, (read_run(place, each.id) for each in known[:_LOOKED_AT]), path)
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
         """Return the runs of the journal whose process died, oldest first."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from copy import deepcopy
+from typing import Any, cast
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
@@ -18,6 +19,7 @@ from tests.engine.check.random_behaviors import Plain, behaviors
 from tests.engine.run_document import ObservedRun, plan_of, run_document
 from tests.tiers import examples
 
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example, HealthCheck.filter_too_much]
 MACHINE = """
     root:
       machine:
@@ -191,7 +193,7 @@ def test_a_node_that_is_enabled_in_words_is_enabled() -> None:
 
 
 @given(behaviors(safe=True), st.data())
-@settings(max_examples=examples(40, nightly=400), deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(40, nightly=400), deadline=None, suppress_health_check=SLOW)
 def test_a_tree_runs_like_the_one_without_what_is_disabled(document: Plain, data: st.DataObject) -> None:
     """Every node is entered and left at the same time, with the same outcome."""
     off, without = deepcopy(document), deepcopy(document)
@@ -215,14 +217,16 @@ def test_a_tree_runs_like_the_one_without_what_is_disabled(document: Plain, data
 
 def _groups(node: Plain, *, in_tree: bool) -> Iterator[list[Plain]]:
     """Yield the lists of children of sequences, selectors and parallels, outer ones first."""
-    for kind, body in node.items():
+    for kind, given_body in node.items():
+        body: Any = given_body
         if in_tree and kind in ("sequence", "selector", "parallel"):
             yield body["children"]
         if isinstance(body, dict):
-            inside = [*body.get("states", {}).values(), *body.get("children", ())]
-            inside += [body[key] for key in ("child", "if", "then", "else", "while", "do") if key in body]
+            held = cast("Plain", body)
+            inside: list[Plain] = [*held.get("states", {}).values(), *held.get("children", ())]
+            inside += [held[key] for key in ("child", "if", "then", "else", "while", "do") if key in held]
             parts = in_tree and kind not in ("machine", "priority", "concurrency", "foreach")
-            for child in [body] if kind == "tree" else inside:
+            for child in [held] if kind == "tree" else inside:
                 yield from _groups(child, in_tree=kind == "tree" or parts)
 
 

@@ -168,7 +168,7 @@ export interface BranchesPreempted {
   readonly branches: readonly string[]
 }
 
-/** Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches. `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to these outcomes. */
+/** Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches. `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to these outcomes. One with `once` is removed when it has paused the run. */
 export interface Breakpoint {
   readonly path: string
   readonly when?: "after" | "before"
@@ -176,6 +176,7 @@ export interface Breakpoint {
   readonly hits?: number
   readonly outcomes?: readonly string[]
   readonly enabled?: boolean
+  readonly once?: boolean
 }
 
 /** All breakpoints of a run or a behavior; they replace the previous ones. */
@@ -1797,10 +1798,10 @@ export interface RunFailure {
   readonly around: readonly LogLine[]
 }
 
-/** An event of a run in the journal; `path` is the node to start at, by default the state entered last. */
+/** Where a run starts: at the node `path`, with the data of event `seq` of a run in the journal. Without `run`, it starts with the initial userdata. Without `path`, at the state entered last. */
 export interface RunPosition {
-  readonly run: string
-  readonly seq: number
+  readonly run?: string
+  readonly seq?: number | null
   readonly path?: string | null
 }
 
@@ -2090,7 +2091,7 @@ export interface SkillInfo {
   readonly answer: string
 }
 
-/** A request to start a run; without a seed the server chooses one. With `breakpoints`, those in the file of the behavior hold. */
+/** A request to start a run; without a seed the server chooses one. With `breakpoints`, those in the file of the behavior hold. The run pauses once before the node `until`. */
 export interface StartBody {
   readonly behavior: string
   readonly parameters?: Dict<unknown>
@@ -2099,6 +2100,17 @@ export interface StartBody {
   readonly supervision?: Supervision
   readonly breakpoints?: boolean
   readonly begin?: RunPosition | null
+  readonly until?: string | null
+}
+
+/** The data with which a run can start at a node: of the last run that entered it, else the initial values. `run` is empty where no run has; `seq` is the event before its entry. `obstacle` tells why a run cannot start there. */
+export interface StartData {
+  readonly run: string
+  readonly seq: number | null
+  readonly started_unix_s: number
+  readonly parameters: Dict<unknown>
+  readonly userdata: Dict<unknown>
+  readonly obstacle: string
 }
 
 /** From the page: prepare to jog this arm, until `rest`. */

@@ -85,7 +85,7 @@ function sizeOf(box: Box, axis: Axis): number {
   return axis === 'x' ? box.width : box.height
 }
 
-function along(axis: Axis, at: number, { x, y }: Point): Point {
+function movedTo(axis: Axis, at: number, { x, y }: Point): Point {
   return axis === 'x' ? { x: at, y } : { x, y: at }
 }
 
@@ -101,7 +101,7 @@ function apart(all: readonly Placed[], axis: Axis, put: (box: Box) => Box): Read
       const at = Math.max(box[axis], free)
       free = at + sizeOf(box, axis) + SPACE[axis]
       const { x, y } = put(box)
-      return [id, along(axis, at, { x, y })] as const
+      return [id, movedTo(axis, at, { x, y })] as const
     }),
   )
 }
@@ -112,7 +112,7 @@ function spaced(all: readonly Placed[], axis: Axis, space: number, put: (box: Bo
   return new Map(
     inOrder(all, axis).map(([id, box]) => {
       const { x, y } = put(box)
-      const corner = along(axis, at, { x, y })
+      const corner = movedTo(axis, at, { x, y })
       at += sizeOf(box, axis) + space
       return [id, corner] as const
     }),

@@ -64,7 +64,7 @@ function shownCommand(id: string): Command | undefined {
   const node = chosenOf(editor())
   if (!node || (node.path === ROOT && ['disable', 'rename', 'remove', 'run-from', 'run-to'].includes(id))) return undefined
   if ((id === 'enter' || id === 'open') && !isFrame(node) && node.document === null) return undefined
-  if (id === 'alike' && node.kind !== 'state') return undefined
+  if (id === 'alike' && !node.title) return undefined
   return COMMANDS.find((command) => command.id === id)
 }
 

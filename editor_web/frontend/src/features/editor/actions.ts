@@ -189,6 +189,14 @@ async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
   if (answer) chooseChanged(answer.changed, [])
 }
 
+/** Select the nodes of this behavior that run the same state, behavior or behaviour as the selected one. */
+export function selectAlike(): void {
+  const root = rootOf(editor())
+  const chosen = chosenOf(editor())
+  if (!root || !chosen?.title) return
+  choose(allNodes(root).filter((node) => node.kind === chosen.kind && node.title === chosen.title).map((node) => node.path))
+}
+
 export function selectAll(): void {
   choose(scopeOf(editor())?.children.map((child) => child.path) ?? [])
 }

@@ -1,6 +1,7 @@
 /** What clicks and wires on the canvas do. Not made anew with each drawing, or every node would be drawn again with it. */
 import type { Connection } from '@xyflow/react'
 import type { MouseEvent } from 'react'
+import { pointOf } from '../../components/menuPoint'
 import { isHolder, nameOfPath, parentPath } from '../../document/editing/model'
 import { choose, chooseArrow, connect, enter, toggleOpen } from './actions'
 import { openReferred } from './pageActions'
@@ -52,9 +53,5 @@ export function onNodeMenu(event: MouseEvent, node: CanvasNode): void {
 
 export function onSelectionMenu(event: MouseEvent): void {
   event.preventDefault()
-  const { clientX, clientY, currentTarget } = event
-  const box = currentTarget.getBoundingClientRect()
-  // The key for menus gives no place.
-  const isByKey = clientX === 0 && clientY === 0
-  setEditor({ menu: isByKey ? { x: box.left + box.width / 2, y: box.top + box.height / 2 } : { x: clientX, y: clientY } })
+  setEditor({ menu: pointOf(event) })
 }
