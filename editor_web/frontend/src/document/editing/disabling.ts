@@ -43,7 +43,7 @@ export function isPassedOver(root: EditNode, path: string): boolean {
   })
 }
 
-/** What is written on a disabled node. */
+/** What is written on a disabled node: that it is, and how a run goes on. */
 export function disabledText(disabled: boolean | string): string {
-  return typeof disabled === 'string' ? `disabled, passes with ${disabled}` : 'disabled'
+  return typeof disabled === 'string' ? `disabled → ${disabled}` : 'disabled'
 }

@@ -68,6 +68,16 @@ function shownCommand(id: string): Command | undefined {
   return COMMANDS.find((command) => command.id === id)
 }
 
+/** Shorter than in the palette: here it is plain what is meant. */
+const WORDS: Readonly<Record<string, string>> = {
+  enter: 'Go in',
+  open: 'Open or close in place',
+  connect: 'Connect an outcome…',
+  initial: 'Begin with it',
+  note: 'Note',
+  alike: 'Select all that run the same',
+}
+
 /** What it does to what is selected. */
 function wordsNow(command: Command): string {
   const { selection } = editor()
@@ -76,5 +86,5 @@ function wordsNow(command: Command): string {
     const verb = nodes.every((node) => node.disabled !== false) ? 'Enable' : 'Disable'
     return nodes.length > 1 ? `${verb} ${nodes.length} nodes` : verb
   }
-  return command.words
+  return WORDS[command.id] ?? command.words
 }

@@ -9,6 +9,7 @@ import { add, choose, moveInto } from './actions'
 import { draftFrom } from './apply'
 import { setCanvasPositions } from './canvasPositions'
 import { DisabledForm } from './DisabledForm'
+import { EditHistory } from './EditHistory'
 import { Inspector } from './Inspector'
 import { NodeMenu } from './NodeMenu'
 import { align } from './placing'
@@ -127,4 +128,17 @@ it('opens the menu of a node with what can be done with it', async () => {
   await user.click(within(menu).getByRole('menuitem', { name: /^Disable/ }))
   await waitFor(() => expect(edits()).toEqual([[{ edit: 'set_field', path: 'root/grasp', field: 'disabled', value: 'held' }]]))
   expect(useEditor.getState().menu).toBeUndefined()
+})
+
+it('lists the edits, and goes to one of them', async () => {
+  const first = useEditor.getState().history
+  const step = (label: string) => ({ label, draft: { ...(first.steps[0]?.draft ?? draftFrom({ hash: '', graph: ROOT, findings: [], checked: true }, '', undefined)), text: label }, burst: '' })
+  setEditor({ history: { steps: [...first.steps, step('Add lift'), step('Rename lift'), step('Delete place')], at: 3 } })
+  const user = show(<EditHistory />)
+  await user.click(screen.getByRole('button', { name: 'History of edits' }))
+  const items = await screen.findAllByRole('menuitem')
+  expect(items.map((item) => item.textContent)).toEqual(['Delete place', 'Rename lift', 'Add lift', 'Opened'])
+  await user.click(screen.getByRole('menuitem', { name: 'Add lift' }))
+  await waitFor(() => expect(useEditor.getState().history.at).toBe(1))
+  expect(useEditor.getState().history.steps).toHaveLength(4)
 })
