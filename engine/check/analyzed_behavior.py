@@ -11,6 +11,7 @@ import msgspec
 from engine.check.end_statuses import BOTH, SKIPPED, Status, Statuses, closed_statuses, end_statuses
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import DocumentGaps
+from engine.check.node_in_run import in_run
 from engine.document.behavior import Behavior
 from engine.document.expression.expression import Template, compile_template
 from engine.document.nodes.concurrency_condition import deciding
@@ -154,17 +155,6 @@ class _OwnFacts(NamedTuple):
 
 def _own_facts(node: NodeSpec) -> _OwnFacts:
     return _OwnFacts(_targets(node), {name: template(value) for name, value in node.parameters.items()})
-
-
-def in_run(node: NodeSpec) -> NodeSpec:
-    """Return the node as a run meets it: a disabled one is a state that does nothing, and leads on with one outcome."""
-    return node.derived(_passed_over) if node.is_disabled else node
-
-
-def _passed_over(node: NodeSpec) -> NodeSpec:
-    outcome = node.passes_with
-    transitions = {outcome: node.transitions[outcome]} if outcome in node.transitions else {}
-    return NodeSpec(state="", name=node.own_name, transitions=transitions, disabled=node.disabled)
 
 
 def _targets(node: NodeSpec) -> dict[tuple[str, ...], str]:

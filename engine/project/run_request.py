@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import Annotated
 
 import msgspec
@@ -14,14 +15,18 @@ from engine.document import Behavior
 from engine.document.cell import Cell
 from engine.document.faults import Faults
 from engine.errors import ControlError, FlexcellError
-from engine.event import NodeEntered
+from engine.journal import list_runs
 from engine.recording import RecordedDocuments
-from engine.recording.recorded_run import RecordedRun
+from engine.recording.recorded_run import RecordedRun, read_run
+from engine.runtime.control import Breakpoint
 from engine.runtime.history.checkpoint import Checkpoint
-from engine.runtime.history.resume import last_entered_state, read_history, start_checkpoint
+from engine.runtime.history.resume import last_entered_state, last_entry, read_history, start_checkpoint
 from engine.runtime.plan import Catalogue, Plan
 from engine.runtime.run_options import RunOptions
 from engine.suggestions import did_you_mean
+
+_LOOKED_AT = 20
+"""Earlier runs in which the entry of a node is looked for."""
 
 
 class RunPosition(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -133,6 +138,26 @@ def start_without_run(plan: Plan, path: str) -> RunStart:
     return RunStart(checkpoint=start_checkpoint(read_history(plan, "", ()), plan, path))
 
 
+def start_of(place: Path | str, begin: RunPosition, plan: Plan) -> RunStart:
+    """Return the start at a position: of a run of the journal in `place`, or with the initial values.
+
+    Raises:
+        FlexcellError: there is no such run or event, or a run cannot start there.
+    """
+    if begin.run and begin.seq is not None:
+        return start_at(read_run(place, begin.run), plan, seq=begin.seq, path=begin.path)
+    if begin.run or begin.path is None:
+        hint = "give `path` without `run`, or both `run` and `seq`"
+        raise ControlError("this is no place to start at", where=begin.run or plan.name, hint=hint)
+    return start_without_run(plan, begin.path)
+
+
+def start_data(place: Path | str, plan: Plan, path: str) -> StartData:
+    """Return the data with which a run can start at a node: of the last run of the journal that entered it."""
+    known = [each for each in reversed(list_runs(place)) if each.behavior == plan.name and not each.damage]
+    return latest_entry(plan, (read_run(place, each.id) for each in known[:_LOOKED_AT]), path)
+
+
 def latest_entry(plan: Plan, runs: Iterable[RecordedRun], path: str) -> StartData:
     """Return the data that the first of the runs had which entered a node, just before its last entry.
 
@@ -142,8 +167,7 @@ def latest_entry(plan: Plan, runs: Iterable[RecordedRun], path: str) -> StartDat
         path: The node.
     """
     for found in runs:
-        entries = (each.seq for each in found.effective if isinstance(each, NodeEntered) and each.path == path)
-        entered = max(entries, default=0)
+        entered = last_entry(found.effective, path)
         if entered > 1:
             seq = entered - 1
             values = read_history(plan, found.id, found.events, until_seq=seq).userdata()
@@ -168,18 +192,21 @@ def _obstacle(start: Callable[[], RunStart]) -> str:
     return ""
 
 
-def require_entered(plan: Plan, path: str) -> None:
-    """Refuse a node that no run of the plan enters.
+def paused_before(plan: Plan, options: RunOptions, path: str | None) -> RunOptions:
+    """Return the options of a run that pauses once before the node at `path`; the same for None.
 
     Raises:
-        ControlError: there is no such node, or it is disabled.
+        ControlError: no run enters such a node.
     """
+    if path is None:
+        return options
     node = plan.nodes.get(path)
     if node is None:
         hint = did_you_mean(path, plan.nodes)
         raise ControlError("no run enters this node: it does not exist, or is a part of a tree", where=path, hint=hint)
     if node.disabled is not None:
         raise ControlError("no run enters this node: it is disabled", where=path, hint="choose the next node")
+    return msgspec.structs.replace(options, breakpoints=(*options.breakpoints, Breakpoint(path=path, once=True)))
 
 
 def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) -> None:

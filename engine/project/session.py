@@ -28,14 +28,12 @@ from engine.project.resume_plan import plan_resume
 from engine.project.run_request import (
     RunPosition,
     RunRequest,
-    RunStart,
     StartData,
-    latest_entry,
-    require_entered,
+    paused_before,
     require_names,
     require_simulation,
-    start_at,
-    start_without_run,
+    start_data,
+    start_of,
 )
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
@@ -55,8 +53,6 @@ from engine.suggestions import did_you_mean
 
 RunCallback = Callable[[LiveRun, LiveRunChange], None]
 _KEPT_RUNS = 200
-_LOOKED_AT = 20
-"""Earlier runs in which the entry of a node is looked for."""
 
 
 class Session:
@@ -169,19 +165,14 @@ class Session:
         watched = supervision or RunOptions()
         if breakpoints:
             watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
-        if until is not None:
-            require_entered(plan, until)
-            watched = msgspec.structs.replace(
-                watched, breakpoints=(*watched.breakpoints, Breakpoint(path=until, once=True))
-            )
+        watched = paused_before(plan, watched, until)
         start = None
         if begin is not None:
-            start = self._start_of(begin, plan)
+            start = start_of(self._journal.path, begin, plan)
             parameters = start.parameters(plan, parameters)
             start, inputs = start.with_userdata(plan, inputs or {}), {}
         if self.cell.document is not None:
-            catalogue = self._library.catalogue
-            await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
+            await asyncio.to_thread(require_names, behavior, self._library.catalogue, self.cell.document, parameters)
         request = RunRequest(
             plan=plan,
             parameters=parameters,
@@ -196,27 +187,10 @@ class Session:
         prepared = await self._runner.start(request)
         return self._add(behavior_id, prepared)
 
-    def _start_of(self, begin: RunPosition, plan: Plan) -> RunStart:
-        if begin.run and begin.seq is not None:
-            return start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
-        if begin.run or begin.path is None:
-            hint = "give `path` without `run`, or both `run` and `seq`"
-            raise ControlError("this is no place to start at", where=begin.run or plan.name, hint=hint)
-        return start_without_run(plan, begin.path)
-
     async def start_data(self, behavior_id: str, path: str) -> StartData:
-        """Return the data with which a run of a behavior can start at a node: of the last run that entered it.
-
-        Raises:
-            FlexcellError: there is no such behavior, or it has errors.
-        """
+        """Return the data with which a run of a behavior can start at a node: of the last run that entered it."""
         _, plan = await asyncio.to_thread(self._planned, behavior_id)
-        return await asyncio.to_thread(self._latest_entry, plan, path)
-
-    def _latest_entry(self, plan: Plan, path: str) -> StartData:
-        place = self._journal.path
-        known = [each for each in reversed(list_runs(place)) if each.behavior == plan.name and not each.damage]
-        return latest_entry(plan, (read_run(place, each.id) for each in known[:_LOOKED_AT]), path)
+        return await asyncio.to_thread(start_data, self._journal.path, plan, path)
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
         """Return the runs of the journal whose process died, oldest first."""

@@ -191,6 +191,27 @@ def last_entered_state(events: Iterable[Event], seq: int) -> str:
     return last.path
 
 
+def last_entry(events: Iterable[Event], path: str) -> int:
+    """Return the number of the last event by which the node at `path` was entered; 0 where it never was."""
+    entries = _Entries(path)
+    for event in events:
+        entries.take(event)
+    return entries.seq
+
+
+class _Entries(RunStatePart):
+    """The last entry of one node."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self.seq = 0
+
+    def node_entered(self, event: NodeEntered) -> None:
+        """Keep the number of an entry."""
+        if event.path == self._path:
+            self.seq = event.seq
+
+
 class _LastState(RunStatePart):
     """The state that was entered last."""
 

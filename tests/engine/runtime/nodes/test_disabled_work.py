@@ -32,7 +32,7 @@ MACHINE = """
 HANGING = "{state: test.Hang, disabled: never, guard: {when: '${1 < 0}', to: bad}, transitions: {never: three}}"
 
 
-def told(event: Event) -> str:
+def line_of(event: Event) -> str:
     """Return an event in short."""
     match event:
         case NodeEntered():
@@ -51,7 +51,7 @@ def told(event: Event) -> str:
 
 def course(run: ObservedRun) -> list[str]:
     """Return what happened inside the root, in short."""
-    return [line for line in map(told, run.events) if line and line != "+root"]
+    return [line for line in map(line_of, run.events) if line and line != "+root"]
 
 
 def test_a_machine_passes_a_disabled_state_by_its_outcome() -> None:
@@ -149,7 +149,7 @@ def test_a_tree_leaves_out_what_is_disabled(tree: str, outcome: str, entered: li
     assert (run.result.outcome, [name for name in names if name in "ac"]) == (outcome, entered)
 
 
-def test_the_page_is_told_what_was_skipped() -> None:
+def test_the_page_shows_what_was_skipped() -> None:
     """The state of the run has a word for it, in machines and trees."""
     run = run_document("""
         root:
@@ -208,11 +208,11 @@ def test_a_tree_runs_like_the_one_without_what_is_disabled(document: Plain, data
         cut[:] = [child for number, child in enumerate(cut) if number not in chosen]
     assume(off != document)
     for seed in range(2):
-        told_off, told_without = (
+        run_off, run_without = (
             [each for each in events_of(one, seed) if isinstance(each, NodeEntered | NodeExited)]
             for one in (off, without)
         )
-        assert [_without_number(each) for each in told_off] == [_without_number(each) for each in told_without]
+        assert [_without_number(each) for each in run_off] == [_without_number(each) for each in run_without]
 
 
 def _groups(node: Plain, *, in_tree: bool) -> Iterator[list[Plain]]:
