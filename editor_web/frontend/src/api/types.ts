@@ -1289,7 +1289,7 @@ export interface MoveResultBody {
   readonly left: readonly string[]
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, whose kind is `path`; the id of a run. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run. */
 export interface NameHit {
   readonly kind: "behavior" | "entry" | "node" | "run"
   readonly id: string

@@ -15,6 +15,7 @@ const SHIFT: BehaviorView = {
   graph: null,
   view: {},
   success: [],
+  fit: { cell: '', obstacle: '' },
 }
 const FOUND: StartData = { run: 'r7', seq: 41, started_unix_s: 1000, parameters: { speed: 0.2 }, userdata: { part: 'a' }, obstacle: '' }
 const DATA = 'GET /runs/start-data'
