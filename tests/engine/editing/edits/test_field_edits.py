@@ -221,8 +221,7 @@ def test_a_disabled_node_stays_disabled_where_it_is_moved_to() -> None:
     """An outcome leads on in a machine, the parent in a tree."""
     off = edited(TREE, {"edit": "set_field", "path": "root/sequence/Give", "field": "disabled", "value": True})
     assert "disabled: true" in off
-    text = edited(TEXT, {"edit": "set_field", "path": "root/second", "field": "disabled", "value": "b"})
-    grouped = edited(text, {"edit": "group", "paths": ["root/second"], "kind": "sequence"})
-    assert "disabled: true" in grouped
-    copied = json.dumps([{"name": "off", "state": "test.Give", "disabled": True}])
-    assert "disabled: a" in edited(TEXT, {"edit": "paste", "parent": "root", "yaml": _copied(copied)})
+    paste = {"edit": "paste", "parent": "root/sequence", "yaml": "off: {state: test.Give, disabled: b}\n"}
+    assert edited(TREE, paste).count("disabled: true") == 1
+    pasted = edited(TEXT, {"edit": "paste", "parent": "root", "yaml": "off: {state: test.Give, disabled: true}\n"})
+    assert "disabled: a" in pasted
