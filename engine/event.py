@@ -182,6 +182,13 @@ class NodeDiverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaul
     cause: Cause | None = None
 
 
+class NodeSkipped(Event, frozen=True, kw_only=True, tag="skipped"):
+    """A disabled node was passed over with an outcome; it was not entered. In a tree its status is `skipped`."""
+
+    path: str
+    outcome: str
+
+
 class BranchesPreempted(Event, frozen=True, kw_only=True, tag="branches_preempted"):
     """A condition of concurrency container `path` preempts some branches while the others continue.
 
@@ -393,6 +400,7 @@ AnyEvent = (
     | UserdataWritten
     | TransitionTaken
     | NodeDiverted
+    | NodeSkipped
     | BranchesPreempted
     | NodeRetried
     | StatusChanged

@@ -14,7 +14,7 @@ from engine.runtime import Supervision
 class StartBody(RequestBody, frozen=True, kw_only=True):
     """A request to start a run; without a seed the server chooses one.
 
-    With `breakpoints`, those in the file of the behavior hold.
+    With `breakpoints`, those in the file of the behavior hold. The run pauses once before the node `until`.
     """
 
     behavior: str
@@ -24,3 +24,4 @@ class StartBody(RequestBody, frozen=True, kw_only=True):
     supervision: Supervision = Supervision()
     breakpoints: bool = False
     begin: RunPosition | None = None
+    until: Annotated[str, Meta(max_length=4000)] | None = None

@@ -15,6 +15,7 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import FlexcellError
 from engine.event import AnyEvent
+from engine.project import StartData
 from engine.runtime import RunOptions
 from engine.runtime.history import RunView
 
@@ -26,6 +27,14 @@ KEPT_KEYS = 200
 def list_runs(services: ServicesOf) -> tuple[RunView, ...]:
     """List the known runs, newest first."""
     return services.backend.runs()
+
+
+@router.get("/start-data", responses={422: {"model": ErrorBody}})
+async def get_start_data(
+    services: ServicesOf, behavior: Annotated[str, Query(max_length=1000)], path: Annotated[str, Query(max_length=4000)]
+) -> StartData:
+    """Return the data with which a run of a behavior can start at a node: of the last run that entered it."""
+    return await services.backend.start_data(behavior, path)
 
 
 @router.get("/{run_id}", responses={404: {"model": ErrorBody}})
@@ -57,6 +66,7 @@ async def start_run(
         supervision=RunOptions(**asdict(body.supervision)),
         breakpoints=body.breakpoints,
         begin=body.begin,
+        until=body.until,
     )
     if idempotency_key is not None:
         started[idempotency_key] = run_id

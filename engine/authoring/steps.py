@@ -32,6 +32,7 @@ class NameKeys(TypedDict, total=False):
     name: str
     description: str
     post: PostConditionsSpec
+    disabled: bool | str
 
 
 class PartKeys(NameKeys, total=False):

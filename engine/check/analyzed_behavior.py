@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import msgspec
 
-from engine.check.end_statuses import BOTH, Status, Statuses, closed_statuses, end_statuses
+from engine.check.end_statuses import BOTH, SKIPPED, Status, Statuses, closed_statuses, end_statuses
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import DocumentGaps
+from engine.check.node_in_run import in_run
 from engine.document.behavior import Behavior
 from engine.document.expression.expression import Template, compile_template
 from engine.document.nodes.concurrency_condition import deciding
@@ -60,7 +61,7 @@ class AnalyzedBehavior:
     base: str
     nodes: Mapping[str, NodeAt]
     due: tuple[NodeAt, ...]
-    """The nodes that a check must look at by themselves: all but the states of which `note_settled` knows better."""
+    """The nodes that a check must look at by themselves: none that is disabled or of which `note_settled` knows."""
     inside: Mapping[str, tuple[NodeAt, ...]]
     """The nodes directly inside each container, by its path."""
     signatures: Mapping[str, StateSignature]
@@ -79,6 +80,8 @@ class AnalyzedBehavior:
     """The nominal outcomes of each node, by path."""
     statuses: Mapping[str, Statuses] = field(default_factory=dict[str, Statuses])
     """The possible statuses of each part and leaf of a tree, by path."""
+    disabled: Mapping[str, NodeSpec] = field(default_factory=dict[str, NodeSpec])
+    """The disabled nodes as written, by path: `nodes` has what remains of them in a run."""
 
     @property
     def incomplete(self) -> bool:
@@ -206,6 +209,7 @@ def _make(
         base=bases[id(behavior)],
         nodes=nodes,
         due=_due(nodes.values(), signatures),
+        disabled={path: node for path, node in behavior.nodes() if node.is_disabled and path in nodes},
         inside=inside,
         signatures=signatures,
         unknown=unknown,
@@ -249,7 +253,9 @@ def _placed(behavior: Behavior) -> tuple[dict[str, NodeAt], dict[str, tuple[Node
         nodes[path] = placed
         children = placed.node.children.items()
         if children:
-            inside[path] = found = tuple([_node_at(f"{path}/{name}", name, child, placed) for name, child in children])
+            inside[path] = found = tuple(
+                [_node_at(f"{path}/{name}", name, in_run(child), placed) for name, child in children]
+            )
             due += found[::-1]
     return nodes, inside
 
@@ -277,7 +283,7 @@ def _signatures(
     unknown: dict[str, FlexcellError] = {}
     for placed in nodes.values():
         name = placed.node.state
-        if name is None or name in signatures or name in unknown:
+        if name is None or name in signatures or name in unknown or placed.node.is_disabled:
             continue
         try:
             signatures[name] = read_signature(find_state(catalogue, name, behavior.classes))
@@ -303,7 +309,8 @@ def note_settled(subject: AnalyzedBehavior, findings: Iterable[Finding]) -> None
 
 def _due(nodes: Iterable[NodeAt], signatures: Mapping[str, StateSignature]) -> tuple[NodeAt, ...]:
     settled: dict[str | None, object] = {name: (note_settled, found.state) for name, found in signatures.items()}
-    return tuple([placed for placed in nodes if settled.get(placed.node.state) not in placed.node.clear_of])
+    own = (placed for placed in nodes if not placed.node.is_disabled)
+    return tuple([placed for placed in own if settled.get(placed.node.state) not in placed.node.clear_of])
 
 
 def _ends_of(signature: StateSignature) -> tuple[tuple[str, ...], frozenset[str]]:
@@ -319,6 +326,8 @@ def _seen_outside(placed: NodeAt, own: tuple[str, ...]) -> tuple[str, ...]:
 
 def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] | None:
     node = placed.node
+    if node.is_disabled:
+        return (node.passes_with,)
     if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_inside(placed.path):
         return None
     if node.state is not None:
@@ -338,13 +347,17 @@ def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] 
 
 
 def _machine_outcomes(node: NodeSpec) -> tuple[str, ...]:
-    led_to = [target for child in node.children.values() for target in child.derived(_own_facts).targets.values()]
+    led_to = [
+        target for child in node.children.values() for target in in_run(child).derived(_own_facts).targets.values()
+    ]
     return tuple(dict.fromkeys(target for target in led_to if target not in node.children))
 
 
 def _nominal(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
     """Return the nominal outcomes of a node: declared as success by its class or document, or derived."""
     node = placed.node
+    if node.is_disabled:
+        return frozenset((node.passes_with,))
     if node.state is not None:
         signature = subject.signature(node)
         return _ends_of(signature)[1] if signature is not None else frozenset()
@@ -373,7 +386,7 @@ def _reached_nominally(placed: NodeAt, initial: str, subject: AnalyzedBehavior) 
         if name in reached:
             continue
         reached.add(name)
-        child = children.get(name)
+        child = in_run(children[name]) if name in children else None
         if child is not None:
             good = subject.nominal[f"{placed.path}/{name}"]
             due += [target for outcome, target in child.transitions.items() if outcome in good]
@@ -382,6 +395,8 @@ def _reached_nominally(placed: NodeAt, initial: str, subject: AnalyzedBehavior) 
 
 
 def _statuses(placed: NodeAt, subject: AnalyzedBehavior) -> Statuses:
+    if placed.node.is_disabled:
+        return SKIPPED
     if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_course(placed.path):
         return BOTH
     if placed.is_part:

@@ -10,6 +10,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.cell_name_checks import CellNameCheck
 from engine.check.cell.entry_references import Entries, add_written_entries, check_entries
+from engine.check.disabled_nodes import check_disabled
 from engine.check.finding import Finding, finding_sort_key, invalid_document_finding, new_finding
 from engine.check.flow.definition_sites import DefinitionSites
 from engine.check.flow.key_reads import KeyRead, key_reads
@@ -129,6 +130,7 @@ def _check_one(
     findings = [
         *check_declarations(subject),
         *check_transitions(subject),
+        *check_disabled(subject),
         *check_reachability(subject),
         *check_trees(subject),
         *check_conditions(subject),

@@ -72,6 +72,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "constant-guard": ("warning", "a guard is always open or always closed"),
     "idle-retry": ("warning", "`retry` has no effect"),
     "autonomy-never-passes": ("warning", "an outcome requires so much autonomy that it always waits for the operator"),
+    "all-disabled": ("warning", "everything in a container is disabled"),
     "bad-resume": ("error", "`resume` is neither `rerun`, `ask` nor an outcome of the node"),
 }
 """Every code a finding can have: its severity and what it means."""

@@ -80,8 +80,12 @@ class _Listing:
         self.roots.append(base)
         nodes = dict(behavior.nodes())
         in_tree: dict[str, bool] = {"": False}
+        passed_over: set[str] = set()
         for inside, node in nodes.items():
             above = inside.rpartition("/")[0]
+            if node.is_disabled or above in passed_over:
+                passed_over.add(inside)
+                continue
             path = base + inside.removeprefix("root")
             self._add("node", path, behavior.position(inside))
             if in_tree[above]:

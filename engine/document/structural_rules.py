@@ -70,6 +70,10 @@ def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
         where = behavior.key_position("root", "transitions")
         error = DocumentError("the root has no transitions", where=where, hint="its outcomes are those of the behavior")
         yield RuleViolation(path="root", error=error, excess=("transitions",))
+    if behavior.root.is_disabled:
+        where = behavior.key_position("root", "disabled")
+        error = DocumentError("the root cannot be disabled", where=where, hint="disable nodes inside it")
+        yield RuleViolation(path="root", error=error, excess=("disabled",))
     due = [("root", behavior.root, False)]
     while due:
         path, node, in_tree = due.pop()
@@ -100,10 +104,20 @@ def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) ->
     if node.concurrency is not None:
         yield from _conditions(behavior, path, node.concurrency)
     yield from _tree_part(behavior, path, node) if in_tree else _no_tree_part(behavior, path, node)
+    if node.is_disabled and in_tree == isinstance(node.disabled, str) and path != "root":
+        yield _misplaced_outcome(behavior, path, in_tree=in_tree)
     if node.foreach is not None:
         yield from _rounds(behavior, path, node.foreach)
     if node.every is not None:
         yield from _every(behavior, path, node, node.every, in_tree=in_tree)
+
+
+def _misplaced_outcome(behavior: Behavior, path: str, *, in_tree: bool) -> RuleViolation:
+    """Inside a tree a disabled node is skipped; elsewhere an outcome leads on."""
+    where = behavior.position(path, "disabled")
+    message = "a disabled part of a tree has no outcome" if in_tree else "a disabled node needs an outcome"
+    hint = "write `disabled: true`: its parent passes over it" if in_tree else "write `disabled: OUTCOME`"
+    return RuleViolation(path=path, error=DocumentError(message, where=where, hint=hint), excess=("disabled",))
 
 
 def _every(

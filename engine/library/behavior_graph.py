@@ -33,6 +33,8 @@ class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     transitions: tuple[GraphTransition, ...]
     initial: str | None
     conditions: tuple[str, ...]
+    disabled: bool | str = False
+    """The outcome by which a run passes over it, true inside a tree; false if it is not disabled."""
 
 
 def new_graph(behavior: Behavior, catalogue: Catalogue, *, path: str = "root", name: str = "root") -> GraphNode:
@@ -59,6 +61,7 @@ class _GraphBuilder:
             transitions=_transitions(node) if node.sequential is not None else (),
             initial=node.sequential.initial if node.sequential is not None else None,
             conditions=_rules(node),
+            disabled=node.disabled or False,
         )
 
     def _children(self, node: NodeSpec, inside: str, path: str) -> tuple[GraphNode, ...]:

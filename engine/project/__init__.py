@@ -20,6 +20,7 @@ _HOMES = {
     "RunRequest": "engine.project.run_request",
     "Session": "engine.project.session",
     "SkillInfo": "engine.project.bus_inspector",
+    "StartData": "engine.project.run_request",
     "TopicInfo": "engine.project.bus_inspector",
     "TopicStatistics": "engine.project.bus_inspector",
     "open_cell": "engine.project.cell_runner",

@@ -4,7 +4,7 @@ from engine.project.bus_inspector import BusInspector, GoalInfo, ParameterInfo, 
 from engine.project.cell_runner import CellRunner, open_cell
 from engine.project.headless_run import CompletedRun
 from engine.project.project import Project
-from engine.project.run_request import RunPosition, RunRequest
+from engine.project.run_request import RunPosition, RunRequest, StartData
 from engine.project.session import Session
 from engine.project.session_operators import RunOperator
 from engine.project.session_run import InterruptedRun
@@ -22,6 +22,7 @@ __all__ = [
     "RunRequest",
     "Session",
     "SkillInfo",
+    "StartData",
     "TopicInfo",
     "TopicStatistics",
     "open_cell",

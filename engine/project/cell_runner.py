@@ -99,8 +99,9 @@ class CellRunner:
         self._require_devices(plan)
         parameters = plan.checked_parameters(request.parameters)
         inputs = plan.checked_inputs(request.inputs)
-        if request.restore_world and start is not None and start.recorded.world is not None:
-            await self.cell.restore(start.recorded.world.data)
+        world = start.recorded.world if start is not None and start.recorded is not None else None
+        if request.restore_world and world is not None:
+            await self.cell.restore(world.data)
         run_id = request.run_id or new_run_id(plan.name)
         entry = self._journal.begin(
             run_id,

@@ -25,7 +25,16 @@ from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
 from engine.project.cell_runner import CellRunner, PreparedRun
 from engine.project.resume_plan import plan_resume
-from engine.project.run_request import RunPosition, RunRequest, require_names, require_simulation, start_at
+from engine.project.run_request import (
+    RunPosition,
+    RunRequest,
+    StartData,
+    paused_before,
+    require_names,
+    require_simulation,
+    start_data,
+    start_of,
+)
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
 from engine.project.session_recordings import SessionRecordings
@@ -132,6 +141,7 @@ class Session:
         supervision: RunOptions | None = None,
         breakpoints: bool = False,
         begin: RunPosition | None = None,
+        until: str | None = None,
         faults: Faults | None = None,
     ) -> str:
         """Start a run after every earlier STOP has ended, and return its id.
@@ -143,7 +153,8 @@ class Session:
             inputs: Initial values of userdata keys.
             supervision: Autonomy, whether an operator is demanded, time-outs.
             breakpoints: Whether to use the breakpoints file of the behavior.
-            begin: The event of a run in the journal to start from; the cell is not restored.
+            begin: Where to start instead of at the beginning; the cell is not restored, and `inputs` replace values.
+            until: A node before which it pauses once.
             faults: Faults injected into this run only.
 
         Raises:
@@ -154,13 +165,14 @@ class Session:
         watched = supervision or RunOptions()
         if breakpoints:
             watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
+        watched = paused_before(plan, watched, until)
         start = None
         if begin is not None:
-            start = start_at(read_run(self._journal.path, begin.run), plan, seq=begin.seq, path=begin.path)
+            start = start_of(self._journal.path, begin, plan)
             parameters = start.parameters(plan, parameters)
+            start, inputs = start.with_userdata(plan, inputs or {}), {}
         if self.cell.document is not None:
-            catalogue = self._library.catalogue
-            await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
+            await asyncio.to_thread(require_names, behavior, self._library.catalogue, self.cell.document, parameters)
         request = RunRequest(
             plan=plan,
             parameters=parameters,
@@ -174,6 +186,11 @@ class Session:
         await self._stops.over()
         prepared = await self._runner.start(request)
         return self._add(behavior_id, prepared)
+
+    async def start_data(self, behavior_id: str, path: str) -> StartData:
+        """Return the data with which a run of a behavior can start at a node: of the last run that entered it."""
+        _, plan = await asyncio.to_thread(self._planned, behavior_id)
+        return await asyncio.to_thread(start_data, self._journal.path, plan, path)
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
         """Return the runs of the journal whose process died, oldest first."""

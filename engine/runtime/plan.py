@@ -16,6 +16,7 @@ from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.runtime.nodes import concurrency, machine
 from engine.runtime.nodes.behavior_reference import BehaviorReference
+from engine.runtime.nodes.disabled_work import DisabledWork
 from engine.runtime.nodes.foreach import ForEach
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import Node, NodeWork
@@ -143,6 +144,8 @@ class _Planner:
             where = self.behavior.position(inside)
             raise DocumentError(f"`{node.kind}` cannot be run yet", where=where, hint="use a machine")
         path = self.base + inside.removeprefix("root")
+        if node.is_disabled:
+            return self._disabled(path, name, inside, node)
         work = makers[node.kind](inside, node)
         return Node(
             path=path,
@@ -156,6 +159,18 @@ class _Planner:
             autonomy=node.autonomy,
             resume=node.resume,
             position=str(self.behavior.position(inside)),
+        )
+
+    def _disabled(self, path: str, name: str, inside: str, node: nodes.NodeSpec) -> Node:
+        """Plan a node that is passed over: of its policies and of what is inside nothing applies."""
+        outcome = node.passes_with
+        return Node(
+            path=path,
+            name=name,
+            work=DisabledWork(outcome=outcome),
+            transitions={outcome: node.transitions[outcome]} if outcome in node.transitions else {},
+            position=str(self.behavior.position(inside)),
+            disabled=outcome,
         )
 
     def _guard(self, inside: str, guard: nodes.GuardSpec | None) -> GuardPolicy | None:

@@ -149,6 +149,7 @@ class FakeBackend(Session):
         supervision: RunOptions | None = None,
         breakpoints: bool = False,
         begin: RunPosition | None = None,
+        until: str | None = None,
         faults: Faults | None = None,
     ) -> str:
         behavior = self.behavior(behavior_id)

@@ -188,6 +188,7 @@ export function graphNode(path: string, told: Partial<GraphNode> = {}): GraphNod
     transitions: [],
     initial: null,
     conditions: [],
+    disabled: false,
     ...told,
   }
 }

@@ -248,6 +248,8 @@ class DataFlow:
 
     def _edges(self, placed: NodeAt, ends: dict[str, Effect], *, leaf: bool) -> list[FlowEdge]:
         node = placed.node
+        if node.is_disabled and placed.in_tree:
+            return [FlowEdge("skipped", NO_EFFECT)]
         before = self._earlier_attempts(placed, ends, leaf=leaf)
         stopped = before.perhaps() if leaf else self.anywhere[placed.path]
         found = [FlowEdge(to, NO_EFFECT if keys[0] == "guard" else stopped) for keys, to in diversions(node).items()]

@@ -46,7 +46,7 @@ def _check_names(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]
                 yield subject.finding("unknown-child", message, placed.path, *keys, hint=hint, at_key=True)
                 continue
             outcomes = subject.outcomes.get(f"{placed.path}/{name}")
-            if outcomes is not None and outcome not in outcomes:
+            if outcomes is not None and outcome not in outcomes and not children[name].is_disabled:
                 hint = did_you_mean(outcome, outcomes)
                 message = f"`{name}` has no outcome `{outcome}`"
                 yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=hint)

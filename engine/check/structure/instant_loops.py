@@ -59,6 +59,8 @@ class InstantOutcomes:
 
     def _own(self, placed: NodeAt) -> frozenset[str]:
         node = placed.node
+        if node.is_disabled:
+            return frozenset(("skipped" if placed.in_tree else node.passes_with,))
         signature = self._subject.signature(node)
         if signature is not None:
             return frozenset(signature.outcomes) if signature.instant and not _waits(node) else _NEVER
@@ -110,7 +112,8 @@ class InstantOutcomes:
     def _of_tree(self, placed: NodeAt, children: Sequence[NodeAt]) -> frozenset[str]:
         """Return whether a tree is instant: when each of its leaves is; other trees are not analysed."""
         for child in children:
-            due = self._subject.statuses[child.path] if child.is_part else self._subject.outcomes.get(child.path, ("",))
+            by_status = child.is_part or child.node.is_disabled
+            due = self._subject.statuses[child.path] if by_status else self._subject.outcomes.get(child.path, ("",))
             if not self.ends[child.path].issuperset(due):
                 return frozenset()
         if not children:

@@ -57,7 +57,7 @@ def _check_known(
     subject: AnalyzedBehavior, placed: NodeAt, of: NodeAt, named: Sequence[tuple[str, Sequence[str | int], str, bool]]
 ) -> Iterator[Finding]:
     outcomes = subject.outcomes.get(of.path)
-    for outcome, keys, use, at_key in named if outcomes is not None else ():
+    for outcome, keys, use, at_key in named if outcomes is not None and not of.node.is_disabled else ():
         if outcome not in (outcomes or ()):
             message = f"`{of.name}` has no outcome `{outcome}` {use}"
             hint = did_you_mean(outcome, outcomes or ())

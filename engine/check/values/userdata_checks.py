@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.disabled_nodes import disabled_writer
 from engine.check.finding import Finding
 from engine.check.flow.definition_sites import DefinitionSite
 from engine.check.flow.key_reads import KeyRead, assignments
@@ -63,6 +64,11 @@ class _Keys:
             where = " and ".join(f"`{place.path}`" for place in places[:3])
             message = f"`{read.placed.name}` reads `{key}`, which is not defined at this point"
             hint = f"{where} defines it later, or in its own scope; declare it in a `userdata` around both"
+            return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
+        writer = disabled_writer(self.subject, key)
+        if writer is not None:
+            message = f"`{read.placed.name}` reads `{key}`, which only the disabled node `{writer}` writes"
+            hint = f"enable it, disable `{read.placed.name}` too, or declare `{key}` in `userdata`"
             return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
         suggestion = did_you_mean(key, self._names)
         if read.by in ("expression", "post"):

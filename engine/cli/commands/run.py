@@ -138,9 +138,9 @@ def run(
     cell_spec = named or read_cell(None, behavior)
     require_simulation(plan, cell_spec, allowed=substitute_on_robots)
     parameters = read_parameters(parameter or [], behavior.parameters)
-    if start is not None:
+    if start is not None and recorded is not None:
         parameters = start.parameters(plan, parameters)
-        seed = start.recorded.origin.seed if seed is None else seed
+        seed = recorded[0].origin.seed if seed is None else seed
         if cell_spec is not None:
             refuse_errors(check_given(behavior, catalogue, cell_spec, parameters))
     request = RunRequest(

@@ -28,7 +28,7 @@ WRAPPERS = ("retry", "timeout", "guard")
 """Keys of every node that are decorators inside a tree, if they have a `child`."""
 COMMON_KEYS = frozenset(
     ("every", "name", "parameters", "inputs", "outputs", "transitions", "post", "on_error", "autonomy", "resume",
-     "success", "description", *WRAPPERS)
+     "success", "description", "disabled", *WRAPPERS)
 )  # fmt: skip
 """The attributes of a node that are not its kind."""
 

@@ -24,6 +24,7 @@ from engine.document.nodes.node_kind import (
     FormField,
     Key,
     NodeName,
+    OutcomeName,
     PostConditionsSpec,
     Reference,
     Status,
@@ -340,6 +341,8 @@ class NodeSpec(
     `post` (in a tree) defines the userdata assigned when it has ended or was halted.
     `every` (in a tree) is the tick period of a py_trees `behaviour` while it is RUNNING, default 0.1 s, and the
     period at which a check is repeated before a running action in a composite without memory.
+    `disabled` passes the node over: outside trees it names the outcome with which the node counts as ended, in a tree
+    it is `true`, and the parent goes on as after a skipped child.
     """
 
     state: str | None = None
@@ -376,6 +379,7 @@ class NodeSpec(
     resume: str | None = None
     success: tuple[str, ...] = ()
     description: str = ""
+    disabled: bool | OutcomeName | None = None
 
     @property
     def sequential(self) -> MachineSpec | None:
@@ -387,6 +391,16 @@ class NodeSpec(
         """The initial values of the container's own scope."""
         container = self.machine or self.concurrency or self.priority or self.foreach
         return container.userdata if container is not None else {}
+
+    @property
+    def is_disabled(self) -> bool:
+        """Whether a run passes it over."""
+        return self.disabled is not None and self.disabled is not False
+
+    @property
+    def passes_with(self) -> str:
+        """The outcome by which it is passed over; empty inside a tree, and for a node that is not disabled."""
+        return self.disabled if isinstance(self.disabled, str) else ""
 
     @property
     def own_name(self) -> str:

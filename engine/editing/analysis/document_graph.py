@@ -268,6 +268,7 @@ class _Drawing:
             timeout=_measure(data.get("timeout"), decorates=ref.kind == "timeout"),
             retry=_measure(data.get("retry"), decorates=ref.kind == "retry"),
             guard=_measure(data.get("guard"), decorates=ref.kind == "guard"),
+            disabled=_disabled(data),
             post=_measure(data.get("post"), decorates=False),
             on_error=_optional(data.get("on_error")),
             resume=_optional(data.get("resume")),
@@ -300,6 +301,11 @@ class _Drawing:
         # Lines count from 1: that of an offset is the number of lines that begin before it or there.
         line, last = bisect_right(starts, at), source.end - 1
         return line, at - starts[line - 1] + 1, bisect_right(starts, last) if last > at else line
+
+
+def _disabled(data: Plain) -> bool | str:
+    value = data.get("disabled")
+    return value if isinstance(value, bool | str) else False
 
 
 def _arrows(ref: NodeRef) -> tuple[GraphTransition, ...]:

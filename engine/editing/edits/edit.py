@@ -107,9 +107,10 @@ class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
     """Set one field of a node; null removes it.
 
     For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post,
-    notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
-    otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count,
-    failure_count, after, status, running, failure; and `order`, the names of all children in their new order.
+    disabled, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial,
+    conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise,
+    success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new
+    order.
     """
 
     path: NodePath

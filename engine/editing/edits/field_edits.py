@@ -22,7 +22,7 @@ from engine.suggestions import did_you_mean
 
 _OF_NODES = frozenset(
     ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
-     "post", "state", "behavior", "behaviour", "name")
+     "post", "state", "behavior", "behaviour", "name", "disabled")
 )  # fmt: skip
 _FARTHEST_PX = 1_000_000
 _INSIDE = frozenset(("states", "child", "children", *SLOTS["if_then_else"], *SLOTS["while_do_else"]))
@@ -41,7 +41,7 @@ _HEAD = (
 )
 _ORDER = (
     "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "post", "timeout", "retry",
-    "on_error", "autonomy", "resume", "success", "every", "transitions",
+    "on_error", "autonomy", "resume", "success", "every", "disabled", "transitions",
 )  # fmt: skip
 """Order in which the keys of a state are written."""
 _ORDER_INSIDE = (
@@ -127,7 +127,7 @@ def set_entry(node: Plain, key: str, value: object) -> None:
         kept = dict(node)
         node.clear()
         node.update({key: value, **kept})
-    elif key in ("with", "in", "out") and "transitions" in node:
+    elif key in ("with", "in", "out", "disabled") and "transitions" in node:
         _insert_in_order(node, key, value, _ORDER)
     else:
         node[key] = value
@@ -149,7 +149,7 @@ def plain_value(value: object, depth: int = 0) -> object:
 
 
 def _set_own(ref: NodeRef, key: str, value: object) -> None:
-    if value is None or value == {} or (key == "description" and value == ""):
+    if value is None or value == {} or (key == "description" and value == "") or (key == "disabled" and not value):
         if key in ("state", "behavior", "behaviour"):
             raise EditRefused(
                 "this field is what the node executes and cannot be removed", hint="remove the node instead"

@@ -77,6 +77,8 @@ def _replace_in_named(session: EditSession, edit: GroupNodes, home: NodeRef, ref
                     cast("Plain", ref.data[measure])["to"] = "failure"
             if "on_error" in ref.data:
                 ref.data["on_error"] = "failure"
+            if ref.data.get("disabled"):
+                ref.data["disabled"] = True
             set_tree_node_name(ref.data, ref.name)
     insert_key(named_children(home), name, made, place)
     follow.finish(instead={id(ref.data): name for ref in refs}, dangling=lambda _, target: target)

@@ -149,6 +149,8 @@ def insert_nodes(
     session.stale()
     if container.kind in MACHINES:
         _rewire(session, container, nodes, names, known)
+    for node in nodes.values():
+        _keep_disabled(session, container, node)
 
 
 def drop_unsupported_keys(container: NodeRef, node: Plain) -> None:
@@ -172,6 +174,18 @@ def drop_unsupported_keys(container: NodeRef, node: Plain) -> None:
                     guarded["to"] = "failure"
         if isinstance(node.get("on_error"), str):
             node["on_error"] = "failure"
+
+
+def _keep_disabled(session: EditSession, container: NodeRef, node: Plain) -> None:
+    """Let a disabled node be passed over as this container does it: with an outcome, or skipped in a tree."""
+    if not node.get("disabled"):
+        return
+    if container.kind == "tree" or container.is_part:
+        node["disabled"] = True
+    elif node["disabled"] is True:
+        ends = session.ends(session.at(session.outline.path_of(node)))
+        outcome = next(iter((*ends.success, *ends.outcomes)), None)
+        node["disabled"] = outcome or True
 
 
 def snake_case(runs: str) -> str:

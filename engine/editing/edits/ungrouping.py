@@ -11,7 +11,7 @@ from engine.editing.edits.field_edits import set_positions
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.outline import NodeRef, Plain
 
-_LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume")
+_LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume", "disabled")
 
 
 def ungroup(session: EditSession, edit: UngroupNode) -> None:
@@ -119,6 +119,8 @@ def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
             onto = names[number + 1] if status == onward and number + 1 < len(steps) else transitions.get(status)
             if onto is not None:
                 wired[outcome] = onto
+        if step.data.get("disabled"):
+            step.data["disabled"] = _passing(step, ends[id(step.data)].outcomes, good, onward)
         _divert(step.data, transitions)
         if wired:
             step.data["transitions"] = wired
@@ -131,6 +133,15 @@ def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
     follow.finish(instead={id(ref.data): names[0]}, dangling=lambda _, target: target)
     for step in steps:
         session.mark(step.data)
+
+
+def _passing(step: NodeRef, outcomes: tuple[str, ...], good: tuple[str, ...], onward: str) -> str:
+    """Return the outcome by which a disabled step of a sequence or selector is passed over in a machine."""
+    outcome = next((each for each in outcomes if (each in good) == (onward == "success")), None)
+    if outcome is None:
+        hint = "enable it, or remove it first"
+        raise EditRefused(f"`{step.path}` is disabled, and no outcome of it leads to the next step", hint=hint)
+    return outcome
 
 
 def _guard(ref: NodeRef) -> Plain:

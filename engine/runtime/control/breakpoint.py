@@ -25,7 +25,7 @@ class Breakpoint(StrictModel, frozen=True, kw_only=True, dict=True, rename={"con
 
     `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and
     parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to
-    these outcomes.
+    these outcomes. One with `once` is removed when it has paused the run.
     """
 
     path: Annotated[str, Meta(min_length=1, description="Node path; may contain the wildcards `*` and `?`")]
@@ -34,6 +34,7 @@ class Breakpoint(StrictModel, frozen=True, kw_only=True, dict=True, rename={"con
     hits: Annotated[int, Meta(ge=1, description="Pause from the n-th hit on")] = 1
     outcomes: tuple[str, ...] = ()
     enabled: bool = True
+    once: bool = False
 
     def matches(self, path: str, when: GatePoint, outcome: str) -> bool:
         """Return whether the breakpoint applies to this gate point."""

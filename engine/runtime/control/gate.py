@@ -228,6 +228,8 @@ class Gate:
             for each in self.breakpoints:
                 if each.matches(path, point, outcome) and self._is_hit(each, path, scope):
                     self._recorder.log(path, f"breakpoint {point} {each.path}")
+                    if each.once:
+                        self.breakpoints = tuple(other for other in self.breakpoints if other is not each)
                     self.pause()
                     return
 

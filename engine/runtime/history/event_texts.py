@@ -28,6 +28,7 @@ from engine.event import (
     NodeEntered,
     NodeExited,
     NodeRetried,
+    NodeSkipped,
     OperatorChanged,
     OperatorCommanded,
     OutcomeRequested,
@@ -79,6 +80,7 @@ EVENT_TEXTS: Mapping[str, _Template] = {
     "userdata": _Template("debug", "{key} = {value}"),
     "userdata_appended": _Template("debug", "{key} += {value}"),
     "transition": _Template("info", "{source} \u2014{outcome}\u2192 {target}"),
+    "skipped": _Template("info", "skipped: disabled, continues with {outcome}"),
     "diverted": _Template("info", "preempted by {by}, continues at {target}"),
     "diverted.failed": _Template("warning", "preempted by {by}, continues at {target}"),
     "branches_preempted": _Template("info", "{condition}: {branches}"),
@@ -164,6 +166,8 @@ def _node_text(event: Event, duration_s: float | None) -> EventText | None:
         case NodeDiverted():
             id_ = "diverted.failed" if event.cause is not None else "diverted"
             return _say(id_, event.path, event.cause, by=event.by, target=event.target)
+        case NodeSkipped():
+            return _say("skipped", event.path, outcome=event.outcome)
         case BranchesPreempted():
             id_ = "branches_preempted" if event.branches else "branches_preempted.none"
             return _say(id_, event.path, condition=event.condition, branches=", ".join(event.branches))

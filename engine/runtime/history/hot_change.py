@@ -143,6 +143,9 @@ def _refusals(old: Plan, new: Plan, active: Mapping[str, Node], waiting: Mapping
 
 
 def _refuses(path: str, before: Node, after: Node) -> Iterator[str]:
+    if after.disabled is not None:
+        yield f"{path} is active and disabled in the new version"
+        return
     if before.work.kind != after.work.kind:
         yield f"{path} is active and changes from a {before.work.kind} to a {after.work.kind}"
         return
@@ -169,6 +172,9 @@ def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
         after = new.nodes.get(path)
         if after is None:
             yield f"{path} is removed"
+            continue
+        if (before.disabled is None) != (after.disabled is None):
+            yield f"{path} is {'enabled' if after.disabled is None else 'disabled'}"
             continue
         if before.transitions != after.transitions:
             yield f"{path} has changed transitions"

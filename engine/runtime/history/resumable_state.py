@@ -21,6 +21,7 @@ from engine.event import (
     NodeEntered,
     NodeExited,
     NodeRetried,
+    NodeSkipped,
     RunStarted,
     RunSteppedBack,
     StatusChanged,
@@ -277,6 +278,10 @@ class ResumableState(RunStatePart):
         outcome, target = (event.target, None) if by_outcome else (None, event.target)
         reason = guard_closed_cause(path) if event.by == "guard" else None
         self._left[path] = PendingExit(event.visit, outcome, target, event.cause, reason)
+
+    def node_skipped(self, event: NodeSkipped) -> None:
+        """Let the container take the outcome; a resumed run passes over the node again."""
+        self._left[event.path] = PendingExit(self.visits.get(event.path, 0), event.outcome, None, None, None)
 
     def node_retried(self, event: NodeRetried) -> None:
         """Open the node again, not entered yet."""

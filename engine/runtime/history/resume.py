@@ -25,6 +25,8 @@ from engine.runtime.record.node_checkpoint import NodeCheckpoint
 from engine.suggestions import did_you_mean
 
 RERUN, ASK = "rerun", "ask"
+_NEEDS_ENTRY = ("behavior", "foreach", "tree")
+"""Kinds of containers whose children need more than userdata: parameters, items, the statuses of a tree."""
 
 
 class ResumeDecisionRequired(ControlError):
@@ -129,10 +131,13 @@ def start_checkpoint(history: ResumableState, plan: Plan, path: str) -> Checkpoi
     branches resume from their state.
 
     Raises:
-        ControlError: there is no such node, or it is inside a referenced behavior that was not active.
+        ControlError: there is no such node, it is disabled, or it is inside a referenced behavior, a foreach or a tree
+            that was not active.
     """
     if path not in plan.nodes:
         raise ControlError("there is no such node", where=path, hint=did_you_mean(path, plan.nodes))
+    if plan.nodes[path].disabled is not None:
+        raise ControlError("this node is disabled", where=path, hint="enable it, or start at the next node")
     checkpoint = history.checkpoint()
     points: dict[str, NodeCheckpoint] = {}
     around = [above for above in plan.nodes if above != path and is_inside(above, path)]
@@ -141,8 +146,9 @@ def start_checkpoint(history: ResumableState, plan: Plan, path: str) -> Checkpoi
         name = path.removeprefix(f"{above}/").partition("/")[0]
         known = checkpoint.points.get(above)
         if known is None or not known.active:
-            if node.work.kind == "behavior":
-                raise ControlError("the enclosing behavior was not active then", where=above, hint="start before it")
+            if node.work.kind in _NEEDS_ENTRY:
+                what = "behavior" if node.work.kind == "behavior" else f"`{node.work.kind}`"
+                raise ControlError(f"the enclosing {what} was not active then", where=above, hint=f"start at {above}")
             known = NodeCheckpoint(visit=1, values=node.work.initial_values({}))
         points[above] = replace(
             known,
@@ -183,6 +189,27 @@ def last_entered_state(events: Iterable[Event], seq: int) -> str:
     if not last.path:
         raise DocumentError(f"no state was entered before event {seq}", hint="choose a later event")
     return last.path
+
+
+def last_entry(events: Iterable[Event], path: str) -> int:
+    """Return the number of the last event by which the node at `path` was entered; 0 where it never was."""
+    entries = _Entries(path)
+    for event in events:
+        entries.take(event)
+    return entries.seq
+
+
+class _Entries(RunStatePart):
+    """The last entry of one node."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self.seq = 0
+
+    def node_entered(self, event: NodeEntered) -> None:
+        """Keep the number of an entry."""
+        if event.path == self._path:
+            self.seq = event.seq
 
 
 class _LastState(RunStatePart):

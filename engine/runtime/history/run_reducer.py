@@ -23,6 +23,7 @@ from engine.event import (
     NodeEntered,
     NodeExited,
     NodeRetried,
+    NodeSkipped,
     OperatorCommanded,
     RunEnded,
     RunResumed,
@@ -52,7 +53,7 @@ FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"
 _CHANGES_NOTHING = frozenset(
     {UserdataWritten, UserdataAppended, GoalSent, ServiceCalled, ServiceAnswered, MessageLogged}
 )
-_TICKED = {"running": "active", "success": "done", "failure": "failed"}
+_TICKED = {"running": "active", "success": "done", "failure": "failed", "skipped": "skipped"}
 
 
 def exit_status(event: NodeExited) -> str:
@@ -181,6 +182,14 @@ class RunReducer(RunStatePart):
         self._leave(path)
         self._await_container(path, event.target)
         self._step = NodeStep(kind="diverted", path=path, name=event.target, by=event.by, before=node)
+
+    def node_skipped(self, event: NodeSkipped) -> None:
+        """Pass over the node with an outcome."""
+        path = event.path
+        node = self.state.node(path)
+        self._nodes[path] = NodeLive(status="skipped", visits=node.visits, outcome=event.outcome)
+        self._await_container(path, event.outcome)
+        self._step = NodeStep(kind="skipped", path=path, name=event.outcome, before=node)
 
     def node_retried(self, event: NodeRetried) -> None:
         """Forget the end of the last attempt; the node shows it until it is entered again."""

@@ -22,7 +22,7 @@ class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """One node: idle, active, done, failed or stopped.
+    """One node: idle, active, done, failed, stopped or skipped.
 
     `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock;
     `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as
@@ -41,16 +41,17 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 IDLE = NodeLive()
 """A node that was never entered."""
-NodeStepKind = Literal["entered", "ended", "diverted", "retried", "ticked", "transition", "preempts"]
+NodeStepKind = Literal["entered", "ended", "diverted", "skipped", "retried", "ticked", "transition", "preempts"]
 
 
 class NodeStep(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """What one event did to a node: it was entered, ended, was diverted, waits for its next attempt, or was ticked.
+    """What one event did to a node: it was entered, skipped, diverted or ticked, ended, or waits for its next attempt.
 
-    `name` is its outcome (empty for an error or a preemption), the target of a diversion or the status of a tick. Of a
-    `transition`, `path` is the child that was left and `name` its outcome; of a container that `preempts` branches,
-    `name` is the condition. `by` is timeout, guard, on_error, operator or start. `children` are, where a container
-    ended, the outcomes and targets of the children from which it had not proceeded. `before` is the node before.
+    `name` is its outcome (empty for an error or a preemption; of a skipped node that by which it is passed over), the
+    target of a diversion or the status of a tick. Of a `transition`, `path` is the child that was left and `name` its
+    outcome; of a container that `preempts` branches, `name` is the condition. `by` is timeout, guard, on_error,
+    operator or start. `children` are, where a container ended, the outcomes and targets of the children from which it
+    had not proceeded. `before` is the node before.
     """
 
     kind: NodeStepKind

@@ -14,6 +14,7 @@ from engine.event import (
     NodeEntered,
     NodeExited,
     NodeRetried,
+    NodeSkipped,
     OperatorChanged,
     OperatorCommanded,
     RunEnded,
@@ -76,6 +77,8 @@ class RunStatePart:
 
     def _take_rare(self, event: Event) -> None:
         match event:
+            case NodeSkipped():
+                self.node_skipped(event)
             case UndoStarted():
                 self.undo_started(event)
             case UndoEnded():
@@ -103,6 +106,9 @@ class RunStatePart:
 
     def node_diverted(self, event: NodeDiverted) -> None:
         """Note that a node was left for a target, without an outcome."""
+
+    def node_skipped(self, event: NodeSkipped) -> None:
+        """Note that a disabled node was passed over."""
 
     def node_retried(self, event: NodeRetried) -> None:
         """Note that a node waits for its next attempt."""

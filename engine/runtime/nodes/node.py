@@ -15,7 +15,7 @@ from engine.cause_chain import cause_of, describe_cause, wrap_cause
 from engine.document.duration import LONGEST_S
 from engine.document.expression.expression_cost import MAX_STEPS
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
-from engine.event import Cause, NodeRetried
+from engine.event import Cause, NodeRetried, NodeSkipped
 from engine.preemption import being_cancelled, preempt, raise_failure, take_order_preemption
 from engine.runtime.control.gate import OperatorOrder
 from engine.runtime.nodes.execution import Execution
@@ -96,6 +96,8 @@ class Node:
     autonomy: Mapping[str, str] = field(default_factory=dict[str, str])
     resume: str | None = None
     position: str = ""
+    disabled: str | None = None
+    """The outcome by which it is passed over, without entry, gate and policies; None if it is not disabled."""
 
     @cached_property
     def targets(self) -> tuple[str, ...]:
@@ -126,7 +128,7 @@ class Node:
 
     @cached_property
     def _is_plain_state(self) -> bool:
-        return self._plain and not self.work.children
+        return self._plain and not self.work.children and self.disabled is None
 
     @cached_property
     def _plain_exits(self) -> Mapping[str, NodeExit]:
@@ -164,6 +166,8 @@ class Node:
 
     async def _perform(self, scope: Scope, execution: Execution, begun: NodeAttempt | None) -> NodeExit:
         """Perform any node under all conditions; its first attempt may have ended already."""
+        if self.disabled is not None:
+            return self._skip(self.disabled, execution)
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
         order: OperatorOrder | None = None
@@ -183,6 +187,8 @@ class Node:
                     order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
                 if order is None and left is None:
                     node = execution.latest(self.path, self)
+                    if node.disabled is not None:
+                        return node._skip(node.disabled, execution)
                     if node._plain:
                         left = await node._attempt(scope, execution, point)
                     else:
@@ -201,6 +207,11 @@ class Node:
                 return left
             if order is not None and order.outcome is not None:
                 return self._forced(order.outcome, execution)
+
+    def _skip(self, outcome: str, execution: Execution) -> NodeExit:
+        execution.points.pop(self.path, None)
+        execution.recorder.emit(NodeSkipped, path=self.path, outcome=outcome)
+        return NodeExit(outcome)
 
     async def _resume_exited(self, point: NodeCheckpoint, scope: Scope, execution: Execution) -> NodeExit:
         """Apply retry and on_error to a recorded exit, which the crash prevented."""

@@ -18,6 +18,7 @@ from engine.runtime.nodes.execution import Execution
 from engine.runtime.tree.active_leaves import ActiveLeaves
 from engine.runtime.tree.branching import IfThenElse, WhileDoElse
 from engine.runtime.tree.decorators import DecoratorSite, new_decorator
+from engine.runtime.tree.disabled_part import DisabledPart
 from engine.runtime.tree.entry_guard import EntryGuard
 from engine.runtime.tree.explanation import explain_tree_failure
 from engine.runtime.tree.foreign_behaviour import ForeignBehaviour
@@ -75,6 +76,12 @@ class TreeBuilder:
         Raises:
             FlexcellError: a foreign behaviour cannot be created.
         """
+        if part.disabled:
+            passed = DisabledPart(part.path, self.statuses.skips)
+            self.parts[passed] = part
+            self.statuses.skips.place(passed, passing)
+            self.statuses.follow(passed, part.path)
+            return passed
         if part.leaf is not None:
             self._rank += 1
             rank = self._rank

@@ -64,11 +64,20 @@ class TreeNode:
     post: Mapping[str, tuple[Assignment, ...]] = field(default_factory=dict[str, tuple[Assignment, ...]])
     """The assignments by `on_success` and so on; empty for none."""
 
+    @property
+    def disabled(self) -> bool:
+        """Whether its parent passes over it; then nothing of it is planned."""
+        return self.source.is_disabled
+
     @cached_property
     def skips(self) -> bool:
-        """Whether it may be skipped, by its own guard or because a node inside may be skipped."""
+        """Whether it may be skipped: it is disabled or guarded, or a node inside may be skipped."""
         guard = self.source.guard
-        return (guard is not None and guard.to == "skipped") or any(child.skips for child in self.children)
+        return (
+            self.disabled
+            or (guard is not None and guard.to == "skipped")
+            or any(child.skips for child in self.children)
+        )
 
     @cached_property
     def holds_foreign(self) -> bool:

@@ -58,11 +58,14 @@ class _Planner:
         return tuple(self._part(name, f"{inside}/{name}", child) for name, child in node.children.items())
 
     def _part(self, name: str, inside: str, node: nodes.NodeSpec) -> TreeNode:
+        path, position = self.base + inside.removeprefix("root"), str(self.behavior.position(inside))
+        if node.is_disabled:
+            return TreeNode(path=path, name=name, position=position, source=node)
         is_leaf = node.kind in KINDS
         return TreeNode(
-            path=self.base + inside.removeprefix("root"),
+            path=path,
             name=name,
-            position=str(self.behavior.position(inside)),
+            position=position,
             source=node,
             children=() if is_leaf else self.children(inside, node),
             leaf=self._leaf(name, inside, node) if is_leaf else None,

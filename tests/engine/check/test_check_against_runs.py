@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 from collections.abc import Iterable
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from engine.bus import SkillBus
 from engine.check import Finding, check_behavior
-from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.event import Cause, Event, NodeEntered, NodeExited, RunEnded
-from engine.runtime.plan import new_plan
-from engine.runtime.run import Run
+from tests.engine.check.data_runs import events_of
 from tests.engine.check.data_states import CATALOGUE
 from tests.engine.check.random_behaviors import Plain, behaviors
 from tests.tiers import examples
@@ -33,23 +29,6 @@ SETTINGS = settings(
 def checked(document: Plain) -> tuple[Finding, ...]:
     """Check a document given as plain data."""
     return check_behavior(parse_behavior(json.dumps(document), file="random.json"), CATALOGUE)
-
-
-def events_of(document: Plain, seed: int) -> list[Event]:
-    """Run a document for at most a hundred virtual seconds and return its events."""
-    plan = new_plan(parse_behavior(json.dumps(document), file="random.json"), CATALOGUE)
-    events: list[Event] = []
-
-    async def main() -> None:
-        run = Run(plan, run="r", bus=SkillBus(new_clock()), seed=seed, instant_limit=300)
-        run.watch(events.append)
-        # Some loops go round without letting time pass.
-        run.watch(lambda event: run.stop("far enough") if event.seq == 3000 else None)
-        asyncio.get_running_loop().call_later(100.0, run.stop, "long enough")
-        await run.execute()
-
-    run_virtual(main())
-    return events
 
 
 def causes(events: Iterable[Event]) -> list[Cause]:

@@ -164,6 +164,39 @@ async def test_a_run_begins_at_a_moment_of_another(project: Path) -> None:
             await session.start(BEHAVIOR, parameters={}, seed=0, begin=RunPosition(run=before, seq=900))
 
 
+@pytest.mark.virtual
+async def test_a_run_starts_at_a_node_with_the_data_of_the_last_run_that_entered_it(project: Path) -> None:
+    """Values that are given replace those of that run; without such a run it starts with the initial ones."""
+    async with opened(project) as session:
+        fresh = await session.start_data(BEHAVIOR, "root/three")
+        assert (fresh.run, fresh.userdata, fresh.obstacle) == ("", {"value": 0}, "")
+        alone = await session.start(BEHAVIOR, parameters={}, seed=0, begin=RunPosition(path="root/three"))
+        assert (await session.wait(alone)).outcome == "good"
+        before = await session.start(BEHAVIOR, parameters={"add": 3}, seed=0)
+        await session.wait(before)
+        found = await session.start_data(BEHAVIOR, "root/three")
+        assert (found.run, found.parameters["add"], found.userdata) == (before, 3, {"value": 1})
+        begin = RunPosition(run=found.run, seq=found.seq, path="root/three")
+        run = await session.start(BEHAVIOR, parameters={}, seed=0, begin=begin, inputs={"value": 7})
+        assert (await session.wait(run)).outcome == "good"
+        paths = [event.path for event in session.events(run) if isinstance(event, NodeEntered)]
+        assert paths == ["root", "root/three"]
+        assert [event.value for event in session.events(run) if isinstance(event, UserdataWritten)] == [7, 10]
+        assert "there is no such node" in (await session.start_data(BEHAVIOR, "root/nowhere")).obstacle
+
+
+@pytest.mark.virtual
+async def test_a_run_pauses_once_before_the_node_that_it_runs_to(project: Path) -> None:
+    async with opened(project) as session:
+        run = await session.start(BEHAVIOR, parameters={}, seed=0, until="root/three")
+        await recorded(session, run, waits("root/three"))
+        assert session.control(run).view().breakpoints == ()
+        session.control(run).resume()
+        assert (await session.wait(run)).outcome == "good"
+        with pytest.raises(ControlError, match="no run enters this node"):
+            await session.start(BEHAVIOR, parameters={}, seed=0, until="root/nowhere")
+
+
 ASKS = """
 flexcell: 1
 name: asks

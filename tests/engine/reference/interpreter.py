@@ -54,6 +54,8 @@ class Interpreter:
         self.budget[0] -= 1
         if not self.budget[0]:
             raise TooLong
+        if node.is_disabled:
+            return End(self._now_s, node.passes_with)
         end = yield from self._guarded(node, path, scope)
         if end.failed and not end.preempted and node.on_error is not None:
             return End(end.at_s, node.on_error, straight=True)

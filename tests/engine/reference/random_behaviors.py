@@ -76,11 +76,18 @@ def _keys(draw: st.DrawFn, targets: st.SearchStrategy[str], outcomes: tuple[str,
 
 
 @st.composite
-def _steps(draw: st.DrawFn, depth: int, targets: st.SearchStrategy[str], *, wired: bool = False) -> Step:
-    """Draw a step whose guard, timeout and on_error lead to `targets`, and in a machine its outcomes as well."""
+def _steps(
+    draw: st.DrawFn, depth: int, targets: st.SearchStrategy[str], *, wired: bool = False, root: bool = False
+) -> Step:
+    """Draw a step whose guard, timeout and on_error lead to `targets`, and in a machine its outcomes as well.
+
+    Now and then it is disabled, unless it is the root of a behavior.
+    """
     kind = draw(st.sampled_from(_KINDS[:-1] if depth == DEPTH else _KINDS)) if depth else "state"
     outcomes = {"state": ACT_OUTCOMES, "foreach": ("exhausted", "broken")}.get(kind, OUTS)
     keys = draw(_keys(targets, outcomes))
+    if not root and draw(st.integers(0, 9)) == 9:
+        keys["disabled"] = draw(st.sampled_from(outcomes))
     if wired:
         keys["transitions"] = {
             outcome: draw(targets) for outcome in (*outcomes, "late") if draw(st.integers(0, 20)) or outcome in "ax"
@@ -181,7 +188,7 @@ def _rounds(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
 @st.composite
 def _references(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
     limit = parameter("limit", int, default=1, maximum=2)
-    inner = _named_by_meaning([limit], {"k": 0, **draw(USERDATA)}, draw(_steps(depth - 1, LATE)))
+    inner = _named_by_meaning([limit], {"k": 0, **draw(USERDATA)}, draw(_steps(depth - 1, LATE, root=True)))
     given = draw(st.sampled_from([{}, {"limit": 2}, {"limit": expr("n")}, {"limit": expr("n + 5")}]))
     inputs = {"n": draw(KEYS)} if draw(st.booleans()) else {}
     outputs = {draw(st.sampled_from(["k", "n", "sum"])): draw(KEYS)} if draw(st.booleans()) else {}
@@ -219,7 +226,7 @@ def _all(behavior: Behavior) -> list[Behavior]:
 def cases(draw: st.DrawFn) -> Case:
     """Draw a behavior."""
     userdata = {"n": draw(st.integers(0, 2)), "xs": [1, 2], **draw(USERDATA)}
-    root = draw(_steps(DEPTH, st.sampled_from(OUTS)))
+    root = draw(_steps(DEPTH, st.sampled_from(OUTS), root=True))
     return Case(behavior("random", outcomes=["x"], userdata=userdata, root=root))
 
 

@@ -59,6 +59,10 @@ def _limited(node: Node, after_s: float, retries: int) -> Node:
     return {**node, **timeout, **again}
 
 
+def _passed_over(node: Node) -> Node:
+    return {**node, "disabled": _outs(node)[0]}
+
+
 def _machine(children: list[Node], *, kind: str) -> Node:
     """One child after the other; every way out of the last one is `a`."""
     states: Node = {}
@@ -115,6 +119,7 @@ def _trees(
             st.builds(_machine, st.lists(inner, min_size=1, max_size=3), kind=st.sampled_from(kinds))
             | st.lists(inner, min_size=1, max_size=3).map(concurrency)
             | inner.map(_foreach)
+            | inner.map(_passed_over)
         ),
         max_leaves=6,
     )

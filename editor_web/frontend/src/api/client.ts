@@ -12,6 +12,7 @@ import type {
   ResumeBody,
   SessionBody,
   StartBody,
+  StartData,
   StartResultBody,
   StepBody,
   HotChangeBody,
@@ -106,6 +107,9 @@ export const api = {
   behavior: (id: string) => call<BehaviorView>(`/behaviors/${idPath(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartResultBody>('/runs', body, { 'idempotency-key': key }),
+  /** The data with which a run can start at a node. */
+  startData: (behavior: string, path: string) =>
+    call<StartData>(`/runs/start-data?${new URLSearchParams({ behavior, path }).toString()}`),
   resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
   pause: (run: string) => command(run, 'pause'),
   resume: (run: string) => command(run, 'resume'),

@@ -175,7 +175,7 @@ export interface BranchesPreempted {
   readonly branches: readonly string[]
 }
 
-/** Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches. `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to these outcomes. */
+/** Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches. `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to these outcomes. One with `once` is removed when it has paused the run. */
 export interface Breakpoint {
   readonly path: string
   readonly when?: "after" | "before"
@@ -183,6 +183,7 @@ export interface Breakpoint {
   readonly hits?: number
   readonly outcomes?: readonly string[]
   readonly enabled?: boolean
+  readonly once?: boolean
 }
 
 /** All breakpoints of a run or a behavior; they replace the previous ones. */
@@ -587,6 +588,7 @@ export interface DocumentNode {
   readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
+  readonly disabled: boolean | string
   readonly label: string
   readonly role: string
   readonly line: number
@@ -731,7 +733,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -1008,6 +1010,7 @@ export interface GraphNode {
   readonly transitions: readonly GraphTransition[]
   readonly initial: string | null
   readonly conditions: readonly string[]
+  readonly disabled: boolean | string
 }
 
 /** A transition of a state machine; the outcome of a timeout is `after 30 s`, that of on_error is `error`. */
@@ -1441,7 +1444,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed or stopped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1462,6 +1465,15 @@ export interface NodeRetried {
   readonly attempt: number
   readonly wait_s: number
   readonly cause: Cause | null
+}
+
+/** A disabled node was passed over with an outcome; it was not entered. In a tree its status is `skipped`. */
+export interface NodeSkipped {
+  readonly event: "skipped"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly outcome: string
 }
 
 /** The activations of a node that ended in a run, and the seconds that they took on its clock. */
@@ -1913,10 +1925,10 @@ export interface RunFailure {
   readonly around: readonly LogLine[]
 }
 
-/** An event of a run in the journal; `path` is the node to start at, by default the state entered last. */
+/** Where a run starts: at the node `path`, with the data of event `seq` of a run in the journal. Without `run`, it starts with the initial userdata. Without `path`, at the state entered last. */
 export interface RunPosition {
-  readonly run: string
-  readonly seq: number
+  readonly run?: string
+  readonly seq?: number | null
   readonly path?: string | null
 }
 
@@ -2120,7 +2132,7 @@ export interface SetDocument {
   readonly changes: Dict<unknown>
 }
 
-/** Set one field of a node; null removes it. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
+/** Set one field of a node; null removes it. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, disabled, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
 export interface SetField {
   readonly edit: "set_field"
   readonly path: string
@@ -2227,7 +2239,7 @@ export interface SkillInfo {
   readonly answer: string
 }
 
-/** A request to start a run; without a seed the server chooses one. With `breakpoints`, those in the file of the behavior hold. */
+/** A request to start a run; without a seed the server chooses one. With `breakpoints`, those in the file of the behavior hold. The run pauses once before the node `until`. */
 export interface StartBody {
   readonly behavior: string
   readonly parameters?: Dict<unknown>
@@ -2236,6 +2248,17 @@ export interface StartBody {
   readonly supervision?: Supervision
   readonly breakpoints?: boolean
   readonly begin?: RunPosition | null
+  readonly until?: string | null
+}
+
+/** The data with which a run can start at a node: of the last run that entered it, else the initial values. `run` is empty where no run has; `seq` is the event before its entry. `obstacle` tells why a run cannot start there. */
+export interface StartData {
+  readonly run: string
+  readonly seq: number | null
+  readonly started_unix_s: number
+  readonly parameters: Dict<unknown>
+  readonly userdata: Dict<unknown>
+  readonly obstacle: string
 }
 
 /** From the page: prepare to jog this arm, until `rest`. */

@@ -41,6 +41,7 @@ import { LayoutChoice } from './LayoutChoice'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
+import { StartHereDialog } from '../features/parameters/StartHereDialog'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
@@ -151,13 +152,14 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     else act(node.path)
   }
 
-  const card = node && <NodeCard node={node} commands={commands} />
+  const card = node && <NodeCard node={node} behavior={behavior.id} commands={commands} />
   const graph = behavior.graph ? (
     <Graph
       root={behavior.graph}
       selected={selected}
       onSelect={choose}
       shown={shown}
+      behavior={behavior.id}
       breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
     />
   ) : (
@@ -313,6 +315,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         />
       )}
       <ChangeReport commands={commands} />
+      <StartHereDialog behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
       <ShortcutSheet isOpen={isSheetOpen} onClose={() => setSheetOpen(false)} areOn={keys.areOn} onSwitch={keys.setOn} />
     </div>
   )

@@ -9,6 +9,7 @@ import {
   IconPlayerPauseFilled,
   IconPlayerPlayFilled,
   IconPlayerStopFilled,
+  IconPlayerTrackNextFilled,
 } from '@tabler/icons-react'
 import type { Status } from '../document/runState'
 
@@ -18,6 +19,7 @@ const ICONS = {
   done: IconCircleCheckFilled,
   failed: IconCircleXFilled,
   stopped: IconPlayerStopFilled,
+  skipped: IconPlayerTrackNextFilled,
   warning: IconAlertTriangleFilled,
   paused: IconPlayerPauseFilled,
   waiting: IconHelpCircleFilled,

@@ -21,6 +21,7 @@ export function completed(given: Breakpoint): CompleteBreakpoint {
     hits: given.hits ?? 1,
     outcomes: given.outcomes ?? [],
     enabled: given.enabled ?? true,
+    once: given.once ?? false,
   }
 }
 
@@ -43,11 +44,12 @@ export function replaced(list: readonly CompleteBreakpoint[], fresh: CompleteBre
 }
 
 /** `before, if tries > 1, from the 3rd time on`. */
-export function breakpointWords({ when, if: condition, hits, outcomes, enabled }: CompleteBreakpoint): string {
+export function breakpointWords({ when, if: condition, hits, outcomes, enabled, once }: CompleteBreakpoint): string {
   const parts: string[] = [when]
   if (outcomes.length > 0) parts.push(`with ${outcomes.join(' or ')}`)
   if (condition) parts.push(`if ${condition}`)
   if (hits > 1) parts.push(`from time ${hits} on`)
+  if (once) parts.push('once')
   if (!enabled) parts.push('off')
   return parts.join(', ')
 }

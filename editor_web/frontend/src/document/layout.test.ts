@@ -9,7 +9,7 @@ const noCall: LayoutCall = () => Promise.reject(new Error('a straight machine ne
 
 function leaf(path: string): GraphNode {
   const name = path.split('/').pop() ?? ''
-  return { path, name, kind: 'state', title: 'motion.MoveJoints', description: '', outcomes: ['done', 'failed'], children: [], transitions: [], initial: null, conditions: [] }
+  return { path, name, kind: 'state', title: 'motion.MoveJoints', description: '', outcomes: ['done', 'failed'], children: [], transitions: [], initial: null, conditions: [], disabled: false }
 }
 
 function straight(path: string, names: readonly string[]): GraphNode {

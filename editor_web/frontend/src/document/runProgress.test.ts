@@ -14,6 +14,7 @@ const graph = (path: string, children: readonly GraphNode[] = []): GraphNode => 
   transitions: [],
   initial: null,
   conditions: [],
+  disabled: false,
 })
 const live = (status: string, entered_s = 0): NodeLive => ({
   status,

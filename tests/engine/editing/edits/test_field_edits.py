@@ -205,3 +205,23 @@ def test_json_documents_are_edited_as_json() -> None:
             assert all(
                 line in made for line in text.split("\n") if '"one"' not in line and line.strip(" ,") not in "{}[]"
             )
+
+
+def test_a_node_is_disabled_before_its_transitions_and_enabled_again() -> None:
+    """The page writes the outcome by which it is passed over."""
+    edit = {"edit": "set_field", "path": "root/second", "field": "disabled"}
+    made = edited(TEXT, {**edit, "value": "b"})
+    assert difference(TEXT, made) == ["+        disabled: b"]
+    for nothing in (None, False):
+        assert edited(made, {**edit, "value": nothing}) == TEXT
+    assert "disabled" in refusal(TEXT, {**edit, "value": 3})
+
+
+def test_a_disabled_node_stays_disabled_where_it_is_moved_to() -> None:
+    """An outcome leads on in a machine, the parent in a tree."""
+    off = edited(TREE, {"edit": "set_field", "path": "root/sequence/Give", "field": "disabled", "value": True})
+    assert "disabled: true" in off
+    paste = {"edit": "paste", "parent": "root/sequence", "yaml": "off: {state: test.Give, disabled: b}\n"}
+    assert edited(TREE, paste).count("disabled: true") == 1
+    pasted = edited(TEXT, {"edit": "paste", "parent": "root", "yaml": "off: {state: test.Give, disabled: true}\n"})
+    assert "disabled: a" in pasted

@@ -98,7 +98,21 @@ def test_a_running_state_keeps_its_parameters_until_it_is_entered_again() -> Non
 
 
 ONE = "one: {state: test.Give, with: {after_s: 3}, transitions: {a: two, b: two, c: two}}"
+TWO = "two: {state: test.Give, with: {after_s: 1}, transitions: {a: out, b: out, c: out}}"
+
+
+def test_a_node_is_disabled_while_the_run_goes_on() -> None:
+    off = TWO.replace("{state", "{disabled: a, state")
+    told, said = _changed(OLD.replace(TWO, off))
+    assert said == ["root/both/right/two is disabled"]
+    assert (told.result.outcome, "+root/both/right/two" in told.lines) == ("good", False)
+
+
 REFUSED = {
+    "disabled": (
+        OLD.replace(ONE, ONE.replace("{state", "{disabled: a, state")),
+        "root/both/right/one is active and disabled in the new version",
+    ),
     "another class": (
         OLD.replace(ONE, "one: {state: test.Use, transitions: {done: two}}"),
         "root/both/right/one is active as test.Give and becomes test.Use",

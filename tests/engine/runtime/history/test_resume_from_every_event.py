@@ -75,6 +75,31 @@ BEHAVIORS = {
                 transitions: {fine: rest, wrong: bad}
               rest: {state: test.Give, with: {after_s: 1}, transitions: {a: good, b: bad, c: bad}}
         """,
+    "disabled nodes": """
+        userdata: {value: 0}
+        root:
+          machine:
+            initial: first
+            states:
+              first: {state: no.Such, disabled: done, transitions: {done: both}}
+              both:
+                concurrency:
+                  states:
+                    off: {state: no.Such, disabled: done}
+                    writing: {state: test.Write, with: {value: 1, after_s: 1}}
+                  conditions: [{fine: {off: done, writing: done}}]
+                transitions: {fine: each}
+              each:
+                foreach: {times: 2, child: {state: no.Such, disabled: done}}
+                transitions: {exhausted: tree, broken: bad}
+              tree:
+                tree:
+                  sequence:
+                    - {state: no.Such, disabled: true}
+                    - {state: test.Give, name: a, with: {after_s: 1}}
+                    - {selector: [{state: no.Such, disabled: true}, {state: test.Give, name: b}]}
+                transitions: {success: good, failure: bad}
+        """,
     "all branches preempted or done": """
         userdata: {value: 0}
         root:

@@ -64,3 +64,8 @@ export function undone(history: History): History {
 export function redone(history: History): History {
   return canRedo(history) ? { ...history, at: history.at + 1 } : history
 }
+
+/** Go to a step; the others stay, before and after it. */
+export function jumped(history: History, at: number): History {
+  return { ...history, at: Math.max(0, Math.min(history.steps.length - 1, at)) }
+}

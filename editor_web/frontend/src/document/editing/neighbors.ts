@@ -42,11 +42,15 @@ function contains(outer: Box, inner: Box): boolean {
   )
 }
 
-export type Alignment = 'left' | 'center' | 'right' | 'top' | 'middle' | 'bottom' | 'row' | 'column'
+export type Alignment = 'left' | 'center' | 'right' | 'top' | 'middle' | 'bottom' | 'row' | 'column' | 'across' | 'down'
 
-const SPACE = 44
+/** Least space between boxes beside and above one another. */
+const SPACE = { x: 44, y: 22 } as const
 
-/** New corners that put boxes in line, or one after the other with equal spaces. */
+type Axis = 'x' | 'y'
+type Placed = readonly [string, Box]
+
+/** New corners that put boxes in line, one after the other, or with equal spaces; none lies on another. */
 export function aligned(boxes: ReadonlyMap<string, Box>, how: Alignment): ReadonlyMap<string, Point> {
   const all = [...boxes]
   const left = Math.min(...all.map(([, b]) => b.x))
@@ -55,50 +59,68 @@ export function aligned(boxes: ReadonlyMap<string, Box>, how: Alignment): Readon
   const bottom = Math.max(...all.map(([, b]) => b.y + b.height))
   switch (how) {
     case 'left':
-      return put(all, (b) => ({ x: left, y: b.y }))
+      return apart(all, 'y', (b) => ({ ...b, x: left }))
     case 'center':
-      return put(all, (b) => ({ x: (left + right - b.width) / 2, y: b.y }))
+      return apart(all, 'y', (b) => ({ ...b, x: (left + right - b.width) / 2 }))
     case 'right':
-      return put(all, (b) => ({ x: right - b.width, y: b.y }))
+      return apart(all, 'y', (b) => ({ ...b, x: right - b.width }))
     case 'top':
-      return put(all, (b) => ({ x: b.x, y: top }))
+      return apart(all, 'x', (b) => ({ ...b, y: top }))
     case 'middle':
-      return put(all, (b) => ({ x: b.x, y: (top + bottom - b.height) / 2 }))
+      return apart(all, 'x', (b) => ({ ...b, y: (top + bottom - b.height) / 2 }))
     case 'bottom':
-      return put(all, (b) => ({ x: b.x, y: bottom - b.height }))
+      return apart(all, 'x', (b) => ({ ...b, y: bottom - b.height }))
     case 'row':
-      return inLine(
-        all,
-        (b) => b.x,
-        (b, at) => ({ x: at, y: top, next: at + b.width + SPACE }),
-        left,
-      )
+      return spaced(all, 'x', SPACE.x, (b) => ({ ...b, y: top }))
     case 'column':
-      return inLine(
-        all,
-        (b) => b.y,
-        (b, at) => ({ x: left, y: at, next: at + b.height + SPACE / 2 }),
-        top,
-      )
+      return spaced(all, 'y', SPACE.y, (b) => ({ ...b, x: left }))
+    case 'across':
+      return spaced(all, 'x', equalSpace(all, 'x', left, right), (b) => b)
+    case 'down':
+      return spaced(all, 'y', equalSpace(all, 'y', top, bottom), (b) => b)
   }
 }
 
-function put(all: readonly [string, Box][], place: (box: Box) => Point): ReadonlyMap<string, Point> {
-  return new Map(all.map(([id, box]) => [id, place(box)]))
+function sizeOf(box: Box, axis: Axis): number {
+  return axis === 'x' ? box.width : box.height
 }
 
-function inLine(
-  all: readonly [string, Box][],
-  order: (box: Box) => number,
-  place: (box: Box, at: number) => Point & { next: number },
-  start: number,
-): ReadonlyMap<string, Point> {
-  const out = new Map<string, Point>()
-  let at = start
-  for (const [id, box] of all.toSorted(([, a], [, b]) => order(a) - order(b))) {
-    const { x, y, next } = place(box, at)
-    out.set(id, { x, y })
-    at = next
-  }
-  return out
+function movedTo(axis: Axis, at: number, { x, y }: Point): Point {
+  return axis === 'x' ? { x: at, y } : { x, y: at }
+}
+
+function inOrder(all: readonly Placed[], axis: Axis): readonly Placed[] {
+  return all.toSorted(([, a], [, b]) => a[axis] - b[axis])
+}
+
+/** Boxes in line; those that would lie on the one before are moved on along the line. */
+function apart(all: readonly Placed[], axis: Axis, put: (box: Box) => Box): ReadonlyMap<string, Point> {
+  let free = -Infinity
+  return new Map(
+    inOrder(all, axis).map(([id, box]) => {
+      const at = Math.max(box[axis], free)
+      free = at + sizeOf(box, axis) + SPACE[axis]
+      const { x, y } = put(box)
+      return [id, movedTo(axis, at, { x, y })] as const
+    }),
+  )
+}
+
+/** One box after the other, with the same space between them. */
+function spaced(all: readonly Placed[], axis: Axis, space: number, put: (box: Box) => Box): ReadonlyMap<string, Point> {
+  let at = Math.min(...all.map(([, box]) => box[axis]))
+  return new Map(
+    inOrder(all, axis).map(([id, box]) => {
+      const { x, y } = put(box)
+      const corner = movedTo(axis, at, { x, y })
+      at += sizeOf(box, axis) + space
+      return [id, corner] as const
+    }),
+  )
+}
+
+/** The space between boxes that leaves the first and the last where they are, as far as there is room. */
+function equalSpace(all: readonly Placed[], axis: Axis, start: number, end: number): number {
+  const filled = all.reduce((sum, [, box]) => sum + sizeOf(box, axis), 0)
+  return Math.max(SPACE[axis], (end - start - filled) / Math.max(1, all.length - 1))
 }

@@ -12,6 +12,7 @@ export function node(path: string, outcomes: readonly string[], more: Partial<Ed
     transitions: [],
     initial: null,
     conditions: [],
+    disabled: false,
     description: '',
     parameters: {},
     inputs: {},

@@ -21,7 +21,7 @@ function Card({ isRunning = true }: { readonly isRunning?: boolean }) {
   return (
     <>
       <RefusalLine />
-      <NodeCard node={REST} commands={commands} />
+      <NodeCard node={REST} behavior="behaviors/shift.yaml" commands={commands} />
       <Holds commands={commands} onShow={() => undefined} />
     </>
   )
@@ -60,7 +60,7 @@ it('keeps condition and count of a breakpoint when Enter is pressed, in the run 
   await user.clear(screen.getByLabelText('From time'))
   await user.type(screen.getByLabelText('From time'), '3')
   await user.type(screen.getByLabelText('Only if'), 'value == 1{Enter}')
-  const wanted: Breakpoint = { path: 'root/rest', when: 'before', if: 'value == 1', hits: 3, outcomes: [], enabled: true }
+  const wanted: Breakpoint = { path: 'root/rest', when: 'before', if: 'value == 1', hits: 3, outcomes: [], enabled: true, once: false }
   await waitFor(() => expect(server().bodies('POST /runs/r1/control/breakpoints').at(-1)).toEqual({ breakpoints: [wanted] }))
   expect(server().bodies(`PUT /breakpoints/${SHIFT}`).at(-1)).toEqual({ breakpoints: [wanted] })
 })

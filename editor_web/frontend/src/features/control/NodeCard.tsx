@@ -1,8 +1,9 @@
 /** What can be done with the selected node: why it waits, breakpoints, lock, forced outcomes, run again. */
 import { TextInput } from '@mantine/core'
-import { IconLock, IconLockOpen, IconRepeat } from '@tabler/icons-react'
+import { IconLock, IconLockOpen, IconPlayerPause, IconPlayerSkipForward, IconRepeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
+import { askStartHere } from '../../api/startHere'
 import type { GraphNode } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { GoalLine } from '../../components/GoalLine'
@@ -14,7 +15,7 @@ import type { Commands } from './useCommands'
 /** Where the key `f` goes. */
 export const FORCE_ID = 'force'
 
-export function NodeCard({ node, commands }: { node: GraphNode; commands: Commands }) {
+export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavior: string; commands: Commands }) {
   const waiting = useLive((s) => s.control?.waiting.find((each) => each.path === node.path))
   const forced = { obstacle: commands.obstacle('force'), onObstacle: () => commands.explain('force', 'Force') }
   return (
@@ -26,6 +27,23 @@ export function NodeCard({ node, commands }: { node: GraphNode; commands: Comman
           <strong>Waits</strong> {waitingWords(waiting)}
         </p>
       )}
+      <h3>Start</h3>
+      <div className="command-row">
+        <CommandButton
+          label="Run from here…"
+          hint="Start a run at this node, with the data of the last run that entered it"
+          icon={<IconPlayerSkipForward size={16} aria-hidden />}
+          obstacle={obstacleHere(node)}
+          onPress={() => askStartHere({ behavior, path: node.path, kind: 'from' })}
+        />
+        <CommandButton
+          label="Run to here…"
+          hint="Pause once before this node"
+          icon={<IconPlayerPause size={16} aria-hidden />}
+          obstacle={obstacleHere(node)}
+          onPress={() => askStartHere({ behavior, path: node.path, kind: 'to' })}
+        />
+      </div>
       <h3>Break</h3>
       <BreakpointEditor key={node.path} path={node.path} isOff={commands.obstacle('breakpoint')} />
       <h3>Lock</h3>
@@ -50,6 +68,11 @@ export function NodeCard({ node, commands }: { node: GraphNode; commands: Comman
       </div>
     </section>
   )
+}
+
+function obstacleHere(node: GraphNode): string | undefined {
+  if (node.path === 'root') return 'this is the beginning'
+  return node.disabled === false ? undefined : 'it is disabled, so no run enters it'
 }
 
 function Lock({ path, commands }: { path: string; commands: Commands }) {

@@ -19,9 +19,10 @@ import { Empty } from '../../components/Empty'
 import { isForeign, isHolder, isMachine, nodeOf, parentPath } from '../../document/editing/model'
 import { frameOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
-import { add, choose, chooseArrow, moveInto, place, type Addition } from './actions'
+import { add, choose, chooseArrow, moveInto, type Addition } from './actions'
+import { place } from './placing'
 import { openAddPalette, openPortPalette } from './paletteRequests'
-import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onReconnect } from './canvasHandlers'
+import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onNodeMenu, onReconnect, onSelectionMenu } from './canvasHandlers'
 import { setCanvasPositions } from './canvasPositions'
 import { drawInBatches } from './batchedDrawing'
 import { EmptyCanvas } from './EmptyCanvas'
@@ -33,6 +34,7 @@ import { ADDITION } from './dragging'
 import { trackMotionNextFrame } from './viewportMotion'
 import { isAllSeen, LEAST, viewportFor } from './viewport'
 import { FlowOverlay } from './FlowOverlay'
+import { NodeMenu } from './NodeMenu'
 import { NoteOverlay } from './NoteOverlay'
 import { SelectionBar } from './SelectionBar'
 import { editor, showEditorRefusal, rootOf, setEditor, useEditor } from './store'
@@ -204,6 +206,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       void moveInto(
         moved.map((node) => node.id),
         target,
+        new Map(moved.flatMap((node) => (absolute(node.id) ? [[node.id, positionIn(target, absolute(node.id) ?? node.position)]] : []))),
       )
       setNodes([...computed])
       return
@@ -332,6 +335,8 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       onEdgeClick={onEdgeClick}
       onNodeClick={onNodeClick}
       onNodeDoubleClick={onDouble}
+      onNodeContextMenu={onNodeMenu}
+      onSelectionContextMenu={onSelectionMenu}
       onPaneClick={() => {
         choose([])
         chooseArrow(undefined)
@@ -389,6 +394,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       <FlowOverlay />
       <NoteOverlay />
       <SelectionBar />
+      <NodeMenu />
       {arranged.scope.children.length === 0 && <EmptyCanvas />}
     </ReactFlow>
   )

@@ -11,6 +11,7 @@ import {
   IconShieldHalf,
 } from '@tabler/icons-react'
 import { memo } from 'react'
+import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
@@ -29,7 +30,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
         {node.role && <span className="card-role">{node.role}</span>}
         <div className="card-titles">
           <span className="card-name">{node.name}</span>
-          <span className="card-title">{node.title || insideText(data)}</span>
+          <span className="card-title">{node.disabled === false ? node.title || insideText(data) : disabledText(node.disabled)}</span>
         </div>
         <Extras data={data} />
         <MarkIcon path={id} inside={node.children.length > 0} />
@@ -52,7 +53,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       <div className="frame-head">
         <NodeIcon className="kind-icon" kind={node.kind} />
         <span className="card-name">{node.name}</span>
-        <span className="frame-kind">{node.title || kindLabel(node.kind)}</span>
+        <span className="frame-kind">{node.disabled === false ? node.title || kindLabel(node.kind) : disabledText(node.disabled)}</span>
         {node.kind === 'behavior' && <span className="frame-foreign">read only</span>}
         <span className="spacer" />
         <Extras data={data} />
@@ -74,6 +75,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
       <NodeIcon className="kind-icon" kind={node.kind} size={15} />
       {node.role && <span className="card-role">{node.role}</span>}
       <span className="card-name">{node.name}</span>
+      {node.disabled !== false && <span className="twig-disabled">disabled</span>}
       {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
       {!data.isOpen && data.count > 0 && <span className="twig-count">{data.count}</span>}
       <MarkIcon path={id} inside={!data.isOpen} />
@@ -83,7 +85,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
 })
 
 function stateClasses(data: CardData, selected: boolean): string {
-  return `${selected ? ' is-selected' : ''}${data.isForeign ? ' is-foreign' : ''}`
+  return `${selected ? ' is-selected' : ''}${data.isForeign ? ' is-foreign' : ''}${data.isPassedOver ? ' is-disabled' : ''}`
 }
 
 /** Above in a tree; in a machine at the left, at the height of the first outcome. */

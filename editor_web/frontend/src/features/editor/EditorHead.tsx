@@ -14,6 +14,7 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
 import { canRedo, canUndo } from '../../document/editing/history'
 import { redo, undo } from './apply'
+import { EditHistory } from './EditHistory'
 import { FileMenu } from './FileMenu'
 import { save } from './session'
 import { draftOf, isDirty, setEditor, useEditor } from './store'
@@ -61,6 +62,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
           onPress={redo}
           tone="quiet"
         />
+        <EditHistory />
         <ProblemCount />
         <CommandButton
           isCompact

@@ -7,6 +7,7 @@ import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { offerCommands } from '../../api/search'
 import { useLive } from '../../api/live'
+import { askStartHere, type StartHere } from '../../api/startHere'
 import { Empty } from '../../components/Empty'
 import { lazyView } from '../../components/lazyView'
 import { Loading } from '../../components/Loading'
@@ -116,7 +117,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   const { setViewport, zoomTo, getZoom } = useReactFlow()
   const element = useRef<HTMLDivElement>(null)
 
-  async function run(): Promise<void> {
+  async function run(here?: Pick<StartHere, 'path' | 'kind'>): Promise<void> {
     ;(document.activeElement as HTMLElement | null)?.blur()
     await lookForFindings()
     const errors = draftOf(editor()).findings.filter((finding) => finding.severity === 'error').length
@@ -125,11 +126,13 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       showEditorRefusal('Run', errors === 1 ? 'there is an error' : `there are ${errors} errors`, 'See the problems.')
       return
     }
-    if (await save()) onRun()
+    if (!(await save())) return
+    if (here) askStartHere({ behavior: editor().id, ...here })
+    onRun()
   }
   useEffect(() =>
     setPageActions({
-      run: () => void run(),
+      run: (here) => void run(here),
       fit: () => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 })),
       zoom: (factor) => trackViewportMotion(zoomTo(getZoom() * factor, { duration: 120 })),
       open: (id, node) => {

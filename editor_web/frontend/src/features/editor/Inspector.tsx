@@ -1,20 +1,18 @@
 /** The form of what is chosen: the node, the behavior itself, and the problems of both. */
 import { Tabs } from '@mantine/core'
 import { problemsOf } from '../../document/editing/findings'
+import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { ArrowForm } from './ArrowForm'
 import { DocumentForm } from './DocumentForm'
 import { NodeForm } from './NodeForm'
 import { ProblemList } from './ProblemList'
-import { chosenOf, draftOf, scopeOf, setEditor, useEditor, type SideTab } from './store'
+import { SelectionForm } from './SelectionForm'
+import { chosenOf, draftOf, rootOf, scopeOf, setEditor, useEditor, type SideTab } from './store'
 
 export function Inspector() {
   const tab = useEditor((s) => s.tab)
   const problems = useEditor((s) => problemsOf(draftOf(s)).length)
   const arrow = useEditor((s) => s.arrow)
-  const several = useEditor((s) => s.selection.length)
-  const chosen = useEditor(chosenOf)
-  const scope = useEditor(scopeOf)
-  const node = chosen ?? scope
   return (
     <Tabs
       value={tab}
@@ -32,11 +30,7 @@ export function Inspector() {
       </Tabs.List>
       <Tabs.Panel value="node">
         <div className="tab-body is-flush form-scroll">
-          {arrow ? (
-            <ArrowForm arrow={arrow} />
-          ) : (
-            node && <NodeForm key={node.path} node={node} isScope={!chosen} others={several - 1} />
-          )}
+          {arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}
         </div>
       </Tabs.Panel>
       <Tabs.Panel value="document">
@@ -51,4 +45,16 @@ export function Inspector() {
       </Tabs.Panel>
     </Tabs>
   )
+}
+
+/** One form for all selected nodes that can be changed here, else that of the node, or of what fills the canvas. */
+function FormOf() {
+  const root = useEditor(rootOf)
+  const selection = useEditor((s) => s.selection)
+  const chosen = useEditor(chosenOf)
+  const scope = useEditor(scopeOf)
+  const node = chosen ?? scope
+  const all = root ? selection.filter((path) => path !== ROOT && !isForeign(root, path)).flatMap((path) => nodeOf(root, path) ?? []) : []
+  if (all.length > 1) return <SelectionForm key={selection.join(' ')} nodes={all} />
+  return node ? <NodeForm key={node.path} node={node} isScope={!chosen} others={selection.length - 1} /> : null
 }

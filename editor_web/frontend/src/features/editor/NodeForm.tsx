@@ -10,6 +10,7 @@ import { openReferred } from './pageActions'
 import { PolicyForm } from './PolicyForm'
 import { PostForm } from './PostForm'
 import { DataForm } from './DataForm'
+import { DisabledForm } from './DisabledForm'
 import { NodeFindings } from './FixButtons'
 import { FlowSection } from './FlowSection'
 import { OrderForm } from './OrderForm'
@@ -103,6 +104,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       <SettingsForm node={node} />
       {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
       <FlowSection node={node} />
+      {node.path !== ROOT && <DisabledForm node={node} />}
       {node.path !== ROOT && node.kind !== 'guard' && <PolicyForm node={node} parent={parent} />}
       {parent && isTreePart(parent.kind) && <PostForm node={node} />}
       <Section title="Notes">

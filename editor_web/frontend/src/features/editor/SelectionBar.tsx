@@ -9,6 +9,7 @@ import {
   IconExternalLink,
   IconLogin2,
   IconNote,
+  IconPlayerTrackNext,
   IconPlugConnected,
   IconPlus,
   IconTrash,
@@ -21,10 +22,12 @@ import {
   nameProblem,
   nodeOf,
   parentPath,
+  ROOT,
   type EditNode,
 } from '../../document/editing/model'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
+import { toggleDisabled } from './disabled'
 import { openAddPalette, openConnectPalette } from './paletteRequests'
 import { openReferred } from './pageActions'
 import { writeNote } from './notes'
@@ -64,6 +67,11 @@ export function SelectionBar() {
     <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
       <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
         {selection.length === 1 ? <One node={node} /> : <Several count={selection.length} />}
+        {node.path !== ROOT && (
+          <Act label={`${node.disabled === false ? 'Disable' : 'Enable'} (X)`} onPress={() => void toggleDisabled()}>
+            <IconPlayerTrackNext size={16} />
+          </Act>
+        )}
         <Act label="Duplicate (Ctrl+D)" onPress={() => void duplicate()}>
           <IconCopyPlus size={16} />
         </Act>

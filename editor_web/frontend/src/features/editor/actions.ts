@@ -2,13 +2,12 @@
 import type { Dict } from '../../document/dict'
 import { documents } from '../../api/documents'
 import { wordsOf } from '../../api/client'
-import { corner, setField, type AddNode, type Edit, type GroupKind } from '../../document/editing/edits'
+import { corner, setField, type AddNode, type Corner, type Edit, type GroupKind } from '../../document/editing/edits'
 import {
   allNodes,
   freeName,
   holderOf,
   isComposite,
-  isForeign,
   isMachine,
   isTreePart,
   nameOfPath,
@@ -17,10 +16,11 @@ import {
   ROOT,
   type EditNode,
 } from '../../document/editing/model'
-import { aligned, type Alignment } from '../../document/editing/neighbors'
-import type { Box } from '../../document/geometry'
+import type { Point } from '../../document/geometry'
 import { perform, performOn } from './apply'
 import { canvasBoxes } from './canvasPositions'
+import { place, seenPositions } from './placing'
+import { outermost, own } from './selected'
 import { chosenOf, draftOf, editor, showEditorRefusal, rootOf, scopeOf, setEditor, showEditorNotice, type AddRequest } from './store'
 
 /** What a new node is. */
@@ -40,20 +40,15 @@ export function chooseArrow(arrow: string | undefined): void {
   setEditor({ arrow, selection: arrow ? [] : editor().selection })
 }
 
-/** Paths of the chosen nodes without those that are inside another chosen one. */
-function outermost(): readonly string[] {
-  const { selection } = editor()
-  return selection.filter((path) => path !== ROOT && !selection.some((other) => path.startsWith(`${other}/`)))
-}
-
 /** Add a node; where the request comes from a port or an arrow, it is connected too. */
 export async function add(what: Addition, request: AddRequest): Promise<void> {
   const root = rootOf(editor())
   const parent = nodeOf(root, request.parent)
   if (!root || !parent) return
   const name = freeName(parent, what.name)
-  const isPlaced =
-    request.at !== undefined && isMachine(parent.kind) && parent.children.some((child) => child.position !== null)
+  const isPlaced = request.at !== undefined && isMachine(parent.kind)
+  const seen = isPlaced ? seenPositions(parent) : {}
+  const kept: Edit[] = Object.keys(seen).length > 0 ? [{ edit: 'set_positions', positions: seen }] : []
   const after = request.from ? undefined : afterOf(parent)
   const node: AddNode = {
     edit: 'add_node',
@@ -70,7 +65,7 @@ export async function add(what: Addition, request: AddRequest): Promise<void> {
     request.from && !request.from.isInsert
       ? [{ edit: 'set_transition', path: request.from.path, outcome: request.from.outcome, target: name }]
       : []
-  const answer = await perform(`Add ${name}`, [node, ...transition])
+  const answer = await perform(`Add ${name}`, [...kept, node, ...transition])
   const made =
     answer?.changed.find((path) => parentPath(path) === parent.path && nameOfPath(path) === name) ??
     `${parent.path}/${name}`
@@ -117,16 +112,6 @@ function disconnection(path: string, outcome: string): Edit {
     return setField(path, outcome.startsWith('after ') ? 'timeout' : 'guard', null)
   }
   return { edit: 'clear_transition', path, outcome }
-}
-
-/** The paths that can be changed here; what is inside another document cannot. */
-function own(paths: readonly string[], what: string): readonly string[] {
-  const root = rootOf(editor())
-  const mine = root ? paths.filter((path) => !isForeign(root, path)) : []
-  if (mine.length < paths.length)
-    showEditorRefusal(what, 'this is part of another behavior', 'Open that behavior and change it there.')
-  else if (paths.length === 0) showEditorRefusal(what, 'nothing is selected', 'Select nodes on the canvas first.')
-  return mine
 }
 
 export async function rename(path: string, name: string): Promise<void> {
@@ -204,6 +189,14 @@ async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
   if (answer) chooseChanged(answer.changed, [])
 }
 
+/** Select the nodes of this behavior that run the same state, behavior or behaviour as the selected one. */
+export function selectAlike(): void {
+  const root = rootOf(editor())
+  const chosen = chosenOf(editor())
+  if (!root || !chosen?.title) return
+  choose(allNodes(root).filter((node) => node.kind === chosen.kind && node.title === chosen.title).map((node) => node.path))
+}
+
 export function selectAll(): void {
   choose(scopeOf(editor())?.children.map((child) => child.path) ?? [])
 }
@@ -247,61 +240,6 @@ export async function makeInitial(): Promise<void> {
   await perform(`Begin with ${chosen.name}`, [{ edit: 'set_initial', path: parent.path, child: chosen.name }])
 }
 
-/** Forget where nodes were put: the container that fills the canvas is laid out by itself again. */
-export async function layOutAnew(): Promise<void> {
-  const scope = scopeOf(editor())
-  const placed = scope ? positionedBelow(scope) : []
-  if (placed.length === 0) {
-    showEditorNotice('It is laid out already')
-    return
-  }
-  await perform('Lay out', [
-    { edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) },
-  ])
-}
-
-function positionedBelow(node: EditNode): readonly string[] {
-  return node.children.flatMap((child) => [...(child.position ? [child.path] : []), ...positionedBelow(child)])
-}
-
-/**
- * Put nodes where they were dragged to; false where they are not there.
- * The first one that is moved pins its siblings, which stay where they are seen.
- */
-export async function place(moved: ReadonlyMap<string, { x: number; y: number }>): Promise<boolean> {
-  const root = rootOf(editor())
-  const { boxes, origins } = canvasBoxes()
-  const positions: Record<string, readonly [number, number]> = {}
-  for (const [path, at] of moved) {
-    const parent = nodeOf(root, parentPath(path))
-    if (!parent || isTreePart(parent.kind) || !isMachine(parent.kind)) continue
-    const origin = origins.get(parent.path) ?? { x: 0, y: 0 }
-    const isPinned = parent.children.some((child) => child.position !== null)
-    if (!isPinned) {
-      for (const child of parent.children) {
-        const box = boxes.get(child.path)
-        if (box) positions[child.path] ??= corner(box.x - origin.x, box.y - origin.y)
-      }
-    }
-    positions[path] = corner(at.x - origin.x, at.y - origin.y)
-  }
-  if (Object.keys(positions).length === 0) return false
-  const words = moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`
-  return (await perform(words, [{ edit: 'set_positions', positions }])) !== undefined
-}
-
-export async function align(how: Alignment): Promise<void> {
-  const { boxes } = canvasBoxes()
-  const chosen = new Map(
-    outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])),
-  )
-  if (chosen.size < 2) {
-    showEditorRefusal('Align', 'select two nodes or more')
-    return
-  }
-  await place(aligned(chosen, how))
-}
-
 /** Move the chosen nodes by a step of the keyboard: elsewhere on the canvas, or among the children where their order counts. */
 export async function nudge(x: number, y: number): Promise<void> {
   const root = rootOf(editor())
@@ -335,8 +273,19 @@ export async function reorder(parent: EditNode, name: string, by: number): Promi
   if (answer) chooseChanged([`${parent.path}/${name}`], [])
 }
 
-export async function moveInto(paths: readonly string[], parent: string): Promise<void> {
-  const answer = await perform(`Move into ${nameOfPath(parent)}`, [{ edit: 'move_nodes', paths, parent }])
+/** Move nodes into another container; where it is a machine, they stay where they were dropped in it. */
+export async function moveInto(paths: readonly string[], parent: string, at = new Map<string, Point>()): Promise<void> {
+  const holder = nodeOf(rootOf(editor()), parent)
+  const names = new Set(holder?.children.map((child) => child.name))
+  const isPlaced = holder && isMachine(holder.kind) && paths.every((path) => at.has(path) && !names.has(nameOfPath(path)))
+  const dropped = paths.flatMap((path): [string, Corner][] => {
+    const point = at.get(path)
+    return point ? [[`${parent}/${nameOfPath(path)}`, corner(point.x, point.y)]] : []
+  })
+  const answer = await perform(`Move into ${nameOfPath(parent)}`, [
+    { edit: 'move_nodes', paths, parent },
+    ...(isPlaced ? [{ edit: 'set_positions' as const, positions: { ...seenPositions(holder), ...Object.fromEntries(dropped) } }] : []),
+  ])
   if (answer)
     choose(paths.map((path) => `${parent}/${nameOfPath(path)}`).filter((path) => nodeOf(rootOf(editor()), path)))
 }

@@ -6,7 +6,8 @@ import type { Edit } from '../../document/editing/edits'
 import { newHistory, presentOf } from '../../document/editing/history'
 import { node } from '../../document/editing/testNodes'
 import { lookForFindings, perform, redo, typed, undo } from './apply'
-import { disabledReason, type Command } from './commands'
+import type { Command } from './command'
+import { disabledReason } from './commands'
 import { blank, draftOf, editor, rootOf, useEditor } from './store'
 
 vi.mock('../../api/documents', () => ({ documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn() } }))

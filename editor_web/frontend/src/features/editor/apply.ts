@@ -5,7 +5,7 @@ import type { EditAnswer } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { sameFindings } from '../../document/editing/findings'
 import { shiftedFindings, withDifference } from '../../document/editing/graphDifference'
-import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
+import { jumped, pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { areOfLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
 import { lookForNames } from './cellNames'
@@ -221,6 +221,11 @@ export function undo(): void {
 
 export function redo(): void {
   go(redone)
+}
+
+/** Undo or redo all steps up to one. */
+export function jumpTo(at: number): void {
+  go((history) => jumped(history, at))
 }
 
 function go(step: (history: History) => History): void {

@@ -1,10 +1,12 @@
 /** What clicks and wires on the canvas do. Not made anew with each drawing, or every node would be drawn again with it. */
 import type { Connection } from '@xyflow/react'
+import type { MouseEvent } from 'react'
+import { pointOf } from '../../components/menuPoint'
 import { isHolder, nameOfPath, parentPath } from '../../document/editing/model'
-import { chooseArrow, connect, enter, toggleOpen } from './actions'
+import { choose, chooseArrow, connect, enter, toggleOpen } from './actions'
 import { openReferred } from './pageActions'
 import type { CanvasEdge, CanvasNode } from './elements'
-import { setEditor } from './store'
+import { editor, setEditor } from './store'
 
 export function onEdgeClick(_event: unknown, edge: CanvasEdge): void {
   if (edge.type === 'transition') chooseArrow(edge.id)
@@ -40,4 +42,16 @@ export function onDouble(_event: unknown, node: CanvasNode): void {
     else if (node.data.count > 0 || isHolder(node.data.node)) enter(node.id)
     else setEditor({ renaming: node.id })
   }
+}
+
+/** The menu of a node, which is selected with it; of all selected ones where it is one of them. */
+export function onNodeMenu(event: MouseEvent, node: CanvasNode): void {
+  if (node.type === 'pill' || node.type === 'rules') return
+  if (!editor().selection.includes(node.id)) choose([node.id])
+  onSelectionMenu(event)
+}
+
+export function onSelectionMenu(event: MouseEvent): void {
+  event.preventDefault()
+  setEditor({ menu: pointOf(event) })
 }

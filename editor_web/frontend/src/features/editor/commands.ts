@@ -1,10 +1,9 @@
 /** Every command of the editor with its words and keys: for the keyboard, the palette and the sheet. */
 import { openSearch } from '../../api/search'
-import { isChord, type Chord, type Press } from '../../document/editing/keys'
+import { isChord, type Press } from '../../document/editing/keys'
 import { isMachine, isTreePart, nodeOf, parentPath, ROOT } from '../../document/editing/model'
 import { canRedo, canUndo } from '../../document/editing/history'
 import {
-  align,
   autoConnect,
   choose,
   copy,
@@ -12,18 +11,20 @@ import {
   enter,
   focusNode,
   group,
-  layOutAnew,
   leave,
   makeInitial,
-  nudge,
   paste,
   remove,
+  selectAlike,
   selectAll,
   openOrCloseAll,
   toggleOpen,
   ungroup,
 } from './actions'
 import { redo, undo } from './apply'
+import { ARRANGING } from './arranging'
+import type { Command } from './command'
+import { toggleDisabled } from './disabled'
 import { openAddPalette, openConnectPalette } from './paletteRequests'
 import { toggleDataFlow } from './dataFlow'
 import { exportPicture } from './exporting'
@@ -34,18 +35,6 @@ import { toggleReference } from './references'
 import { discard, save } from './session'
 import { toggleNotes, writeNote } from './notes'
 import { chosenOf, editor, isDirty, isOpenNow, rootOf, setEditor } from './store'
-
-export interface Command {
-  readonly id: string
-  readonly words: string
-  readonly part: 'Document' | 'Build' | 'Arrange' | 'Move around'
-  readonly chords: readonly Chord[]
-  /** What is needed for it; nothing stands in the way without. */
-  readonly needs?: 'node' | 'nodes' | 'undo' | 'redo' | 'changes'
-  readonly run: () => void
-}
-
-const STEP = 20
 
 function withChosen(act: (path: string) => void): void {
   const chosen = chosenOf(editor())
@@ -60,6 +49,22 @@ export const COMMANDS: readonly Command[] = [
     words: 'Save, check, and go to the run page',
     chords: [{ key: 'Enter', ctrl: true }],
     run: () => pageActions().run(),
+  },
+  {
+    id: 'run-from',
+    part: 'Document',
+    words: 'Run from here…',
+    chords: [],
+    needs: 'node',
+    run: () => withChosen((path) => pageActions().run({ path, kind: 'from' })),
+  },
+  {
+    id: 'run-to',
+    part: 'Document',
+    words: 'Run to here…',
+    chords: [],
+    needs: 'node',
+    run: () => withChosen((path) => pageActions().run({ path, kind: 'to' })),
   },
   { id: 'undo', part: 'Document', words: 'Undo', chords: [{ key: 'z', ctrl: true }], needs: 'undo', run: undo },
   {
@@ -159,6 +164,14 @@ export const COMMANDS: readonly Command[] = [
     run: () => withChosen((path) => setEditor({ renaming: path })),
   },
   {
+    id: 'disable',
+    part: 'Build',
+    words: 'Disable the selected nodes, or enable them again',
+    chords: [{ key: 'x' }],
+    needs: 'nodes',
+    run: () => void toggleDisabled(),
+  },
+  {
     id: 'note',
     part: 'Build',
     words: 'Add a note to the selected node, or to the container on the canvas',
@@ -223,57 +236,21 @@ export const COMMANDS: readonly Command[] = [
     run: () => void ungroup(),
   },
 
-  { id: 'layout', part: 'Arrange', words: 'Auto-layout', chords: [{ key: 'l' }], run: () => void layOutAnew() },
-  { id: 'align-left', part: 'Arrange', words: 'Align left', chords: [], needs: 'nodes', run: () => void align('left') },
-  { id: 'align-top', part: 'Arrange', words: 'Align top', chords: [], needs: 'nodes', run: () => void align('top') },
-  { id: 'align-row', part: 'Arrange', words: 'Put in a row', chords: [], needs: 'nodes', run: () => void align('row') },
-  {
-    id: 'align-column',
-    part: 'Arrange',
-    words: 'Put in a column',
-    chords: [],
-    needs: 'nodes',
-    run: () => void align('column'),
-  },
-  {
-    id: 'left',
-    part: 'Arrange',
-    words: 'Move left, or before its sibling',
-    chords: [{ key: 'ArrowLeft', alt: true }],
-    needs: 'node',
-    run: () => void nudge(-STEP, 0),
-  },
-  {
-    id: 'right',
-    part: 'Arrange',
-    words: 'Move right, or behind its sibling',
-    chords: [{ key: 'ArrowRight', alt: true }],
-    needs: 'node',
-    run: () => void nudge(STEP, 0),
-  },
-  {
-    id: 'up',
-    part: 'Arrange',
-    words: 'Move up',
-    chords: [{ key: 'ArrowUp', alt: true }],
-    needs: 'node',
-    run: () => void nudge(0, -STEP),
-  },
-  {
-    id: 'down',
-    part: 'Arrange',
-    words: 'Move down',
-    chords: [{ key: 'ArrowDown', alt: true }],
-    needs: 'node',
-    run: () => void nudge(0, STEP),
-  },
-
+  ...ARRANGING,
   {
     id: 'all',
     part: 'Move around',
     words: 'Select everything here',
     chords: [{ key: 'a', ctrl: true }],
     run: selectAll,
+  },
+  {
+    id: 'alike',
+    part: 'Move around',
+    words: 'Select every node that runs the same',
+    chords: [],
+    needs: 'node',
+    run: selectAlike,
   },
   {
     id: 'enter',

@@ -14,6 +14,7 @@ import {
   type EditNode,
   type OutgoingTransition,
 } from '../../document/editing/model'
+import { disabledText, isPassedOver } from '../../document/editing/disabling'
 import { countInside, drawnNodes, frameOf } from '../../document/editing/expansion'
 import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
@@ -26,6 +27,8 @@ export interface CardData extends Record<string, unknown> {
   readonly isInitial: boolean
   readonly isOpen: boolean
   readonly isForeign: boolean
+  /** It is disabled, or something around it is. */
+  readonly isPassedOver: boolean
   readonly isInTree: boolean
   readonly count: number
   /** Where arrows come in, from above. */
@@ -89,6 +92,7 @@ interface Surroundings {
   /** What an arrow can be drawn to. */
   readonly ends: ReadonlySet<string>
   readonly isForeign: boolean
+  readonly isPassedOver: boolean
 }
 
 function surroundings(parent: EditNode, { root, scope }: DrawnInput): Surroundings {
@@ -98,6 +102,7 @@ function surroundings(parent: EditNode, { root, scope }: DrawnInput): Surroundin
     frame: frameOf(scope, `${parent.path}/`),
     ends: new Set([...parent.children.map((child) => child.name), ...drawn]),
     isForeign: isForeign(root, `${parent.path}/`),
+    isPassedOver: isPassedOver(root, parent.path),
   }
 }
 
@@ -127,6 +132,7 @@ function card(node: EditNode, around: Surroundings | undefined, { scope, arrange
         isInitial: isMachine(parent.kind) && parent.initial === node.name,
         isOpen: isTwig ? isOpen(node.path) : isShown,
         isForeign: around.isForeign,
+        isPassedOver: around.isPassedOver || node.disabled !== false,
         isInTree,
         count: countInside(node),
         entryY: entryY(box.height, transitions.length),
@@ -172,7 +178,8 @@ function twigHandles({ width, height }: Box): NodeHandle[] {
 function spoken(node: EditNode, transitions: readonly OutgoingTransition[]): string {
   const leads = transitions.map((each) => `${each.outcome} ${each.target === undefined ? 'not connected' : `to ${each.target}`}`)
   const inside = node.children.length > 0 ? `, ${countInside(node)} nodes inside` : ''
-  return `${kindLabel(node.kind)} ${node.name}${node.title ? `, runs ${node.title}` : ''}${inside}${leads.length > 0 ? `; ${leads.join(', ')}` : ''}`
+  const off = node.disabled === false ? '' : `, ${disabledText(node.disabled)}`
+  return `${kindLabel(node.kind)} ${node.name}${off}${node.title ? `, runs ${node.title}` : ''}${inside}${leads.length > 0 ? `; ${leads.join(', ')}` : ''}`
 }
 
 function pillNodes(machine: EditNode, { scope, arrangement, declared }: DrawnInput): PillNode[] {

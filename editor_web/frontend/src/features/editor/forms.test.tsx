@@ -21,7 +21,7 @@ function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
     path, name, kind: 'state', title: 'test.Give', outcomes: ['a', 'b', 'c'], children: [], transitions: [], initial: null, conditions: [], label: name, role: '',
     description: '', line: 1, column: 1, end_line: 1, state: 'test.Give', reference: null, document: null, parameters: {}, inputs: {}, outputs: {}, targets: {},
     exits: [], autonomy: {}, timeout: null, retry: null, guard: null, post: null, on_error: null, resume: null, success: [], every: null, notes: '', position: null,
-    rules: [], otherwise: null, userdata: {}, settings: {}, ...told,
+    rules: [], otherwise: null, userdata: {}, settings: {}, disabled: false, ...told,
   }
 }
 

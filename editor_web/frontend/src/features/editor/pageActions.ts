@@ -1,9 +1,11 @@
 /** What the page around the editor does for it, and going to other behaviors. */
+import type { StartHere } from '../../api/startHere'
 import { rememberReferrer } from './references'
 
 /** What the page does for the editor: running, fitting, showing. */
 export interface PageActions {
-  readonly run: () => void
+  /** Save, check and go to the page of the run; there ask to start at a node or to run to one. */
+  readonly run: (here?: Pick<StartHere, 'path' | 'kind'>) => void
   readonly fit: () => void
   readonly zoom: (factor: number) => void
   /** Open another behavior in the editor. */

@@ -59,6 +59,8 @@ export interface EditorState {
   readonly notice: Notice | undefined
   readonly conflict: ConflictBody | undefined
   readonly palette: PaletteRequest | undefined
+  /** Where on the screen the menu of the selected nodes is open. */
+  readonly menu: Point | undefined
   readonly isTextShown: boolean
   readonly isSheetShown: boolean
   readonly renaming: string | undefined
@@ -104,6 +106,7 @@ export function blank(id: string): EditorState {
     notice: undefined,
     conflict: undefined,
     palette: undefined,
+    menu: undefined,
     isTextShown: false,
     isSheetShown: false,
     renaming: undefined,

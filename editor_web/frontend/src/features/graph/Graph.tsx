@@ -11,13 +11,16 @@ import {
   IconPlus,
 } from '@tabler/icons-react'
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
-import { useCallback, useEffect, useMemo, useState, type ReactNode } from 'react'
+import { useCallback, useEffect, useMemo, useState, type MouseEvent, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import type { GraphNode, NodeLive } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
+import { pointOf } from '../../components/menuPoint'
+import type { Point } from '../../document/geometry'
+import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
 import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
@@ -40,6 +43,8 @@ export interface GraphProps {
   readonly shown: Shown | undefined
   /** Shown in the head of the panel. */
   readonly breadcrumb: ReactNode
+  /** The behavior whose runs are started from here; the graph has no menus without. */
+  readonly behavior?: string
   /** Whose graph it is, where there are several. */
   readonly of?: string
 }
@@ -57,7 +62,7 @@ export function Graph(props: GraphProps) {
   )
 }
 
-function Canvas({ root, selected, onSelect, shown, breadcrumb, of }: GraphProps) {
+function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: GraphProps) {
   const { ref, width, height } = useElementSize()
   const [flow, setFlow] = useState<Flow>('AUTO')
   const [follows, setFollows] = useState(false)
@@ -94,6 +99,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, of }: GraphProps)
           onSelect={onSelect}
           shown={shown}
           follows={follows}
+          {...(behavior === undefined ? {} : { behavior })}
         />
       )}
     </div>
@@ -117,7 +123,8 @@ function followOptions(active: string) {
   return { nodes: active.split('\n').map((id) => ({ id })), padding: 0.35, maxZoom: 1, duration: 300 }
 }
 
-function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps) {
+function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: DrawnProps) {
+  const [menu, setMenu] = useState<{ readonly node: GraphNode; readonly at: Point }>()
   const { fitView } = useReactFlow()
   const active = useLive((s) => (follows ? activeLeaves(laidOut.root, s.nodes) : ''))
   const drawn = useMemo(() => canvasNodes(laidOut), [laidOut])
@@ -144,8 +151,19 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
     [onSelect],
   )
 
+  const onNodeMenu = useCallback(
+    (event: MouseEvent, node: CanvasNode) => {
+      if (behavior === undefined || node.type === 'outcome') return
+      event.preventDefault()
+      onSelect(node.id)
+      setMenu({ node: node.data.node, at: pointOf(event) })
+    },
+    [behavior, onSelect],
+  )
+
   return (
     <LowDetailContext value={isFar}>
+    {behavior !== undefined && menu && <GraphMenu behavior={behavior} node={menu.node} at={menu.at} onClose={() => setMenu(undefined)} />}
     <ReactFlow
       nodes={nodes}
       edges={isFar ? NO_EDGES : edges}
@@ -153,6 +171,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
       nodeTypes={NODE_TYPES}
       edgeTypes={EDGE_TYPES}
       onNodeClick={onNodeClick}
+      onNodeContextMenu={onNodeMenu}
       onPaneClick={() => onSelect(undefined)}
       onNodesChange={(changes) => {
         const chosen = changes.find((change) => change.type === 'select' && change.selected)

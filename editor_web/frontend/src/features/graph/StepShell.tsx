@@ -8,6 +8,7 @@ import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
+import { disabledText } from '../../document/editing/disabling'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 import type { OutcomeNode, StepNode } from './elements'
@@ -23,7 +24,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
   const live = useNodeLive(id)
   const status = statusOf(live?.status ?? 'idle')
   return (
-    <div className={`step leaf is-${status}${selected ? ' is-selected' : ''}`} data-status={status}>
+    <div className={`step leaf is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`} data-status={status}>
       <Ports />
       {data.isInitial && <span className="initial-mark" title="The first state" />}
       <Marks path={id} />
@@ -34,7 +35,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
         <span className="step-name">{data.node.name}</span>
         {live && live.visits > 1 && <span className="visits">×{live.visits}</span>}
       </div>
-      <div className="step-title">{data.node.title || kindLabel(data.node.kind)}</div>
+      <div className="step-title">{data.node.disabled === false ? data.node.title || kindLabel(data.node.kind) : disabledText(data.node.disabled)}</div>
       <div className="step-foot">
         <LiveText live={live} />
         <HeldText path={id} />
@@ -52,7 +53,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
   const Icon = KIND_ICONS[node.kind] ?? IconBox
   return (
     <div
-      className={`step container kind-${node.kind} is-${status}${selected ? ' is-selected' : ''}`}
+      className={`step container kind-${node.kind} is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`}
       data-status={status}
     >
       <Ports />
@@ -61,7 +62,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       <div className="container-head">
         <Icon size={16} className="kind-icon" aria-hidden />
         <span className="step-name">{node.name}</span>
-        <span className="kind-name">{kindLabel(node.kind)}</span>
+        <span className="kind-name">{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
         <span className="spacer" />
         <HeldText path={id} />
         {status !== 'idle' && <StatusIcon status={status} size={14} />}
@@ -103,6 +104,7 @@ function Exits({ data }: { data: StepNode['data'] }) {
 
 function LiveText({ live }: { live: NodeLive | undefined }) {
   if (!live || live.status === 'idle') return <span className="quiet">{live && live.visits > 0 ? 'waiting again' : ''}</span>
+  if (live.status === 'skipped') return <span className="outcome-text">skipped</span>
   if (live.status === 'active') {
     return <Elapsed sinceS={live.entered_s} />
   }

@@ -1,12 +1,13 @@
 /** From a laid-out behavior to the canvas's nodes and edges; what is live is not in them. */
 import { Position, type Edge, type Node } from '@xyflow/react'
 import type { GraphNode } from '../../api/types'
+import { disabledText } from '../../document/editing/disabling'
 import type { Size } from '../../document/geometry'
 import { exitsOf, outcomeId, type Course, type Exit } from '../../document/layout'
 import { flatten, isContainer, kindLabel } from '../../document/tree'
 import type { LaidOut } from './useLayout'
 
-export type StepNode = Node<{ node: GraphNode; isInitial: boolean; machine: string; exits: readonly Exit[] }, 'leaf' | 'container'>
+export type StepNode = Node<{ node: GraphNode; isInitial: boolean; isPassedOver: boolean; machine: string; exits: readonly Exit[] }, 'leaf' | 'container'>
 export type OutcomeNode = Node<{ machine: string; outcome: string }, 'outcome'>
 export type CanvasNode = StepNode | OutcomeNode
 export type CourseEdge = Edge<{ course: Course }, 'course'>
@@ -15,7 +16,12 @@ export type CourseEdge = Edge<{ course: Course }, 'course'>
 export function canvasNodes({ root, layout }: LaidOut): CanvasNode[] {
   const all = flatten(root)
   const parents = new Map(all.flatMap((node) => node.children.map((child) => [child, node] as const)))
-  return all.flatMap((node) => [step(node, parents.get(node), layout), ...outcomes(node, layout)])
+  const passedOver = new Set<GraphNode>()
+  for (const node of all) {
+    const parent = parents.get(node)
+    if (node.disabled !== false || (parent && passedOver.has(parent))) passedOver.add(node)
+  }
+  return all.flatMap((node) => [step(node, parents.get(node), layout, passedOver.has(node)), ...outcomes(node, layout)])
 }
 
 type Boxes = LaidOut['layout']
@@ -34,7 +40,7 @@ function measured({ width, height }: Size): Pick<CanvasNode, 'width' | 'height' 
   }
 }
 
-function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes): StepNode {
+function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes, isPassedOver: boolean): StepNode {
   const box = layout.boxes.get(node.path) ?? { x: 0, y: 0, ...layout.size }
   return {
     id: node.path,
@@ -44,11 +50,12 @@ function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes): St
     data: {
       node,
       isInitial: parent?.initial === node.name,
+      isPassedOver,
       machine: parent?.path ?? '',
       exits: exitsOf(parent, node.name),
     },
     ...(parent ? { parentId: parent.path } : {}),
-    ariaLabel: `${kindLabel(node.kind)} ${node.name}${node.title ? `, runs ${node.title}` : ''}`,
+    ariaLabel: `${kindLabel(node.kind)} ${node.name}${node.disabled === false ? '' : `, ${disabledText(node.disabled)}`}${node.title ? `, runs ${node.title}` : ''}`,
     sourcePosition: Position.Right,
     targetPosition: Position.Left,
   }

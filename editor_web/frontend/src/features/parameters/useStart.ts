@@ -14,7 +14,8 @@ import { SUPERVISION, supervisionOf, type Supervision } from '../../document/sup
 type Values = Dict<unknown>
 type Problems = Dict<string | undefined>
 
-export function useStart(behavior: BehaviorView, onStarted: () => void) {
+/** `place` says where the run starts and pauses, where that is not at the beginning and nowhere. */
+export function useStart(behavior: BehaviorView, onStarted: () => void, place: Pick<StartBody, 'begin' | 'until'> = {}) {
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
   const [values, setValues] = useState<Values>(() => Object.fromEntries(fields.map((f) => [f.name, f.initial])))
   const [problems, setProblems] = useState<Problems>({})
@@ -34,10 +35,15 @@ export function useStart(behavior: BehaviorView, onStarted: () => void) {
   async function repeat(run: string): Promise<void> {
     const origin = await send('Take the values of the run', () => originOf(run))
     if (!origin) return
-    const known = fields.filter((field) => lookup(origin.parameters, field.name) !== undefined)
-    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, lookup(origin.parameters, name))])) })
     setSeed(origin.seed)
-    setInputs(inputsText(origin.inputs))
+    fill(origin.parameters, origin.inputs)
+  }
+
+  /** Put these parameters and this userdata into the form. */
+  function fill(parameters: Dict<unknown>, userdata: Dict<unknown>): void {
+    const known = fields.filter((field) => lookup(parameters, field.name) !== undefined)
+    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, lookup(parameters, name))])) })
+    setInputs(inputsText(userdata))
     setProblems({})
   }
 
@@ -53,6 +59,7 @@ export function useStart(behavior: BehaviorView, onStarted: () => void) {
         inputs: data,
         seed: seedOf(seed),
         ...supervisionOf(supervision, hasBreakpoints),
+        ...place,
       }
       const { run } = await api.start(body, newKey())
       onStarted()
@@ -81,6 +88,7 @@ export function useStart(behavior: BehaviorView, onStarted: () => void) {
     problems,
     submit,
     repeat,
+    fill,
     seed,
     setSeed,
     inputs,

@@ -1,0 +1,71 @@
+/** The form of several nodes: what all of them have, set in all of them by one edit. */
+import { Button, Textarea } from '@mantine/core'
+import { useState } from 'react'
+import { commonParameters, commonValue, MIXED, noteOnAll, setParameterOfAll } from '../../document/editing/bulk'
+import { looseValue, shownValue } from '../../document/editing/fields'
+import type { EditNode } from '../../document/editing/model'
+import { perform } from './apply'
+import { toggleDisabled } from './disabled'
+import { Section } from './Section'
+import { TemplateInput } from './TemplateInput'
+import { useEditor } from './store'
+
+export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
+  const catalogue = useEditor((s) => s.catalogue)
+  const keysOf = (node: EditNode) =>
+    (
+      catalogue?.states.find((each) => each.name === node.state) ?? catalogue?.behaviors.find((each) => each.id === node.document)
+    )?.parameters ?? []
+  const names = commonParameters((node) => keysOf(node).map((key) => key.name), nodes)
+  const areOff = nodes.every((node) => node.disabled !== false)
+  const count = `${nodes.length} nodes`
+  return (
+    <div className="node-form" aria-label={`Form of ${count}`}>
+      <header className="form-head">
+        <div className="form-head-text">
+          <strong>{count}</strong>
+          <span className="quiet">{nodes.map((node) => node.name).join(', ')}</span>
+        </div>
+      </header>
+      <Section title="Parameters of all">
+        {names.length === 0 && <p className="form-doc">They have no parameter in common.</p>}
+        {names.map((name) => {
+          const value = commonValue(nodes, name)
+          return (
+            <div key={name} className="edit-line">
+              <span>{name}</span>
+              <TemplateInput
+                label={`${name} of all`}
+                placeholder={value === MIXED ? 'different values' : 'default'}
+                value={value === MIXED ? '' : shownValue(value)}
+                onCommit={(typed) =>
+                  void perform(`${name} of ${count}`, setParameterOfAll(nodes, name, typed === '' ? undefined : looseValue(typed)))
+                }
+              />
+            </div>
+          )
+        })}
+      </Section>
+      <Section title="Disable">
+        <Button size="xs" variant="default" onClick={() => void toggleDisabled(nodes.map((node) => node.path))}>
+          {areOff ? `Enable ${count}` : `Disable ${count}`}
+        </Button>
+      </Section>
+      <Section title="Notes">
+        <NoteOnAll nodes={nodes} count={count} />
+      </Section>
+    </div>
+  )
+}
+
+function NoteOnAll({ nodes, count }: { nodes: readonly EditNode[]; count: string }) {
+  const [text, setText] = useState('')
+  return (
+    <>
+      <Textarea size="xs" autosize minRows={2} label="The same note on all of them" value={text} onChange={(event) => setText(event.currentTarget.value)} />
+      <Button size="xs" mt="xs" variant="default" disabled={text.trim() === ''} onClick={() => void perform(`Note on ${count}`, noteOnAll(nodes, text))}>
+        Write note
+      </Button>
+    </>
+  )
+}
