@@ -115,6 +115,7 @@ async def _round(page: Dashboard, session: Session, *, run_s: float) -> None:
         run = str((await http.post("/api/v1/runs", json=body)).raise_for_status().json()["run"])
         await asyncio.sleep(run_s)
         (await http.post("/api/v1/cell/stop", json={"reason": "the round is over"})).raise_for_status()
+        (await http.post("/api/v1/cell/stop/release", json={})).raise_for_status()
         await session.wait(run)
 
 

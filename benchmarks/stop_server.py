@@ -147,9 +147,11 @@ class Server:
         self.heartbeat = Heartbeat.of_process(worlds[0])
 
     def wait_until_idle(self) -> None:
-        """Wait until no run is active and the devices take motions again."""
+        """Wait until no run is active, and release the last stop: devices take motions, and runs start again."""
         while any(run["status"] in _ACTIVE for run in self.http.get("/api/v1/runs").json()):
             time.sleep(0.02)
+        if self.http.get("/api/v1/cell/stop").json() is not None:
+            self.http.post("/api/v1/cell/stop/release", json={}).raise_for_status()
 
     def resting_since_s(self) -> float:
         """Wait until the world's own process measures rest and return since when, on the monotonic clock.

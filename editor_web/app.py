@@ -93,6 +93,7 @@ _ROUTERS = (
     sweeps.router,
     control.router,
     halt.router,
+    halt.recovery,
     connection.router,
     bus.router,
     data.router,
@@ -237,6 +238,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
         await services.hub.documents.close()
         services.hub.robots.close()
         services.hub.close()
+        await services.hub.stop_watch.close()
         if view is not None:
             await view.unsubscribe()
             await asyncio.to_thread(view.close)

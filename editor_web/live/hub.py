@@ -13,8 +13,9 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from editor_web.live.cell_stop_watch import CellStopWatch
 from editor_web.live.document_watch import DocumentWatch
-from editor_web.live.live_frames import DocumentsChanged, LiveDelta, LiveSnapshot, SweepsChanged
+from editor_web.live.live_frames import CellStopChanged, DocumentsChanged, LiveDelta, LiveSnapshot, SweepsChanged
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
 from engine.project import Session
@@ -38,6 +39,7 @@ class LiveClient:
         self._robots: dict[str, None] = {}
         self._documents: dict[str, str | None] = {}
         self._sweeps: dict[str, SweepLive] = dict(hub.sweeps)
+        self._is_stop_due = False
         self.dirty = asyncio.Event()
         self.dirty.set()
 
@@ -80,8 +82,16 @@ class LiveClient:
         self._sweeps[sweep] = live
         self.dirty.set()
 
-    def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | None:
-        """Return the pending changes as one frame and clear them; None if there are none."""
+    def note_stop(self) -> None:
+        """Mark the latest stop of the cell as changed."""
+        self._is_stop_due = True
+        self.dirty.set()
+
+    def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | None:
+        """Return the pending changes as one frame and clear them; None if there are none. A stop comes first."""
+        if self._is_stop_due and not self._snapshot_due:
+            self._is_stop_due = False
+            return CellStopChanged(stop=self._hub.stop_watch.stop)
         if self._documents and not self._snapshot_due:
             # The other changes stay pending.
             changed, self._documents = self._documents, {}
@@ -96,7 +106,7 @@ class LiveClient:
             frame = self._delta()
         else:
             frame = None
-        self._snapshot_due = False
+        self._snapshot_due = self._is_stop_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
         if self._documents or self._sweeps:
             self.dirty.set()
@@ -120,6 +130,7 @@ class LiveClient:
             control=self._hub.control_of(live),
             lock_reasons=dict(live.state.locks) if live else {},
             robots=dict(self._hub.robots.lines),
+            stop=self._hub.stop_watch.stop,
         )
 
     def _delta(self) -> LiveDelta:
@@ -158,6 +169,7 @@ class LiveHub:
         """The sweeps that are being executed."""
         self._unsubscribe: Callable[[], None] | None = None
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
+        self.stop_watch = CellStopWatch(backend, changed=self._on_stop)
         self.documents = DocumentWatch(
             backend.documents, changed=self._on_documents, is_needed=lambda: bool(self._clients)
         )
@@ -168,11 +180,12 @@ class LiveHub:
         return tuple(self._clients)
 
     def open(self) -> None:
-        """Subscribe to the changes of all runs."""
+        """Subscribe to the changes of all runs, and to stops."""
         self._unsubscribe = self.backend.subscribe(self._on_change)
+        self.stop_watch.open()
 
     def close(self) -> None:
-        """Unsubscribe from the changes of the runs."""
+        """Unsubscribe from the changes of the runs; `stop_watch` is closed by itself."""
         if self._unsubscribe is not None:
             self._unsubscribe()
             self._unsubscribe = None
@@ -241,6 +254,10 @@ class LiveHub:
     def _on_robot(self, name: str) -> None:
         for client in self._clients:
             client.note_robot(name)
+
+    def _on_stop(self) -> None:
+        for client in self._clients:
+            client.note_stop()
 
     def _on_documents(self, changed: dict[str, str | None]) -> None:
         for client in self._clients:

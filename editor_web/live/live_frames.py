@@ -8,6 +8,7 @@ import msgspec
 
 from editor_web.cell_view import LayerGroup
 from editor_web.live.robot_status import RobotLive
+from engine.project import CellStop
 from engine.runtime.control import ControlView
 from engine.runtime.history import LogLine, NodeLive, RunView
 from engine.sweep_library import SweepLive
@@ -42,6 +43,8 @@ class LiveSnapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", ta
     control: ControlView | None
     lock_reasons: dict[str, str]
     robots: dict[str, RobotLive]
+    stop: CellStop | None = None
+    """The latest stop of the cell; changes of it come as `CellStopChanged`."""
 
 
 class LiveDelta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_field="k"):
@@ -74,6 +77,12 @@ class SweepsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="sweeps", tag
     """How far sweeps are that are being executed, or have just ended, by id."""
 
     changed: dict[str, SweepLive]
+
+
+class CellStopChanged(msgspec.Struct, frozen=True, kw_only=True, tag="stop", tag_field="k"):
+    """The cell was stopped, what is open after it has changed, or it was released; null once it is closed."""
+
+    stop: CellStop | None
 
 
 class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
@@ -123,5 +132,5 @@ class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k")
     """From the client: answer to a ping."""
 
 
-Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | Ping
+Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | Ping
 Request = WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | Pong

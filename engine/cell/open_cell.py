@@ -34,6 +34,8 @@ _log = logging.getLogger("flexcell.cell")
 
 NewWorld = Callable[..., World]
 NewRobot = Callable[..., Robot]
+DeviceStopped = Callable[[str, BaseException | None], None]
+"""Receives the name of a device once its stop has ended, and why it did not confirm rest; None if it did."""
 
 
 class OpenCell:
@@ -124,18 +126,26 @@ class OpenCell:
     ) -> None:
         await self._stack.aclose()
 
-    async def stop(self) -> None:
+    @property
+    def devices(self) -> tuple[Robot, ...]:
+        """Everything that a stop brings to rest: the robots, then the world."""
+        return (*self.robots.values(), *((self._world,) if self._world is not None else ()))
+
+    async def stop(self, *, ended: DeviceStopped | None = None) -> None:
         """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
+
+        Args:
+            ended: Called for each device when its stop has ended.
 
         Raises:
             RobotError: a robot could not confirm rest; the others were stopped.
         """
         for goal in self.bus.goals():
             goal.cancel()
-        devices: tuple[Robot, ...] = tuple(self.robots.values())
-        if self._world is not None:
-            devices += (self._world,)
-        stops = {asyncio.create_task(device.stop(), name=f"stop {device.name}"): device for device in devices}
+        stops = {asyncio.create_task(device.stop(), name=f"stop {device.name}"): device for device in self.devices}
+        if ended is not None:
+            for task, device in stops.items():
+                task.add_done_callback(lambda task, device=device: ended(device.name, _failure(task, device)))
         await _wait_uncancelled(tuple(stops))
         failures = [failure for task, device in stops.items() if (failure := _failure(task, device)) is not None]
         if failures:
@@ -151,10 +161,7 @@ class OpenCell:
         Raises:
             RobotError: a device is not connected.
         """
-        devices: tuple[Robot, ...] = tuple(self.robots.values())
-        if self._world is not None:
-            devices += (self._world,)
-        ports = (self._real_arms, *(device for device in devices if isinstance(device, MeasurePort)))
+        ports = (self._real_arms, *(device for device in self.devices if isinstance(device, MeasurePort)))
         return {name: value for port in ports for name, value in port.measures().items()}
 
     async def snapshot(self) -> bytes | None:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from engine.messages import Message
+from engine.skill import Action
 from engine.state import State
 
 
@@ -25,6 +27,7 @@ class ToolKind:
         release: Name of the state that makes it release a part; its first successful outcome ends the release.
         check: Name of the state that checks whether it holds its part: `held` or `lost`.
         mechanisms: By the `kind` of a mechanism in `tool.yaml`, where its model is found, `module:NAME`.
+        release_goal: The goal that makes it release what it holds, from `<arm>/<name>`; None if no goal does that.
         simulation: Where the simulated world finds what simulates it, `module:NAME`.
         states: The states that come with it; those of the installed package of states need not be listed.
     """
@@ -37,3 +40,4 @@ class ToolKind:
     mechanisms: Mapping[str, str]
     simulation: str
     states: tuple[type[State], ...] = ()
+    release_goal: Action[Any, Any] | None = None

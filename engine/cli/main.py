@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from engine.cli.command_group import Commands
-from engine.cli.commands.stop import REASON, stop_cell
+from engine.cli.commands.stop import REASON, release_stop, stop_cell
 from engine.cli.exit_code import ExitCode
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.host.state_folder_names import STATE_FOLDER
@@ -29,13 +29,14 @@ app = typer.Typer(
 def stop(
     state: Annotated[Path, typer.Option(help="Folder in which the server keeps its state.")] = Path(STATE_FOLDER),
     reason: Annotated[str, typer.Option(help="Reason, recorded in every run that is stopped.")] = REASON,
+    release: Annotated[bool, typer.Option("--release", help="Release the last stop instead: runs may start.")] = False,
 ) -> None:
-    """Stop every run and every motion of a running server, even while the server is blocked.
+    """Stop every run and every motion of a running server, even while the server is blocked; or release that stop.
 
     Exit code 0: everything is at rest. 2: no server runs there. 3: a device or the server does not confirm.
     This is not a safety function: see docs/concepts/safety.md.
     """
-    raise typer.Exit(stop_cell(state, reason))
+    raise typer.Exit(release_stop(state) if release else stop_cell(state, reason))
 
 
 def _print_version(requested: bool) -> None:

@@ -22,6 +22,8 @@ class GripperState(Message, frozen=True, kw_only=True):
     width_m: float
     force_n: float
     held: bool
+    part: str = ""
+    """Name of the held part, `?` when unknown, empty for none."""
 
 
 class HandState(Message, frozen=True, kw_only=True):

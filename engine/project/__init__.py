@@ -8,8 +8,10 @@ needs, so each name is imported with its first use.
 from engine.lazy_face import lazy_face
 
 _HOMES = {
+    "ArmRecovery": "engine.project.cell_stop",
     "BusInspector": "engine.project.bus_inspector",
     "CellRunner": "engine.project.cell_runner",
+    "CellStop": "engine.project.cell_stop",
     "CompletedRun": "engine.project.headless_run",
     "GoalInfo": "engine.project.bus_inspector",
     "InterruptedRun": "engine.project.session_run",
@@ -21,6 +23,9 @@ _HOMES = {
     "Session": "engine.project.session",
     "SkillInfo": "engine.project.bus_inspector",
     "StartData": "engine.project.run_request",
+    "StopRecovery": "engine.project.stop_recovery",
+    "StoppedDevice": "engine.project.cell_stop",
+    "StoppedRun": "engine.project.cell_stop",
     "TopicInfo": "engine.project.bus_inspector",
     "TopicStatistics": "engine.project.bus_inspector",
     "open_cell": "engine.project.cell_runner",

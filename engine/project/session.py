@@ -40,6 +40,7 @@ from engine.project.session_operators import OperatorRoster, RunOperator
 from engine.project.session_recordings import SessionRecordings
 from engine.project.session_run import InterruptedRun, SessionRun, interrupted_run
 from engine.project.session_stops import SessionStops
+from engine.project.stop_recovery import StopRecovery
 from engine.recording import RecordedDocuments
 from engine.recording.recorded_run import read_run, version_snapshot
 from engine.runtime.control import Breakpoint, Control, load_breakpoints, save_breakpoints
@@ -79,6 +80,7 @@ class Session:
         self._callbacks: tuple[RunCallback, ...] = ()
         self._operators = OperatorRoster()
         self._stops = SessionStops(cell, self._runs)
+        self.recovery = StopRecovery(cell, self._stops)
 
     async def __aenter__(self) -> Self:
         await self._entries.open()
@@ -88,7 +90,6 @@ class Session:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop every run and wait until its robots are at rest."""
         self._stops.end()
         for started in self._runs.values():
             started.run.stop("the session was closed")
@@ -144,7 +145,7 @@ class Session:
         until: str | None = None,
         faults: Faults | None = None,
     ) -> str:
-        """Start a run after every earlier STOP has ended, and return its id.
+        """Start a run, and return its id; refused while the cell is stopped, see `recovery`.
 
         Args:
             behavior_id: Id of the behavior.
@@ -158,7 +159,7 @@ class Session:
             faults: Faults injected into this run only.
 
         Raises:
-            FlexcellError: the behavior has errors, a parameter is invalid, or a STOP does not end in time.
+            FlexcellError: the behavior has errors, a parameter is invalid, or the cell is stopped (ControlError).
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         await asyncio.to_thread(self._require_fit, behavior_id)
@@ -183,8 +184,9 @@ class Session:
             start=start,
             documents=await self._recorded_documents(behavior),
         )
-        await self._stops.over()
+        await self._stops.require_released()
         prepared = await self._runner.start(request)
+        self._stops.note_start(begin.run if begin is not None else None)
         return self._add(behavior_id, prepared)
 
     async def start_data(self, behavior_id: str, path: str) -> StartData:
@@ -197,7 +199,7 @@ class Session:
         return tuple(interrupted_run(each) for each in list_runs(self._journal.path) if each.interrupted)
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
-        """Resume an interrupted run of this project and cell after every STOP has ended, and return its id.
+        """Resume an interrupted run of this project and cell, and return its id; refused while the cell is stopped.
 
         A simulated world is restored unless another run is active.
 
@@ -215,7 +217,7 @@ class Session:
         require_simulation(plan, self.cell.document)
         # Before the decision whether the world is restored: another run may start in between.
         documents = await self._recorded_documents(behavior)
-        await self._stops.over()
+        await self._stops.require_released()
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
             found,
@@ -265,12 +267,7 @@ class Session:
         return started.run.change(plan, preempt=preempt, kept=kept)
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
-        """Undo the last step of a paused run; see `engine.runtime.run.Run.step_back`.
-
-        Raises:
-            ControlError: the run has ended, is not paused, or a step cannot be undone; nothing has moved.
-            JournalError: its journal cannot be read.
-        """
+        """Undo the last step of a paused run; see `engine.runtime.run.Run.step_back`, also for its errors."""
         self.control(run_id)
         return await self._known(run_id).run.step_back(path)
 
@@ -291,7 +288,7 @@ class Session:
     async def stop_all(self, *, reason: str) -> None:
         """Stop every run, cancel every goal of any client, and return when every robot is at rest.
 
-        With a stop relay, the devices accept no motion until every run has ended, not even that of a clean-up.
+        With a stop relay, the devices accept no motion until every run has ended. No run starts before the release.
 
         Raises:
             RobotError: a robot did not confirm; the others are stopped nevertheless, and stay latched.

@@ -89,7 +89,7 @@ class ArmServer:
             DmpMotions(runner),
             ForceMotions(runner),
             ContactMotions(runner),
-            JogMotions(runner, workspace),
+            JogMotions(runner, workspace, tool=gripper.name if gripper is not None else ""),
             GuidingMotions(runner),
             DirectControl(runner),
             ArmControlServices(runner, report),

@@ -16,7 +16,7 @@ from engine.skills.gripper import (
 )
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import GripperPort, GripperSample
-from robots.port.grasp_check import GraspCommand, check_grasp
+from robots.port.grasp_check import UNKNOWN_BODY, GraspCommand, check_grasp
 
 _MOVE_FORCE_N = 30.0
 _AT_WIDTH_M = 0.002
@@ -79,11 +79,13 @@ class GripperServer:
 
     async def _read(self, request: ReadGripper) -> GripperState:
         sample = self._port.sample()
+        held = self.grip is not None and not check_grasp(sample, self.grip)
         return GripperState(
             time_s=sample.time_s,
             width_m=sample.width_m,
             force_n=sample.force_n,
-            held=self.grip is not None and not check_grasp(sample, self.grip),
+            held=held,
+            part=_held_part(sample) if held else "",
         )
 
     async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
@@ -127,6 +129,11 @@ class GripperServer:
         await self._motion.carry_out(
             lambda: self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n), handle, report
         )
+
+
+def _held_part(sample: GripperSample) -> str:
+    """Return the name of what both pads press on, `?` where neither can tell."""
+    return next((body for body in sample.contacts if body and body != UNKNOWN_BODY), UNKNOWN_BODY)
 
 
 def _touching(sample: GripperSample) -> str:

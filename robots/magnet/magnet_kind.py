@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.cell import ToolKind
 from robots.magnet.check_magnet import CheckHeld
-from robots.magnet.magnet_skills import MagnetState
+from robots.magnet.magnet_skills import MagnetState, MagnetSwitch
 from robots.magnet.switch_off import Off
 from robots.magnet.switch_on import On
 
@@ -14,6 +14,7 @@ MAGNET = ToolKind(
     hold=On.state_name,
     release=Off.state_name,
     check=CheckHeld.state_name,
+    release_goal=MagnetSwitch(on=False),
     mechanisms={"magnet": "robots.magnet.magnet_model:MagnetModel"},
     simulation="robots.magnet.magnet_simulation:MAGNET_SIMULATION",
     states=(CheckHeld, Off, On),

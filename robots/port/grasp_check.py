@@ -8,7 +8,8 @@ from robots.port.gripper import GripperSample
 
 # In motion the pad force oscillates about the commanded one.
 FORCE_SHARE = 0.5
-_UNKNOWN = "?"
+UNKNOWN_BODY = "?"
+"""What a pad that touches something it cannot name reports."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +30,7 @@ def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
     if not left or not right:
         side, body = ("left", left) if left else ("right", right)
         return f"only the {side} pad touches {_name(body)}, fingers at {width}"
-    if left != right and _UNKNOWN not in (left, right):
+    if left != right and UNKNOWN_BODY not in (left, right):
         return f"the pads touch different things, {left} and {right}"
     if not grip.least_m <= sample.width_m <= grip.most_m:
         bounds = f"{_millimetres(grip.least_m)} to {_millimetres(grip.most_m)}"
@@ -40,7 +41,7 @@ def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
 
 
 def _name(body: str) -> str:
-    return "something" if body == _UNKNOWN else body
+    return "something" if body == UNKNOWN_BODY else body
 
 
 def _millimetres(length_m: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from engine.cell import ToolKind
 from engine.messages import GripperState
+from engine.skills.gripper import GripperOpen
 
 GRIPPER = ToolKind(
     name="gripper",
@@ -11,6 +12,7 @@ GRIPPER = ToolKind(
     hold="gripper.Grasp",
     release="gripper.Open",
     check="gripper.CheckHeld",
+    release_goal=GripperOpen(),
     mechanisms={
         "parallel": "robots.model.finger_mechanisms:GripperModel",
         "linkage": "robots.model.finger_mechanisms:LinkageModel",

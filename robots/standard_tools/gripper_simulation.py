@@ -80,11 +80,13 @@ class GripperSimulation:
         """Return the measured state; a part that both pads press on is held."""
         sample = gripper_sample(reading)
         left, right = sample.contacts
+        held = left == right and left in parts and sample.force_n >= _HELD_N
         return GripperState(
             time_s=sample.time_s,
             width_m=sample.width_m,
             force_n=sample.force_n,
-            held=left == right and left in parts and sample.force_n >= _HELD_N,
+            held=held,
+            part=left if held else "",
         )
 
     def server(self, name: str, world: SimWorld, arm: str) -> ToolServer:

@@ -35,10 +35,12 @@ from engine.event import (
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
+from engine.project.cell_stop import CellStop
 from engine.project.run_request import RunPosition
 from engine.project.session import RunCallback, Session
 from engine.project.session_operators import RunOperator
 from engine.project.session_run import InterruptedRun
+from engine.project.stop_recovery import StopRecovery
 from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport
 from engine.runtime.history.live_run import LiveRun
@@ -76,6 +78,23 @@ class TopicBus:
         raise BusError("no such service", where=address)
 
 
+class NoRecovery(StopRecovery):
+    """The recovery of a cell that nobody stops."""
+
+    def __init__(self) -> None:
+        pass
+
+    def when_changed(self, callback: Callable[[], None]) -> Callable[[], None]:
+        return lambda: None
+
+    @property
+    def is_stopped(self) -> bool:
+        return False
+
+    async def state(self) -> CellStop | None:
+        return None
+
+
 class FakeBackend(Session):
     """A session without an engine; leaves take `step_s`, `single_pick` fails at its grasp.
 
@@ -90,6 +109,7 @@ class FakeBackend(Session):
         documents: DocumentRepository | None = None,
     ) -> None:
         self.lost_reason = ""
+        self.recovery = NoRecovery()
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or DocumentRepository(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}

@@ -114,6 +114,7 @@ class Target:
         for behavior_id, text in ((SHIFT_ID, SHIFT), (NAP_ID, NAP)):
             (self.shop.project / behavior_id).write_text(text, encoding="utf-8")
         self.shop.call(self.shop.session.stop_all(reason="the next operation"))
+        self.shop.call(self.shop.session.recovery.release())
         self.shop.start(supervision=RunOptions(start_paused=True))
 
     @property

@@ -232,5 +232,5 @@ def run(page: Page) -> None:
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
     page.get_by_role("button", name="Start", exact=True).click()
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
-    page.get_by_role("button", name="Stop", exact=True).click()
+    page.get_by_role("button", name="Stop this run").click()
     expect(state).to_have_text("Stopped", timeout=GUARD_MS)

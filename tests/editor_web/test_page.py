@@ -66,7 +66,7 @@ def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, si
             expect(node(page, f"root/pick/{arm}/descend")).to_have_attribute("data-status", "active")
         expect(node(page, "root/approach/left")).to_contain_text("reached")
         expect(page.locator(".course.is-taken")).to_have_count(1)
-        page.get_by_role("button", name="Stop", exact=True).click()
+        page.get_by_role("button", name="Stop this run").click()
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(page.get_by_role("log")).to_contain_text("stop requested: stopped in the dashboard")
         expect(page.locator(".leaf.is-active")).to_have_count(0)

@@ -54,7 +54,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
                 dashboard_of(second, tmp_path / ".flexcell")
                 expect(page.get_by_role("alert")).to_have_count(0)
                 expect(page.get_by_role("status", name="State of the run")).to_have_text("No run")
-                expect(page.get_by_role("button", name="Stop", exact=True)).to_have_count(0)
+                expect(page.get_by_role("button", name="Stop this run")).to_have_count(0)
                 expect(node(page, "root/only")).to_have_attribute("data-status", "idle")
                 offered = page.get_by_role("listitem", name="Interrupted run of nap")
                 expect(offered).to_contain_text("its engine ended in the middle of it")
@@ -66,7 +66,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
                 expect(node(page, "root/only")).to_have_attribute("data-status", "active")
                 page.get_by_role("tab", name="Log").click()
                 expect(page.get_by_role("log")).to_contain_text("resumed after event")
-                page.get_by_role("button", name="Stop", exact=True).click()
+                page.get_by_role("button", name="Stop this run").click()
                 expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
 
 

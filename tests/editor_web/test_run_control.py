@@ -82,7 +82,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         expect(run_state(page)).to_have_text("Running")
         command(page, "Pause").click()
         expect(run_state(page)).to_have_text("Paused")
-        page.get_by_role("button", name="Stop", exact=True).click()
+        page.get_by_role("button", name="Stop this run").click()
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(command(page, "Pause")).to_be_disabled()
     (run,) = shop.session.runs()

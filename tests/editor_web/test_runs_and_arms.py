@@ -30,7 +30,7 @@ def test_several_runs_go_on_side_by_side(browser: Browser, shop: Workshop) -> No
         runs.get_by_role("link", name="shift").click()
         expect(page.get_by_role("list", name="Nodes that wait")).to_contain_text("root before its entry: paused")
         expect(page.locator(".active-run")).to_contain_text("+ 1")
-        page.get_by_role("button", name="Stop", exact=True).click()
+        page.get_by_role("button", name="Stop this run").click()
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(page.get_by_text("Another run is active")).to_be_visible()
         page.get_by_role("button", name="Start").click()

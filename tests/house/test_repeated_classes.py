@@ -41,7 +41,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "FoxgloveQuaternion ~ FoxgloveVector3": "two messages of Foxglove",
     "GateReached ~ GateWait": "the event of a wait; the wait itself, which also knows the required autonomy",
     "GraphTransition ~ TransitionTaken": "an arrow of a picture; that a run took it",
-    "GripperSetting ~ GripperState": "a taught entry; a measurement",
+    "GripperState ~ HandState": "two kinds of tools, of which each measures something of its own",
     "HandResult ~ HandState": "how an action ended; a measurement",
     "IfThenElseSpec ~ WhileDoElseSpec": "two kinds of nodes with the same parts",
     "Joints ~ NamedAngles": "an entry of a store, checked against its names; an entry as a person writes it",

@@ -124,6 +124,7 @@ export function snapshot(told: Partial<LiveSnapshot> = {}): LiveSnapshot {
     control: null,
     lock_reasons: {},
     robots: {},
+    stop: null,
     ...told,
   }
 }

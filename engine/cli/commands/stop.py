@@ -1,5 +1,7 @@
 """`flexcell stop`: STOP of the cell of a running server, through a relay that works while the server is blocked.
 
+`--release` asks the server itself to let runs start again.
+
 Imports as little as possible, so that the request leaves within a few hundredths of a second.
 """
 
@@ -34,7 +36,7 @@ def stop_cell(state: Path, reason: str) -> int:
         sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); give --state, or use the emergency stop\n")
         return 2
     try:
-        status = _post(url, token, reason)
+        status = _post(url, token, {"reason": reason})
         acknowledged = f"STOP acknowledged after {status['after_s'] * 1000:.0f} ms{_engine(status)}\n"
     except (OSError, ValueError, TypeError, KeyError) as error:
         return _stopped_by_server(record, reason, error)
@@ -43,12 +45,33 @@ def stop_cell(state: Path, reason: str) -> int:
     return _wait_for_rest(url, token, status)
 
 
+def release_stop(state: Path) -> int:
+    """Release the stop of the server that keeps its state in `state`: runs may start again; return the exit code.
+
+    0: released. 2: no server runs there. 3: it refuses, for example because a device has not confirmed rest.
+    """
+    file = state / SERVER_FILE
+    try:
+        record: dict[str, Any] = json.loads(file.read_bytes())
+        url, token = str(record["url"]), str(record["token"])
+    except (OSError, ValueError, KeyError) as error:
+        sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); give --state\n")
+        return 2
+    try:
+        _post(f"{url}api/v1/cell/stop/release", token, {}, timeout_s=_REST_S)
+    except (OSError, ValueError) as error:
+        sys.stderr.write(f"flexcell: the stop is not released: {error}\n")
+        return 3
+    sys.stdout.write("The stop is released: runs may start.\n")
+    return 0
+
+
 def _wait_for_rest(url: str, token: str, status: dict[str, Any]) -> int:
     deadline_s = time.monotonic() + _REST_S
     while not status["at_rest"] and time.monotonic() < deadline_s:
         time.sleep(_POLL_S)
         try:
-            status = _post(f"{url}/status", token, "")
+            status = _post(f"{url}/status", token, {})
         except (OSError, ValueError):
             break
     if not status["at_rest"]:
@@ -63,7 +86,7 @@ def _stopped_by_server(record: dict[str, Any], reason: str, error: Exception) ->
     """Send STOP to the server itself if the relay does not answer."""
     sys.stderr.write(f"flexcell: the stop relay does not answer ({error}); sending STOP to the server\n")
     try:
-        _post(f"{record['url']}api/v1/cell/stop", str(record["token"]), reason, timeout_s=_REST_S)
+        _post(f"{record['url']}api/v1/cell/stop", str(record["token"]), {"reason": reason}, timeout_s=_REST_S)
     except (OSError, ValueError, KeyError) as failure:
         sys.stderr.write(f"flexcell: the server does not accept STOP ({failure}); use the emergency stop\n")
         return 3
@@ -71,8 +94,8 @@ def _stopped_by_server(record: dict[str, Any], reason: str, error: Exception) ->
     return 0
 
 
-def _post(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) -> dict[str, Any]:
-    """Post a stop request and return the response.
+def _post(url: str, token: str, fields: dict[str, str], *, timeout_s: float = _ANSWER_S) -> dict[str, Any]:
+    """Post a request and return the response.
 
     Writes HTTP/1.0 directly: importing http.client takes half as long as everything else before STOP is sent.
 
@@ -82,7 +105,7 @@ def _post(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) ->
     """
     authority, _, path = url.removeprefix("http://").partition("/")
     host, _, port = authority.rpartition(":")
-    body = json.dumps({"reason": reason}).encode()
+    body = json.dumps(fields).encode()
     head = (
         f"POST /{path} HTTP/1.0\r\nHost: {authority}\r\nAuthorization: Bearer {token}\r\n"
         f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"

@@ -7,10 +7,11 @@ from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
-from engine.errors import GoalRejected
+from engine.errors import BusError, GoalRejected
 from engine.skills.jogging import (
     JogCollisionOptions,
     JogCommand,
@@ -39,6 +40,7 @@ _TWIST = 6
 _STEP_TURN_RAD_S, _STEP_M_S2, _STEP_RAD_S2 = 0.5, 0.5, 2.0
 _SHORTEST_STEP_S = 0.1
 _MOST_TURN_RAD = 3.1
+_UNKNOWN_PART = "?"
 
 
 class JogMotions:
@@ -47,16 +49,20 @@ class JogMotions:
     Args:
         runner: The arm's motion runner.
         workspace: The workspace shared with other arms; without one jogs are not checked for collisions.
+        tool: Bus namespace of the tool on the arm, which publishes what it holds on `<tool>/state`; empty without one.
     """
 
-    def __init__(self, runner: MotionRunner, workspace: Workspace | None = None) -> None:
+    def __init__(self, runner: MotionRunner, workspace: Workspace | None = None, *, tool: str = "") -> None:
         self._runner = runner
+        self._tool = tool
         self._workspace = workspace
         self._run: JogRun | None = None
+        self._bus: SkillBus | None = None
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills under the arm's name."""
         name = self._runner.name
+        self._bus = bus
         bus.advertise_action(JogJoints, self._jog_joints, namespace=name, exclusive=name)
         bus.advertise_action(JogTool, self._jog_tool, namespace=name, exclusive=name)
         bus.advertise_action(StepJoints, self._step_joints, namespace=name, exclusive=name)
@@ -105,7 +111,30 @@ class JogMotions:
     def _guard(self, rule: JogCollisionOptions, to_joints: ToJoints) -> JogGuard | None:
         if self._workspace is None or not rule.minded:
             return None
+        rule = self._with_held_part(rule, self._workspace)
         return JogGuard(self._runner, self._workspace, rule=rule, to_joints=to_joints)
+
+    def _with_held_part(self, rule: JogCollisionOptions, workspace: Workspace) -> JogCollisionOptions:
+        """Return the options for an arm whose tool may hold a part: its own part is no obstacle for it.
+
+        A part that is not attached in the scene is an obstacle there, which follows the tool and would block it.
+        """
+        part = self._held_part()
+        if not part or workspace.holds(self._runner.name):
+            return rule
+        return msgspec.structs.replace(rule, may_touch=(*rule.may_touch, part))
+
+    def _held_part(self) -> str:
+        """Return the name of the part that the tool holds; empty if there is none, or its name is not known."""
+        if self._bus is None or not self._tool:
+            return ""
+        try:
+            state = self._bus.find_topic(f"{self._tool}/state").latest
+        except BusError:
+            # A tool that publishes nothing tells nothing.
+            return ""
+        part = str(getattr(state, "part", "")) if getattr(state, "held", False) else ""
+        return "" if part == _UNKNOWN_PART else part
 
     def _joint_velocity(self, twist: Array, joints: Array) -> Array:
         _, jacobian = self._runner.kinematics.tool_pose_and_jacobian(joints)
@@ -146,6 +175,7 @@ class JogMotions:
         """Return a planned collision-free step; raises RobotError if there is none."""
         trajectory = await planning
         if self._workspace is not None and rule.minded:
+            rule = self._with_held_part(rule, self._workspace)
             await SceneCheck(self._runner.name, self._workspace, rule=rule).require_free(trajectory)
             # The scene allows contact of a part with the object it was picked from, at any depth.
             await AttachedPartGuard(self._runner.name, self._workspace).require_free(trajectory)

@@ -11,7 +11,7 @@ import pytest
 
 from engine.cell.open_cell import OpenCell
 from engine.document.loader import BehaviorSurvey, survey_behavior
-from engine.errors import DocumentError, FlexcellError
+from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.journal import Journal, list_runs
 from engine.library import behavior_library
 from engine.project.session import Session
@@ -161,11 +161,14 @@ async def test_breakpoints_are_kept_beside_the_file_and_used_when_asked_for(proj
 
 
 async def test_everything_is_stopped_at_once(project: Path) -> None:
-    """All runs end as stopped, for the reason given; later runs go on."""
+    """All runs end as stopped, for the reason given; runs start again once the stop is released."""
     async with _session(project) as session:
         runs = [await session.start("behaviors/endless.yaml", parameters={}, seed=1) for _ in range(2)]
         await session.stop_all(reason="smoke")
         assert [(await session.wait(run)).status for run in runs] == ["stopped", "stopped"]
+        with pytest.raises(ControlError, match="the cell is stopped"):
+            await session.start("behaviors/quick.yaml", parameters={}, seed=1)
+        await session.recovery.release()
         later = await session.start("behaviors/quick.yaml", parameters={}, seed=1)
         assert (await session.wait(later)).outcome == "good"
 

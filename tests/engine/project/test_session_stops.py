@@ -109,11 +109,12 @@ async def test_a_relay_that_is_gone_ends_the_runs_and_hinders_no_stop(project: P
     assert (stopped.status, "the stop relay has ended" in stopped.cause) == ("stopped", True)
 
 
-async def test_a_run_that_is_started_during_a_stop_begins_after_it(project: Path) -> None:
+async def test_a_release_during_a_stop_takes_effect_after_it(project: Path) -> None:
     async with opened_session(project) as opened:
         stopped = await opened.start("tidy")
         await opened.session.stop_all(reason="a look inside")
         assert opened.session.run(stopped).status != "stopped", "its clean-up takes longer than the stop of the robots"
-        await opened.start()
+        await opened.session.recovery.release()
         assert opened.session.run(stopped).status == "stopped"
+        await opened.start()
         await asyncio.to_thread(opened.arm.released.wait)

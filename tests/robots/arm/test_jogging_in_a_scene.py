@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.bus import GoalStatus
-from engine.messages import Pose, Vector3
+from engine.bus import GoalStatus, SkillBus
+from engine.messages import GripperState, Pose, Vector3
 from engine.messages.shapes import Box, Obstacle
 from engine.skill import Action
 from engine.skills.jogging import (
@@ -21,7 +21,9 @@ from engine.skills.jogging import (
     StepJoints,
     StepTool,
 )
-from engine.skills.planning_scene import CheckCollision, CollisionReport, PutObstacle, RemoveObstacle
+from engine.skills.motion import ForwardKinematics
+from engine.skills.planning_scene import AttachPart, CheckCollision, CollisionReport, PutObstacle, RemoveObstacle
+from robots.port import GraspCommand
 from tests.robots.arm.simulated import Simulated, simulated
 from tests.robots.fake_port import FakeStream
 from tests.robots.workspace.fake_cell import FakeCell, fake_cell
@@ -150,6 +152,50 @@ async def test_a_step_that_would_touch_something_is_rejected_and_nothing_moves(s
     assert end.status is GoalStatus.REJECTED
     assert "would touch table" in str(end.cause)
     assert moved < 1e-3
+
+
+class HoldingTool:
+    """A gripper that holds the part `cube`, or nothing."""
+
+    name = "left/gripper"
+    grip: GraspCommand | None = None
+    moving = False
+
+    def __init__(self) -> None:
+        self.part = ""
+
+    def register(self, bus: SkillBus) -> None:
+        bus.topic(f"{self.name}/state", GripperState).provide(
+            lambda: GripperState(time_s=0.0, width_m=0.03, force_n=20.0, held=bool(self.part), part=self.part)
+        )
+
+    async def stop(self) -> None:
+        """It rests."""
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize(
+    "step", [StepTool(step_m=(0.0, 0.0, 0.02)), JogTool(velocity=(0, 0, 0.05, 0, 0, 0), duration_s=0.5)]
+)
+async def test_a_held_part_belongs_to_its_arm_and_never_blocks_it(step: Action[Any, Any]) -> None:
+    """A stop between the grasp and its entry in the scene leaves the part there as an obstacle at the fingers."""
+    tool = HoldingTool()
+    async with fake_cell(tool=tool) as cell:
+        at = await cell.bus.call(ForwardKinematics(), to="left")
+        await cell.bus.call(put("cube", (0.03, 0.03, 0.03), at.xyz), to="cell")
+
+        async def blocked() -> bool:
+            handle = cell.bus.send_goal(step, to="left")
+            held: list[str] = []
+            handle.on_feedback(lambda feedback: held.append(str(getattr(feedback, "held_by", ""))))
+            end = await handle.result()
+            return "would touch cube" in f"{end.cause} {held}"
+
+        assert await blocked()
+        tool.part = "cube"
+        assert not await blocked()
+        await cell.bus.call(AttachPart(part="cube", robot="left"), to="cell")
+        assert not await blocked()
 
 
 async def jog_end(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], set[float]]:

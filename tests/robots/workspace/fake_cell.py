@@ -18,6 +18,7 @@ from engine.messages.shapes import Box, Obstacle
 from engine.skills.planning import FreeMotionFeedback, FreeMotionResult, MoveFree
 from engine.skills.planning_scene import CollisionReport
 from robots.arm import ArmServer
+from robots.gripper import ToolServer
 from robots.model.transform import RigidTransform
 from robots.planning.request import (
     AttachedPartCheckRequest,
@@ -183,7 +184,7 @@ class FakeCell:
 
 
 @asynccontextmanager
-async def fake_cell() -> AsyncGenerator[FakeCell]:
+async def fake_cell(*, tool: ToolServer | None = None) -> AsyncGenerator[FakeCell]:
     """The left Panda at a table, on a bus."""
     model, clock = panda_model(), new_clock()
     port = FakeArmPort(model.arm_joints, np.array(model.home_rad))
@@ -203,7 +204,9 @@ async def fake_cell() -> AsyncGenerator[FakeCell]:
     workspace = Workspace(
         make_scene, planners=PlanningServices(clock, lambda _: planner), clock=clock, occupancy=cameras
     )
-    arm = ArmServer(name="left", model=model, base=BASE.to_pose("world"), port=port, clock=clock, workspace=workspace)
+    arm = ArmServer(
+        name="left", model=model, base=BASE.to_pose("world"), port=port, clock=clock, gripper=tool, workspace=workspace
+    )
     async with SkillBus(clock) as bus, workspace, arm:
         workspace.register(bus)
         arm.register(bus)

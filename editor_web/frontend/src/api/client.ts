@@ -73,16 +73,17 @@ export function wordsOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error)
 }
 
-export function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
+export function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}, signal?: AbortSignal): Promise<T> {
   return call<T>(path, {
     method,
     headers: { 'content-type': 'application/json', accept: 'application/json', ...headers },
     body: JSON.stringify(body),
+    ...(signal && { signal }),
   })
 }
 
-export function post<T>(path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
-  return sent<T>('POST', path, body, headers)
+export function post<T>(path: string, body: unknown, headers: Record<string, string> = {}, signal?: AbortSignal): Promise<T> {
+  return sent<T>('POST', path, body, headers, signal)
 }
 
 function command(run: string, name: string, body: unknown = {}): Promise<ControlView> {

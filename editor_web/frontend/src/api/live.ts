@@ -10,7 +10,7 @@ import { useSession } from './session'
 import { PAGE, useShownLayers } from './layerGroups'
 import { usePathScrub } from './pathScrub'
 import { afterStop } from './stopStore'
-import type { Frame } from './types'
+import type { CellStop, Frame } from './types'
 
 export { useLive } from './liveStore'
 
@@ -25,6 +25,12 @@ export function showMoment(past: ShownMoment | undefined): void {
 /** The last event of the watched run that the stream has told of. */
 export function streamedSeq(): number {
   return streamed.seq
+}
+
+/** Take what was asked about the latest stop of the cell, as the stream would tell it. */
+export function takeStop(stop: CellStop | null): void {
+  streamed = { ...streamed, stop }
+  useLive.setState({ stop })
 }
 
 let heardS = 0

@@ -12,6 +12,9 @@ const SLOW_POLL_MS = 1000
 /** From here on a stop that nobody has acknowledged is told as one that has failed. */
 const UNANSWERED_MS = 1500
 const REST_MS = 5000
+/** A path that fails is tried again, for as long as nobody has acknowledged the stop. */
+const RETRY_MS = 1000
+const TRIES = 10
 
 let stops = 0
 
@@ -32,7 +35,7 @@ export function forgetStop(): void {
   useStop.setState({ stop: undefined })
 }
 
-async function throughProcess(number: number, channel: StopEndpoint): Promise<void> {
+async function throughProcess(number: number, channel: StopEndpoint, tries = TRIES): Promise<void> {
   const endMs = performance.now() + REST_MS
   const isShown = () => useStop.getState().stop?.number === number
   try {
@@ -46,16 +49,27 @@ async function throughProcess(number: number, channel: StopEndpoint): Promise<vo
     }
   } catch (error) {
     change(number, () => ({ process: failed(error) }))
+    tryAgain(number, tries, () => void throughProcess(number, channel, tries - 1))
   }
 }
 
-async function throughEngine(number: number): Promise<void> {
+async function throughEngine(number: number, tries = TRIES): Promise<void> {
   try {
     await api.stopCell(REASON)
     change(number, () => ({ engine: ANSWERED }))
   } catch (error) {
     change(number, () => ({ engine: failed(error) }))
+    tryAgain(number, tries, () => void throughEngine(number, tries - 1))
   }
+}
+
+/** Try a path once more, unless the stop has been acknowledged meanwhile, was put away, or another one was given. */
+function tryAgain(number: number, tries: number, again: () => void): void {
+  if (tries <= 1) return
+  setTimeout(() => {
+    const { stop } = useStop.getState()
+    if (stop?.number === number && !isAcknowledged(stop)) again()
+  }, RETRY_MS)
 }
 
 /**

@@ -78,8 +78,22 @@ export function clearTeachRefusal(what: RefusedFrame['what']): void {
   useTeach.setState({ refused: others })
 }
 
-/** Open the connection and keep it open; returns how to end it. */
+let users = 0
+let disconnect: (() => void) | undefined
+
+/** Keep the connection open for one more user; returns how to end that, with the last one the connection ends. */
 export function connectTeach(): () => void {
+  users += 1
+  disconnect ??= keepOpen()
+  return () => {
+    users -= 1
+    if (users > 0) return
+    disconnect?.()
+    disconnect = undefined
+  }
+}
+
+function keepOpen(): () => void {
   let ended = false
   let retry: ReturnType<typeof setTimeout> | undefined
 

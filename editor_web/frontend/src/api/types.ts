@@ -76,6 +76,18 @@ export interface ArmLive {
   readonly tool: ToolLive | null
 }
 
+/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. */
+export interface ArmRecovery {
+  readonly name: string
+  readonly part: string
+  readonly kept: boolean
+  readonly can_release: boolean
+  readonly has_moved: boolean
+  readonly home: string
+  readonly home_names: readonly string[]
+  readonly at_home: boolean
+}
+
 /** The arms whose status has changed, at most ten times a second. */
 export interface ArmsLiveFrame {
   readonly k: "now"
@@ -361,6 +373,24 @@ export interface CellConnection {
 export interface CellFit {
   readonly cell: string
   readonly obstacle: string
+}
+
+/** The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`. While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are arms and world, in the order of the cell. */
+export interface CellStop {
+  readonly number: number
+  readonly phase: "released" | "stopped" | "stopping"
+  readonly reason: string
+  readonly since_unix_s: number
+  readonly devices: readonly StoppedDevice[]
+  readonly runs: readonly StoppedRun[]
+  readonly arms: readonly ArmRecovery[]
+  readonly parts: "absent" | "open" | "reset"
+}
+
+/** The cell was stopped, what is open after it has changed, or it was released; null once it is closed. */
+export interface CellStopChanged {
+  readonly k: "stop"
+  readonly stop: CellStop | null
 }
 
 /** Remove the value of a parameter; its default applies. */
@@ -1230,6 +1260,7 @@ export interface LiveSnapshot {
   readonly control: ControlView | null
   readonly lock_reasons: Dict<string>
   readonly robots: Dict<RobotLive>
+  readonly stop: CellStop | null
 }
 
 /** Hold the outcome of a node; `reason` goes into the event log. */
@@ -1829,6 +1860,10 @@ export interface RecordingFile {
   readonly problem: string
 }
 
+/** A step of the recovery; it has no settings. */
+export interface RecoveryStepBody {
+}
+
 /** A behavior that references another one: its id and name, and the referencing nodes. */
 export interface ReferringBehavior {
   readonly id: string
@@ -1842,6 +1877,11 @@ export interface RefusedFrame {
   readonly what: "button" | "jog" | "look"
   readonly message: string
   readonly hint: string
+}
+
+/** A request to release the stop of this number, null for the latest; refused if the cell was stopped again. */
+export interface ReleaseStopBody {
+  readonly stop?: number | null
 }
 
 /** Remove nodes, with the transitions and conditions that name them; other references become findings. */
@@ -2342,6 +2382,22 @@ export interface StopStatus {
   readonly devices: readonly DeviceStop[]
 }
 
+/** What a stop did at one device: at rest `after_s` seconds after the stop, or `failed` with the reason. */
+export interface StoppedDevice {
+  readonly name: string
+  readonly status: "at_rest" | "failed" | "stopping"
+  readonly after_s: number
+  readonly reason: string
+}
+
+/** A run that the stop has ended; a new run can start from its event `seq`, at the node `path`. `path` is the state that it had entered last, empty if it had entered none. */
+export interface StoppedRun {
+  readonly id: string
+  readonly behavior: string
+  readonly seq: number
+  readonly path: string
+}
+
 /** How operators watch over a run; `flexcell run --help` explains the same options. `autonomy` applies while an operator is attached or demanded: outcomes that require less pass without confirmation. With `demand_operator` it applies although no operator is attached. `loss_policy` applies when the last operator has been lost for `loss_timeout_s`. */
 export interface Supervision {
   readonly autonomy?: "full" | "high" | "low" | "off"
@@ -2784,7 +2840,7 @@ export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | Userdata
 
 export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 
-export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | Ping
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | Ping
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 

@@ -18,6 +18,8 @@ import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
 import { SearchBox } from '../features/search/SearchBox'
+import { useGuide } from '../features/stop/guide'
+import { StoppedBanner } from '../features/stop/StoppedBanner'
 import { Header } from './Header'
 import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
@@ -25,6 +27,7 @@ import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, SWEEPS_HRE
 import { RoutedPage } from './RoutedPage'
 import { useFetched } from './useFetched'
 
+const StopGuide = lazyView(async () => (await import('./StopGuide')).StopGuide)
 const Tour = lazyView(async () => (await import('../features/tour/Tour')).Tour)
 
 export function App() {
@@ -44,6 +47,8 @@ export function App() {
   const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
   const isSearching = useSearch((s) => s.isOpen)
   const isTouring = useTour((s) => s.isOn)
+  const isStopped = useLive((s) => s.stop !== null)
+  const isGuided = useGuide((s) => s.isOpen) && isStopped
   const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
   useEffect(connect, [])
@@ -63,6 +68,7 @@ export function App() {
     <AppShell
       header={{ height: 52 }}
       navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen, desktop: isEditing || isTeaching } }}
+      aside={{ width: { base: 380, xl: 460 }, breakpoint: 'md', collapsed: { mobile: !isGuided, desktop: !isGuided } }}
     >
       <a className="skip-link" href="#main">
         Skip to the content
@@ -119,6 +125,7 @@ export function App() {
       </AppShell.Navbar>
       <AppShell.Main id="main" className="app-main">
         <ConnectionLost />
+        <StoppedBanner />
         <LogIn />
         <LostCell />
         <Loading name="This page" of={JSON.stringify(route)}>
@@ -130,6 +137,15 @@ export function App() {
           <SearchBox pages={PAGES} edited={isEditing ? route.id : undefined} onOpen={(hit) => open(hrefOf(hit))} />
         </ViewBoundary>
       )}
+      <AppShell.Aside>
+        {isGuided && (
+          <ViewBoundary name="Recovery guide">
+            <Suspense fallback={null}>
+              <StopGuide onOpen={open} />
+            </Suspense>
+          </ViewBoundary>
+        )}
+      </AppShell.Aside>
       {isTouring && (
         <ViewBoundary name="Tour">
           <Suspense fallback={null}>

@@ -31,7 +31,7 @@ it('stops the run of the page, and counts the others', async () => {
   server().on('POST /runs/r1/stop', {})
   live({ runs: [NAP, SHIFT, NIGHT] })
   const user = show(<Bar shown={NAP} active={[NAP, SHIFT, NIGHT]} />)
-  await user.click(screen.getByRole('button', { name: 'Stop' }))
+  await user.click(screen.getByRole('button', { name: 'Stop this run' }))
   await waitFor(() => expect(server().bodies('POST /runs/r1/stop')).toEqual([{ reason: 'stopped in the dashboard' }]))
   await user.click(screen.getByRole('link', { name: /\+ 2 others/ }))
   await user.click(screen.getByRole('button', { name: 'nap' }))
@@ -42,14 +42,14 @@ it('stops the only run from any page', () => {
   live({ runs: [NAP] })
   show(<Bar active={[NAP]} />)
   expect(screen.getByRole('button', { name: 'nap' })).toBeVisible()
-  expect(screen.getByRole('button', { name: 'Stop' })).toBeEnabled()
+  expect(screen.getByRole('button', { name: 'Stop this run' })).toBeEnabled()
 })
 
 it('stops none of several that the page does not show, and leads to them', async () => {
   led.mockReset()
   live({ runs: [NAP, SHIFT] })
   const user = show(<Bar active={[NAP, SHIFT]} />)
-  expect(screen.queryByRole('button', { name: 'Stop' })).toBeNull()
+  expect(screen.queryByRole('button', { name: 'Stop this run' })).toBeNull()
   await user.click(screen.getByRole('link', { name: '2 runs active' }))
   expect(led.mock.calls).toEqual([['runs']])
 })
@@ -62,9 +62,9 @@ it('has no stop button for a viewer, nor one that works without a server', () =>
       <Bar active={[NAP]} mayOperate={false} />
     </>,
   )
-  expect(screen.getAllByRole('button', { name: 'Stop' })).toHaveLength(1)
+  expect(screen.getAllByRole('button', { name: 'Stop this run' })).toHaveLength(1)
   socket.cut()
-  expect(screen.getByRole('button', { name: 'Stop' })).toBeDisabled()
+  expect(screen.getByRole('button', { name: 'Stop this run' })).toBeDisabled()
 })
 
 it('says whether the page is live', () => {

@@ -87,7 +87,8 @@ function StopButton({ run }: { run: RunView }) {
       <Button
         variant="default"
         size="xs"
-        leftSection={<IconPlayerStopFilled size={14} color="var(--failed)" aria-hidden />}
+        aria-label={isStopping ? 'This run is stopping' : 'Stop this run'}
+        leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
         disabled={isStopping || !isConnected}
         onClick={() => {
           api.stop(run.id).then(
@@ -97,6 +98,7 @@ function StopButton({ run }: { run: RunView }) {
         }}
       >
         {isStopping ? 'Stopping' : 'Stop'}
+        <span className="active-run-words">&nbsp;{isStopping ? '' : 'this run'}</span>
       </Button>
     </Tooltip>
   )

@@ -37,6 +37,7 @@ const snapshot = (change: Partial<LiveSnapshot> = {}): LiveSnapshot => ({
   control: null,
   lock_reasons: {},
   robots: {},
+  stop: null,
   ...change,
 })
 const delta = (change: Partial<LiveDelta> = {}): LiveDelta => ({

@@ -1,6 +1,6 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
 import type { Dict } from './dict'
-import type { ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot, SweepLive } from '../api/types'
+import type { CellStop, ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot, SweepLive } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -29,6 +29,8 @@ export interface LiveState {
   readonly documents: Dict<string | null>
   /** Sweeps that are being executed, or have ended since the page was loaded. */
   readonly sweeps: Dict<SweepLive>
+  /** The latest stop of the cell, until it is closed. */
+  readonly stop: CellStop | null
 }
 
 export const EMPTY: LiveState = {
@@ -49,6 +51,7 @@ export const EMPTY: LiveState = {
   robots: {},
   documents: {},
   sweeps: {},
+  stop: null,
 }
 
 /** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
@@ -64,6 +67,8 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
       return { ...state, documents: { ...state.documents, ...frame.changed } }
     case 'sweeps':
       return { ...state, sweeps: { ...state.sweeps, ...frame.changed } }
+    case 'stop':
+      return { ...state, stop: frame.stop }
     case 'ping':
       return state
   }
@@ -72,9 +77,9 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
 function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): LiveState {
   const { run, seq, runs, nodes, log, ticking } = frame
   const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
-  const { robots } = frame
+  const { robots, stop } = frame
   const control = unchanged(state.control, frame.control)
-  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, lockReasons: frame.lock_reasons, robots }
+  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, lockReasons: frame.lock_reasons, robots, stop: unchanged(state.stop, stop) }
 }
 
 function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import type { Trace } from '../api/types'
-import { apart, changesOf, curveOf, endOf, errorsOf, jogVelocity, nameFault, rollPitchYaw, tagFault, tagsOf, toolStep } from './teaching'
+import { apart, changesOf, curveOf, endOf, errorsOf, heldWords, jogVelocity, nameFault, rollPitchYaw, tagFault, tagsOf, toolStep } from './teaching'
 
 function trace(times_s: number[], joint: (t: number) => number): Trace {
   return {
@@ -65,4 +65,10 @@ it('measures the errors of what was learned in the joints and at the tool, where
   expect(errors.joints?.rms).toBeCloseTo(0.05)
   expect(errors.tool?.most).toBeCloseTo(0.005)
   expect(errorsOf(shown, { ...learned, joints: [] }).joints).toBeUndefined()
+})
+
+it('says what a held jog key waits for until the arm moves', () => {
+  expect(heldWords('jogging', 'jog_tool')).toBe('It moves while this is held')
+  expect(heldWords('idle', 'loading inverse kinematics')).toBe('Keep holding: it waits (loading inverse kinematics)')
+  expect(heldWords('idle', '')).toBe('Keep holding: it waits until its path can be checked')
 })

@@ -175,3 +175,9 @@ function valueAt(curve: Curve, time_s: number): number {
   const [v0 = 0, v1 = 0] = [curve.values[next - 1], curve.values[next]]
   return v0 + ((v1 - v0) * (time_s - t0)) / (t1 - t0)
 }
+
+/** What is said while a jog key is held: whether the arm moves already, else what it waits for. */
+export function heldWords(mode: string | undefined, activity: string | undefined): string {
+  if (mode === 'jogging') return 'It moves while this is held'
+  return `Keep holding: it waits ${activity ? `(${activity})` : 'until its path can be checked'}`
+}

@@ -15,7 +15,7 @@ import msgspec
 import pytest
 
 from engine.bus.remote_bus import ServerRecord
-from engine.cli.commands.stop import stop_cell
+from engine.cli.commands.stop import release_stop, stop_cell
 from engine.host.state_folder_names import SERVER_FILE
 from engine.stop import StopEndpoint, StopRelay
 from tests.engine.cli.command import flexcell
@@ -111,3 +111,21 @@ def test_whatever_answers_in_place_of_the_relay_the_server_is_asked(
     said = capsys.readouterr()
     assert "the stop relay does not answer" in said.err
     assert said.out == "Stopped: the server confirms that every robot is at rest.\n"
+
+
+@pytest.mark.parametrize(
+    ("answer", "code"),
+    [
+        (b"HTTP/1.1 204 No Content\r\nx-served: 1\r\n\r\n", 0),
+        (b'HTTP/1.1 409 Conflict\r\n\r\n{"message": "left has not confirmed that it is at rest"}', 3),
+    ],
+)
+def test_a_stop_is_released_by_the_server_or_it_says_why_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], answer: bytes, code: int
+) -> None:
+    with answering(answer) as server:
+        written = ServerRecord(url=f"{server}/", token="t", pid=0, stop_url="", stop_token="")
+        (tmp_path / SERVER_FILE).write_bytes(msgspec.json.encode(written))
+        assert release_stop(tmp_path) == code
+    said = capsys.readouterr()
+    assert ("runs may start" in said.out, "left has not confirmed" in said.err) == (code == 0, code == 3)

@@ -1,7 +1,8 @@
 /** STOP of the cell: given on both ways, what became of it in words, and who has it. */
-import { act, fireEvent, screen } from '@testing-library/react'
+import { Modal } from '@mantine/core'
+import { act, fireEvent, screen, waitFor } from '@testing-library/react'
 import { afterEach, beforeEach, expect, it, vi } from 'vitest'
-import { server, session, show } from '../../../testing/page'
+import { live, server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { api } from '../../api/client'
 import type { StopStatus } from '../../api/types'
@@ -88,6 +89,51 @@ it('says what to press where nobody answers', async () => {
   await press()
   expect(screen.getByRole('alert')).toHaveTextContent('STOP has failed')
   expect(screen.getByRole('alert')).toHaveTextContent('Press the emergency stop at the cell')
+})
+
+it('is delivered as soon as somebody answers again', async () => {
+  const gone = () => Promise.reject(new TypeError('Failed to fetch'))
+  server().on(`POST ${STOP}`, gone).on(ENGINE, gone)
+  await of({ stop: CHANNEL })
+  await press()
+  server().on(`POST ${STOP}`, answer())
+  await act(() => vi.advanceTimersByTimeAsync(1000))
+  expect(news()).toHaveTextContent('All arms at rest')
+  await act(() => vi.advanceTimersByTimeAsync(5000))
+  expect(server().bodies(`POST ${STOP}`)).toHaveLength(2)
+})
+
+it('goes out while another request hangs and the live stream is down', async () => {
+  server().on('GET /behaviors', () => new Promise(() => undefined)).on(`POST ${STOP}`, answer()).on(ENGINE, () => new Promise(() => undefined))
+  await of({ stop: CHANNEL })
+  void api.behaviors()
+  live().cut()
+  await press()
+  expect(news()).toHaveTextContent('All arms at rest')
+})
+
+it('is reached by Tab out of a dialog that keeps the keyboard, and is pressed above it', async () => {
+  vi.useRealTimers()
+  server().on(ENGINE, {}).on('GET /session', session({}))
+  await api.session()
+  const user = show(
+    <>
+      <StopCell />
+      <Modal opened onClose={() => undefined} title="A question" closeButtonProps={{ 'aria-label': 'Close' }} transitionProps={{ duration: 0 }}>
+        <button type="button">Yes</button>
+      </Modal>
+    </>,
+  )
+  const yes = await screen.findByRole('button', { name: 'Yes' })
+  yes.focus()
+  await user.tab()
+  expect(screen.getByRole('button', { name: 'Stop the cell' })).toHaveFocus()
+  await user.keyboard('{Enter}')
+  await waitFor(() => expect(server().bodies(ENGINE)).toHaveLength(1))
+  await user.tab()
+  expect(screen.getByRole('button', { name: 'Close' })).toHaveFocus()
+  await user.tab({ shift: true })
+  expect(screen.getByRole('button', { name: 'Stop the cell' })).toHaveFocus()
 })
 
 it('is an alarm where nobody has acknowledged it in time', async () => {

@@ -1,13 +1,14 @@
 /** STOP of the cell, over every page and dialog, and what became of it; it needs nothing of the rest of the page. */
 import './stop.css'
 import { IconHandStop, IconX } from '@tabler/icons-react'
-import { useEffect } from 'react'
+import { useEffect, useRef } from 'react'
 import { createPortal } from 'react-dom'
 import { api } from '../../api/client'
 import { useSession } from '../../api/session'
 import { forgetStop, stopCell } from '../../api/stopCell'
 import { useStop } from '../../api/stopStore'
 import { useTop } from '../../components/modal'
+import { letTabReach } from '../../components/stopFocus'
 import { listenForStopKey, STOP_KEY } from '../../components/stopKey'
 import { reportOf } from '../../document/stopReport'
 
@@ -23,15 +24,18 @@ export function StopCell() {
   const top = useTop()
   // The page asks too; STOP does not depend on it.
   useEffect(() => void api.session().catch(() => undefined), [])
+  const button = useRef<HTMLButtonElement>(null)
   useEffect(() => listenForStopKey(), [])
+  useEffect(() => letTabReach(() => button.current), [])
   useEffect(() => {
     document.body.classList.toggle('has-stop', isShown)
   }, [isShown])
   if (!isShown) return null
   return createPortal(
     <section className="stop" aria-label="Stop of the cell">
-      <button type="button" className="stop-button" title={HINT} aria-keyshortcuts="Control+Shift+Backspace" onClick={stopCell}>
-        <IconHandStop size={18} aria-hidden />
+      {/* No button of the kit: it works also where the page and the kit have failed. */}
+      <button ref={button} type="button" className="stop-button" title={HINT} aria-keyshortcuts="Control+Shift+Backspace" onClick={stopCell}>
+        <IconHandStop size={24} aria-hidden />
         <span>
           Stop<span className="stop-rest"> the cell</span>
         </span>

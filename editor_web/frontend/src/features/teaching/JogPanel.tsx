@@ -5,7 +5,7 @@ import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import { useDisabledReason, useTeach } from '../../api/teaching'
 import type { ArmInfo, ArmLive } from '../../api/types'
-import { degrees, jogVelocity, rollPitchYaw, shareOfRange, TOOL_AXES, toolStep, type Frame, type Space } from '../../document/teaching'
+import { degrees, heldWords, jogVelocity, rollPitchYaw, shareOfRange, TOOL_AXES, toolStep, type Frame, type Space } from '../../document/teaching'
 import { HoldButton } from './HoldButton'
 import { jogKey } from './jogKeys'
 import { ToolRow } from './ToolRow'
@@ -122,7 +122,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
       <p className="teach-message" role="status" aria-label="State of jogging">
-        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It moves while this is held' : '')}
+        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : '')}
       </p>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (

@@ -1,0 +1,22 @@
+/** The recovery guide beside the page, with the jog panel in it. */
+import { Suspense } from 'react'
+import { lazyView } from '../components/lazyView'
+import { RecoveryGuide } from '../features/stop/RecoveryGuide'
+import { behaviorHref, runHref, TEACH_HREF } from './route'
+
+const JogHere = lazyView(async () => (await import('./JogHere')).JogHere)
+
+export function StopGuide({ onOpen }: { readonly onOpen: (href: string) => void }) {
+  return (
+    <RecoveryGuide
+      renderJog={(arm) => (
+        <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+          <JogHere key={arm} arm={arm} />
+        </Suspense>
+      )}
+      onTeach={() => onOpen(TEACH_HREF)}
+      onRun={(id) => onOpen(runHref(id))}
+      onBehavior={(id) => onOpen(behaviorHref(id))}
+    />
+  )
+}
