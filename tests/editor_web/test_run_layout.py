@@ -54,7 +54,7 @@ def test_nothing_moves_as_the_state_of_the_run_changes(browser: Browser, shop: W
         page.get_by_role("button", name="Pause", exact=True).click()
         expect(state(page)).to_have_text("Paused")
         assert places(page) == before
-        page.get_by_role("button", name="Stop", exact=True).click()
+        page.get_by_role("button", name="Stop this run").click()
         expect(state(page)).to_have_text("Stopped")
         assert places(page) == before
 

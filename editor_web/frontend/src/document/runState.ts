@@ -3,7 +3,7 @@ import type { ControlView, GateWait, RunView } from '../api/types'
 import { matches } from './breakpoints'
 
 /** A colour and an icon, of runs and of nodes. */
-export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'warning' | 'paused' | 'waiting' | 'locked'
+export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'skipped' | 'warning' | 'paused' | 'waiting' | 'locked'
 
 export interface RunState {
   readonly word: string
@@ -96,7 +96,7 @@ function lastName(path: string): string {
 }
 
 const NODE_WORDS: Readonly<Record<string, string>> = {
-  idle: 'Not entered', active: 'Active', done: 'Done', failed: 'Failed', stopped: 'Stopped',
+  idle: 'Not entered', active: 'Active', done: 'Done', failed: 'Failed', stopped: 'Stopped', skipped: 'Skipped',
 }
 
 /** The state of a node in one word, with its outcome where it has one. */
@@ -112,6 +112,7 @@ export function statusOf(word: string): Status {
     case 'done':
     case 'failed':
     case 'stopped':
+    case 'skipped':
     case 'warning':
       return word
     case 'error':
