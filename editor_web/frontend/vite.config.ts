@@ -26,7 +26,13 @@ export default defineConfig({
       { extends: true, test: { name: 'functions', include: ['src/**/*.test.ts'], isolate: false } },
       {
         extends: true,
-        test: { name: 'components', include: ['src/**/*.test.tsx'], environment: 'happy-dom', isolate: false, setupFiles: 'testing/setup.ts' },
+        test: {
+          name: 'components',
+          include: ['src/**/*.test.tsx'],
+          environment: 'happy-dom',
+          isolate: false,
+          setupFiles: 'testing/setup.ts',
+        },
       },
     ],
   },

@@ -57,7 +57,8 @@ export function notices(): { page: () => Plugin; worker: () => Plugin } {
 /** The folder of the package that a module comes from, unless it is one of ours. */
 function folderOf(id: string, root: string): string | undefined {
   const author = AUTHORS.exec(id)?.[1]
-  if (!author && id.startsWith(VIRTUAL)) throw new Error(`nobody knows whose module ${JSON.stringify(id)} is: name its author in notices/plugin.ts`)
+  if (!author && id.startsWith(VIRTUAL))
+    throw new Error(`nobody knows whose module ${JSON.stringify(id)} is: name its author in notices/plugin.ts`)
   return author ? `${root}/node_modules/${author}` : PACKAGE.exec(id)?.[1]
 }
 

@@ -93,7 +93,8 @@ export class FakeServer {
   /** The newest websocket whose address ends so. */
   socket(end: string): FakeSocket {
     const found = FakeSocket.opened.findLast((each) => each.url.split('?')[0]?.endsWith(end))
-    if (!found) throw new Error(`the page has opened no websocket …${end}; it has ${FakeSocket.opened.map((each) => each.url).join(', ') || 'none'}`)
+    if (!found)
+      throw new Error(`the page has opened no websocket …${end}; it has ${FakeSocket.opened.map((each) => each.url).join(', ') || 'none'}`)
     return found
   }
 

@@ -14,7 +14,9 @@ class Observer {
   constructor(private readonly onSeen: (entries: readonly object[]) => void) {}
 
   observe(target: Element): void {
-    this.onSeen([{ target, isIntersecting: true, intersectionRatio: 1, contentRect: SCREEN, borderBoxSize: [{ inlineSize: 1280, blockSize: 800 }] }])
+    this.onSeen([
+      { target, isIntersecting: true, intersectionRatio: 1, contentRect: SCREEN, borderBoxSize: [{ inlineSize: 1280, blockSize: 800 }] },
+    ])
   }
 
   unobserve(): void {}

@@ -18,7 +18,8 @@ export const useSavedBreakpoints = create<Kept>(() => ({ behavior: '', kept: [] 
 export async function loadSavedBreakpoints(behavior: string): Promise<void> {
   if (useSavedBreakpoints.getState().behavior !== behavior) useSavedBreakpoints.setState({ behavior, kept: [] })
   const answer = await send('Read the breakpoints', () => api.keptBreakpoints(behavior))
-  if (answer && useSavedBreakpoints.getState().behavior === behavior) useSavedBreakpoints.setState({ kept: answer.breakpoints.map(completed) })
+  if (answer && useSavedBreakpoints.getState().behavior === behavior)
+    useSavedBreakpoints.setState({ kept: answer.breakpoints.map(completed) })
 }
 
 /** Those that hold now: of the run while one is under way, else those for the next one. */
@@ -32,7 +33,10 @@ export function useBreakpoints(): readonly CompleteBreakpoint[] {
 export function useBreakpointsAt(path: string): string {
   const all = useBreakpoints()
   const here = all.filter((each) => each.enabled && matches(each.path, path))
-  return here.map((each) => each.when).toSorted().join(' ')
+  return here
+    .map((each) => each.when)
+    .toSorted()
+    .join(' ')
 }
 
 type Edit = (list: readonly CompleteBreakpoint[]) => readonly CompleteBreakpoint[]

@@ -73,7 +73,13 @@ export function wordsOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error)
 }
 
-export function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}, signal?: AbortSignal): Promise<T> {
+export function sent<T>(
+  method: 'POST' | 'PUT',
+  path: string,
+  body: unknown,
+  headers: Record<string, string> = {},
+  signal?: AbortSignal,
+): Promise<T> {
   return call<T>(path, {
     method,
     headers: { 'content-type': 'application/json', accept: 'application/json', ...headers },
@@ -109,8 +115,7 @@ export const api = {
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartResultBody>('/runs', body, { 'idempotency-key': key }),
   /** The data with which a run can start at a node. */
-  startData: (behavior: string, path: string) =>
-    call<StartData>(`/runs/start-data?${new URLSearchParams({ behavior, path }).toString()}`),
+  startData: (behavior: string, path: string) => call<StartData>(`/runs/start-data?${new URLSearchParams({ behavior, path }).toString()}`),
   resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
   pause: (run: string) => command(run, 'pause'),
   resume: (run: string) => command(run, 'resume'),
@@ -125,14 +130,11 @@ export const api = {
   breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),
   change: (run: string, body: HotChangeBody) => post<HotChangeResultBody>(`/runs/${encodeURIComponent(run)}/control/change`, body),
   keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
-  keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
-    sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
+  keepBreakpoints: (behavior: string, body: BreakpointsBody) => sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
   interrupted: () => call<readonly InterruptedRun[]>('/interrupted'),
-  resumeInterrupted: (run: string, body: ResumeBody) =>
-    post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
+  resumeInterrupted: (run: string, body: ResumeBody) => post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
   stopCell: (reason: string) => post<void>('/cell/stop', { reason }),
-  setSpeed: (arm: string, share: number) =>
-    post<unknown>('/bus/call', { address: `${arm}/set_speed_override`, request: { share } }),
+  setSpeed: (arm: string, share: number) => post<unknown>('/bus/call', { address: `${arm}/set_speed_override`, request: { share } }),
   recover: (arm: string) => post<unknown>('/bus/call', { address: `${arm}/recover_from_error`, request: {} }),
   stop: (run: string) => post<void>(`/runs/${encodeURIComponent(run)}/stop`, { reason: 'stopped in the dashboard' }),
 }

@@ -28,12 +28,8 @@ export const documents = {
   targets: (id: string, text: string, page: string) => post<TargetFindingsBody>(at(id, '/targets'), { text, page }),
   names: (id: string, text: string) => post<CatalogueBody['names']>(at(id, '/names'), { text }),
   /** `graph` is the hash of the text whose graph is there already: only the difference from it comes. */
-  edit: (
-    id: string,
-    text: string,
-    edits: readonly Edit[],
-    { check, graph }: { readonly check: boolean; readonly graph: string | null },
-  ) => post<EditAnswer>(at(id, '/edits'), { text, edits, check, graph }),
+  edit: (id: string, text: string, edits: readonly Edit[], { check, graph }: { readonly check: boolean; readonly graph: string | null }) =>
+    post<EditAnswer>(at(id, '/edits'), { text, edits, check, graph }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopyResultBody>(at(id, '/copy'), { text, paths }),
   save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
   catalogue: () => call<CatalogueBody>('/catalogue'),

@@ -2,7 +2,21 @@
 import { create } from 'zustand'
 import type { Dict } from '../document/dict'
 import { call, idPath, post } from './client'
-import type { Baseline, FactorChoice, NewSweepBody, RecordedTrial, SearchView, ShrinkBody, Shrinking, SweepComparison, SweepIdBody, SweepList, SweepRuns, SweepView, TrialResult } from './types'
+import type {
+  Baseline,
+  FactorChoice,
+  NewSweepBody,
+  RecordedTrial,
+  SearchView,
+  ShrinkBody,
+  Shrinking,
+  SweepComparison,
+  SweepIdBody,
+  SweepList,
+  SweepRuns,
+  SweepView,
+  TrialResult,
+} from './types'
 
 export const sweepsApi = {
   list: () => call<SweepList>('/sweeps'),
@@ -19,7 +33,8 @@ export const sweepsApi = {
   stopShrinking: (id: string, number: number) => post<void>(`${shrinkingPath(id, number)}/stop`, {}),
   saveCase: (id: string, number: number, file: string) => post<SweepIdBody>(`${shrinkingPath(id, number)}/case`, { id: file }),
   baselines: (id: string) => call<readonly Baseline[]>(`/sweeps/${idPath(id)}/baselines`),
-  comparison: (id: string, { results, version }: Baseline, margin: number | undefined) => call<SweepComparison>(`/sweeps/${idPath(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
+  comparison: (id: string, { results, version }: Baseline, margin: number | undefined) =>
+    call<SweepComparison>(`/sweeps/${idPath(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
 }
 
 function shrinkingPath(id: string, number: number): string {

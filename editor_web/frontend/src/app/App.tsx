@@ -74,7 +74,13 @@ export function App() {
         Skip to the content
       </a>
       <AppShell.Header className="app-header">
-        <Burger opened={menuOpen} onClick={menu.toggle} hiddenFrom="md" size="sm" aria-label={menuOpen ? 'Close the menu' : 'Open the menu'} />
+        <Burger
+          opened={menuOpen}
+          onClick={menu.toggle}
+          hiddenFrom="md"
+          size="sm"
+          aria-label={menuOpen ? 'Close the menu' : 'Open the menu'}
+        />
         <ViewBoundary name="Header">
           <Header
             cellName={session?.cell_name ?? ''}
@@ -182,7 +188,8 @@ function hrefOf({ kind, id, path }: NameHit): string {
 function useSearchKey(): void {
   useEffect(() => {
     const onKeyDown = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.key.toLowerCase() !== 'k' || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return
+      if (event.defaultPrevented || event.key.toLowerCase() !== 'k' || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey)
+        return
       event.preventDefault()
       openSearch()
     }

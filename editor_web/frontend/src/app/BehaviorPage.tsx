@@ -193,7 +193,10 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <ParameterForm
         behavior={behavior}
         obstacle={obstacle}
-        place={placeOf(session, active.filter((each) => each.behavior !== behavior.id))}
+        place={placeOf(
+          session,
+          active.filter((each) => each.behavior !== behavior.id),
+        )}
         terminal={`flexcell run ${behavior.id} --clock virtual`}
         onStarted={onStarted}
         run={run?.id}

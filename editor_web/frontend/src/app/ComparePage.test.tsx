@@ -10,7 +10,20 @@ import { goTo, LAST_GOOD, useRoute } from './route'
 const opened = vi.fn()
 
 function run(id: string, told: Partial<PastRun> = {}): PastRun {
-  return { id, behavior: 'pick', document: 'd', status: 'finished', outcome: 'good', success: true, cause: '', started_at_s: 1000, duration_s: 4, waits: '', events: 9, ...told }
+  return {
+    id,
+    behavior: 'pick',
+    document: 'd',
+    status: 'finished',
+    outcome: 'good',
+    success: true,
+    cause: '',
+    started_at_s: 1000,
+    duration_s: 4,
+    waits: '',
+    events: 9,
+    ...told,
+  }
 }
 
 function visit(told: Partial<Visit>): Visit {
@@ -24,7 +37,14 @@ function pair(path: string, left: Partial<Visit> | null, right: Partial<Visit> |
 const FOUND: RunComparison = {
   left: run('r1'),
   right: run('r2', { success: false, outcome: 'bad', cause: 'no contact' }),
-  divergence: { kind: 'outcome', path: 'root/grasp', index: 2, left_s: 3, right_s: 3.5, text: 'root/grasp ended with done in the left run, and ended with failed in the right run' },
+  divergence: {
+    kind: 'outcome',
+    path: 'root/grasp',
+    index: 2,
+    left_s: 3,
+    right_s: 3.5,
+    text: 'root/grasp ended with done in the left run, and ended with failed in the right run',
+  },
   visits: [
     pair('root', { end_s: 4 }, { end_s: 5, status: 'failed', outcome: 'bad' }),
     pair('root/move', {}, { end_s: 1.5 }),
@@ -66,8 +86,16 @@ beforeEach(() => opened.mockReset())
 it('shows visits side by side, and begins at the first divergence', async () => {
   await at('/compare/r1/r2')
   expect(screen.getByText(/First divergence/).closest('div')).toHaveTextContent('failed in the right run (left at 3.00 s, right at 3.50 s)')
-  expect(within(row('root/move, visit 1')).getAllByRole('cell').map((cell) => cell.textContent)).toEqual(['done', '1.00 s', 'done', '1.50 s', '+0.50 s'])
-  expect(within(row('root/lift, visit 1')).getAllByRole('cell').map((cell) => cell.textContent)).toEqual(['done', '1.00 s', 'not entered', '', ''])
+  expect(
+    within(row('root/move, visit 1'))
+      .getAllByRole('cell')
+      .map((cell) => cell.textContent),
+  ).toEqual(['done', '1.00 s', 'done', '1.50 s', '+0.50 s'])
+  expect(
+    within(row('root/lift, visit 1'))
+      .getAllByRole('cell')
+      .map((cell) => cell.textContent),
+  ).toEqual(['done', '1.00 s', 'not entered', '', ''])
   expect(row('root/grasp, visit 1')).toHaveAttribute('aria-selected', 'true')
   expect(screen.getByText('wrote force_n').closest('tr')).toHaveTextContent('wrote force_n12.5nothing')
   expect(location.hash).toBe('#root/grasp@1')

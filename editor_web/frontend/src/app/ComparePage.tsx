@@ -76,7 +76,10 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
         <Tabs.Tab value="visit">Visit</Tabs.Tab>
         <Tabs.Tab value="durations">Durations</Tabs.Tab>
         <Tabs.Tab value="settings">
-          Settings {found.settings.length + found.documents.length > 0 && <span className="tab-count">{found.settings.length + found.documents.length}</span>}
+          Settings{' '}
+          {found.settings.length + found.documents.length > 0 && (
+            <span className="tab-count">{found.settings.length + found.documents.length}</span>
+          )}
         </Tabs.Tab>
         <Tabs.Tab value="curves">Curves</Tabs.Tab>
       </Tabs.List>

@@ -22,10 +22,19 @@ export function ComparedCurves({ left, right, found, visit }: ComparedCurvesProp
   const sources = useMemo(() => {
     const sourceOf = (side: Side, name: string) => {
       const startS = visit ? visit[side]?.start_s : 0
-      return startS === undefined ? [] : [{ address: (isRecordingName(name) ? recordingSubject(name, '') : runSubject(name)).address, label: side, startS }]
+      return startS === undefined
+        ? []
+        : [{ address: (isRecordingName(name) ? recordingSubject(name, '') : runSubject(name)).address, label: side, startS }]
     }
     return [...sourceOf('left', left), ...sourceOf('right', right)]
   }, [left, right, visit])
   const lengths = visit ? [durationOf(visit.left), durationOf(visit.right)] : [found.left.duration_s, found.right.duration_s]
-  return <RecordedPlots sources={sources} durationS={Math.max(SHORTEST_S, ...lengths.map((length) => length ?? 0))} cursorS={cursorS} onGo={setCursor} />
+  return (
+    <RecordedPlots
+      sources={sources}
+      durationS={Math.max(SHORTEST_S, ...lengths.map((length) => length ?? 0))}
+      cursorS={cursorS}
+      onGo={setCursor}
+    />
+  )
 }

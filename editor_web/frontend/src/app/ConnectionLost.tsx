@@ -10,7 +10,15 @@ export function ConnectionLost() {
   const connection = useLive((s) => s.connection)
   if (connection === 'lost') {
     return (
-      <Alert color="yellow" variant="light" radius={0} icon={<IconPlugConnectedX size={18} aria-hidden />} title="The server does not answer" styles={READABLE} role="alert">
+      <Alert
+        color="yellow"
+        variant="light"
+        radius={0}
+        icon={<IconPlugConnectedX size={18} aria-hidden />}
+        title="The server does not answer"
+        styles={READABLE}
+        role="alert"
+      >
         What you see may be out of date. STOP still works. Trying again; the page goes on by itself once the server is back.
       </Alert>
     )

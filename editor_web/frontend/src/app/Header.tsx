@@ -83,7 +83,9 @@ function StopButton({ run }: { run: RunView }) {
   const isStopping = run.status === 'stopping'
   const isConnected = useLive((s) => s.connection === 'live')
   return (
-    <Tooltip label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}>
+    <Tooltip
+      label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}
+    >
       <Button
         variant="default"
         size="xs"

@@ -28,7 +28,12 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
   return (
     <div className="home">
       <h1 className="visually-hidden">The cell</h1>
-      <Panel title="Cell" className="home-cell" tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
+      <Panel
+        title="Cell"
+        className="home-cell"
+        tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />}
+        foot={<CellFoot />}
+      >
         <CellFrame />
       </Panel>
       <Panel title="Latest runs" className="home-runs" tools={<RunTools mayOperate={role === 'operator'} />}>

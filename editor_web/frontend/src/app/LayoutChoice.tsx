@@ -4,7 +4,13 @@ import { LAYOUTS, type RunLayout } from './runLayout'
 
 const WORDS: Record<RunLayout, string> = { operate: 'Operate', debug: 'Debug', '3d': '3D only' }
 
-export function LayoutChoice({ layout, onLayout }: { readonly layout: RunLayout | undefined; readonly onLayout: (layout: RunLayout) => void }) {
+export function LayoutChoice({
+  layout,
+  onLayout,
+}: {
+  readonly layout: RunLayout | undefined
+  readonly onLayout: (layout: RunLayout) => void
+}) {
   return (
     <SegmentedControl
       size="xs"

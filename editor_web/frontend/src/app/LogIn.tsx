@@ -60,7 +60,13 @@ function LogInForm() {
       </p>
       <label>
         Token
-        <input type="password" autoComplete="current-password" required value={token} onChange={(event) => setToken(event.currentTarget.value)} />
+        <input
+          type="password"
+          autoComplete="current-password"
+          required
+          value={token}
+          onChange={(event) => setToken(event.currentTarget.value)}
+        />
       </label>
       {problem && (
         <p className="is-lost" role="alert">

@@ -76,7 +76,13 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
   }
 
   const graph = behavior.graph ? (
-    <Graph root={behavior.graph} selected={selected} onSelect={setSelected} shown={shown} breadcrumb={<Breadcrumb selected={selected} onSelect={show} />} />
+    <Graph
+      root={behavior.graph}
+      selected={selected}
+      onSelect={setSelected}
+      shown={shown}
+      breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
+    />
   ) : (
     <Panel title="Graph">
       <Empty title="There is no graph to draw">The executed behavior is unknown; its events are below.</Empty>
@@ -118,10 +124,20 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
         )}
         <span className="spacer" />
         {hasView && !isNarrow && <LayoutChoice layout={layout} onLayout={setLayout} />}
-        <Button variant="default" size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} onClick={() => onOpen(compareHref(LAST_GOOD, id))}>
+        <Button
+          variant="default"
+          size="xs"
+          leftSection={<IconGitCompare size={15} aria-hidden />}
+          onClick={() => onOpen(compareHref(LAST_GOOD, id))}
+        >
           Compare with the last good run
         </Button>
-        <Button variant="default" size="xs" leftSection={<IconTrendingUp size={15} aria-hidden />} onClick={() => onOpen(trendHref(run.behavior))}>
+        <Button
+          variant="default"
+          size="xs"
+          leftSection={<IconTrendingUp size={15} aria-hidden />}
+          onClick={() => onOpen(trendHref(run.behavior))}
+        >
           Last runs
         </Button>
         <button type="button" className="command" onClick={onAll}>
@@ -137,7 +153,13 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
           arrangement={layout}
           graph={graph}
           cell={cell}
-          tabs={layout === 'debug' ? <Panel title="Outline">{outline}</Panel> : <OpenedTabs label="Below the graph" bodies={{ ...dock.all, Outline: outline }} />}
+          tabs={
+            layout === 'debug' ? (
+              <Panel title="Outline">{outline}</Panel>
+            ) : (
+              <OpenedTabs label="Below the graph" bodies={{ ...dock.all, Outline: outline }} />
+            )
+          }
           course={<OpenedTabs label="Course of the run" bodies={dock.course} className="dock" />}
           records={<OpenedTabs label="Records of the run" bodies={dock.records} className="dock" />}
         />

@@ -32,7 +32,13 @@ function shown(): ReturnType<typeof show> {
   const user = show(<RunsPage onOpen={opened} />)
   follow(NAP, { nodes: { root: node(), 'root/only': node() } })
   follow(SHIFT, { control: control({ waiting: [ASKS], autonomy: 'low' }), nodes: { root: node(), 'root/left': node() } })
-  follow(NIGHT, { control: control({ paused: true, confirmed: true, waiting: [asks('root', { point: 'before', outcome: '', required: '', reasons: ['pause'] })] }) })
+  follow(NIGHT, {
+    control: control({
+      paused: true,
+      confirmed: true,
+      waiting: [asks('root', { point: 'before', outcome: '', required: '', reasons: ['pause'] })],
+    }),
+  })
   return user
 }
 
@@ -50,7 +56,15 @@ beforeEach(() => {
 
 it('tells on each card of its own run', async () => {
   shown()
-  server().socket('/data').tell({ k: 'traffic', shape: 's', topics: {}, goals: [], leases: [{ resource: 'left', run: 'r1', node: 'root/only', goal: '', held_s: 1 }] })
+  server()
+    .socket('/data')
+    .tell({
+      k: 'traffic',
+      shape: 's',
+      topics: {},
+      goals: [],
+      leases: [{ resource: 'left', run: 'r1', node: 'root/only', goal: '', held_s: 1 }],
+    })
   expect(screen.getByText('3 are active, one asks')).toBeVisible()
   expect(card('nap').getByRole('status')).toHaveTextContent('Running')
   expect(card('nap').getByRole('list', { name: 'Active nodes' })).toHaveTextContent('only')
@@ -97,7 +111,10 @@ it('tells a viewer of every run, and why each command is not for them', () => {
   socket.tell(snapshot({ run: 'r2', runs: OPEN, control: control({ waiting: [ASKS, { ...ASKS, path: 'root/right' }] }) }))
   expect(card('shift').getByRole('status')).toHaveTextContent('Waiting for answer')
   for (const name of ['Pause', 'Take control', 'Stop']) {
-    expect(card('shift').getByRole('button', { name })).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
+    expect(card('shift').getByRole('button', { name })).toHaveAttribute(
+      'title',
+      'Not possible: you may look only; log in with the operator token',
+    )
   }
   expect(card('shift').getAllByRole('button', { name: 'Agree: a' })[0]).toHaveAttribute('aria-disabled', 'true')
 })
@@ -111,7 +128,10 @@ it('operates one run at a time', async () => {
   expect(card('night').getByText(/^You operate this run/)).toBeVisible()
   expect(card('nap').getByText(/^This run has no operator/)).toBeVisible()
   const operated = page?.sent.filter((sent) => (sent as { k: string }).k === 'operate')
-  expect(operated).toEqual([{ k: 'operate', run: 'r1' }, { k: 'operate', run: 'r3' }])
+  expect(operated).toEqual([
+    { k: 'operate', run: 'r1' },
+    { k: 'operate', run: 'r3' },
+  ])
 })
 
 it('shows two runs side by side, once two are selected', async () => {

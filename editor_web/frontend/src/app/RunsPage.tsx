@@ -33,7 +33,10 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   useEffect(clearRefusal, [])
   const active = runs.filter(isActive)
   const ended = runs.filter((run) => !isActive(run)).slice(0, ENDED)
-  const pair = pairOf(chosen.filter((id) => runs.some((run) => run.id === id)), active)
+  const pair = pairOf(
+    chosen.filter((id) => runs.some((run) => run.id === id)),
+    active,
+  )
   const endedPair = pair?.every((id) => ended.some((run) => run.id === id)) ? olderFirst(pair, ended) : undefined
   const asking = active.filter((run) => run.waits === 'asks').length
 

@@ -114,7 +114,12 @@ interface RunChoiceProps {
 function RunChoice({ runs, id, side, onChange }: RunChoiceProps) {
   const isKnown = runs.some((run) => run.id === id)
   return (
-    <select className="run-choice" aria-label={`Which run on the ${side}`} value={isKnown ? id : ''} onChange={(event) => onChange(event.currentTarget.value)}>
+    <select
+      className="run-choice"
+      aria-label={`Which run on the ${side}`}
+      value={isKnown ? id : ''}
+      onChange={(event) => onChange(event.currentTarget.value)}
+    >
       {!isKnown && <option value="">Choose a run</option>}
       {runs.map((run) => (
         <option key={run.id} value={run.id}>

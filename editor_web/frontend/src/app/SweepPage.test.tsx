@@ -10,8 +10,30 @@ import { SweepsPage } from './SweepsPage'
 
 const ID = 'behaviors/sweeps/transfer.yaml'
 const AT = `/sweeps/${ID}`
-const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 2, interval: [0.12, 0.88], verdict: 'undecided', rate_hz: 0, remaining_s: null, search: null, problem: '' }
-const LINE: SweepLine = { id: ID, description: 'Both arms', behavior: 'behaviors/transfer.yaml', design: 'random', require: 'success >= 0.9', towards: '', factors: ['parameters.speed', 'parameters.force'], live: LIVE, problem: '' }
+const LIVE: SweepLive = {
+  status: 'idle',
+  planned: 10,
+  done: 4,
+  looked_at: 4,
+  successes: 2,
+  interval: [0.12, 0.88],
+  verdict: 'undecided',
+  rate_hz: 0,
+  remaining_s: null,
+  search: null,
+  problem: '',
+}
+const LINE: SweepLine = {
+  id: ID,
+  description: 'Both arms',
+  behavior: 'behaviors/transfer.yaml',
+  design: 'random',
+  require: 'success >= 0.9',
+  towards: '',
+  factors: ['parameters.speed', 'parameters.force'],
+  live: LIVE,
+  problem: '',
+}
 const ROW = { name: 'root/pick', runs: 4, least: 1, middle: 2, p95: 3, most: 4 }
 const opened = vi.fn()
 
@@ -64,8 +86,18 @@ const VIEW: SweepView = {
   nodes: [ROW],
   outputs: [],
   measures: [{ name: 'left.path_m', successes: ROW, failures: null }],
-  effects: [{ address: 'parameters.speed', with_success: -0.5, with_duration: null, levels: [{ label: '0 to 0.3', runs: 4, interval: [0.1, 0.9], successes: 2 }] }],
-  inputs: { factors: [{ address: 'parameters.speed', parts: 10, covered: 4, gap: [0.3, 0.9], gap_share: 0.6 }], pairs: [{ first: 'parameters.speed', second: 'parameters.force', parts: 100, covered: 4 }] },
+  effects: [
+    {
+      address: 'parameters.speed',
+      with_success: -0.5,
+      with_duration: null,
+      levels: [{ label: '0 to 0.3', runs: 4, interval: [0.1, 0.9], successes: 2 }],
+    },
+  ],
+  inputs: {
+    factors: [{ address: 'parameters.speed', parts: 10, covered: 4, gap: [0.3, 0.9], gap_share: 0.6 }],
+    pairs: [{ first: 'parameters.speed', second: 'parameters.force', parts: 100, covered: 4 }],
+  },
   items: 9,
   missing: [{ kind: 'outcome', path: 'root/pick', name: 'lost', target: 'failed', file: 'a', line: 1, column: 1 }],
   cpu_s: 4,
@@ -206,7 +238,9 @@ it('makes and starts a sweep of what the form says', async () => {
   const choices = [{ address: 'parameters.speed', nominal: 0.5, unit: '', description: 'Share', least: 0.1, most: 1, options: [] }]
   server()
     .on('GET /sweeps', { sweeps: [LINE], others: [] })
-    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } }])
+    .on('GET /behaviors', [
+      { id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } },
+    ])
     .on('GET /sweep-factors', choices)
     .on('POST /sweeps', new Refusal(422, { message: 'the cell has no part', hint: '' }))
     .on('POST /sweeps/behaviors/sweeps/transfer_2.yaml/start', undefined)
@@ -215,7 +249,10 @@ it('makes and starts a sweep of what the form says', async () => {
   await user.click(await screen.findByRole('button', { name: 'New sweep' }))
   await user.click(screen.getByRole('button', { name: 'Make and start' }))
   expect(screen.getByRole('alert')).toHaveTextContent('Choose a behavior')
-  await user.selectOptions(await screen.findByRole('combobox', { name: 'Behavior' }), await screen.findByRole('option', { name: 'transfer.yaml' }))
+  await user.selectOptions(
+    await screen.findByRole('combobox', { name: 'Behavior' }),
+    await screen.findByRole('option', { name: 'transfer.yaml' }),
+  )
   await user.type(screen.getByLabelText('Required success rate, %'), '95')
   await user.click(screen.getByRole('button', { name: 'Add a factor' }))
   await act(() => new Promise((resolve) => setTimeout(resolve)))
@@ -229,20 +266,31 @@ it('makes and starts a sweep of what the form says', async () => {
   await waitFor(() => expect(opened.mock.calls).toEqual([['/sweeps/behaviors/sweeps/transfer_2.yaml']]))
   expect(server().bodies('POST /sweeps').at(-1)).toEqual({
     id: 'behaviors/sweeps/transfer_2.yaml',
-    document: { flexcell: 1, behavior: 'behaviors/transfer.yaml', runs: 100, require: 'success >= 0.95', factors: { 'parameters.speed': { uniform: [0.1, 1] } } },
+    document: {
+      flexcell: 1,
+      behavior: 'behaviors/transfer.yaml',
+      runs: 100,
+      require: 'success >= 0.95',
+      factors: { 'parameters.speed': { uniform: [0.1, 1] } },
+    },
   })
 })
 
 it('makes a search for failures of what the form says', async () => {
   server()
     .on('GET /sweeps', { sweeps: [], others: [] })
-    .on('GET /behaviors', [{ id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } }])
+    .on('GET /behaviors', [
+      { id: 'behaviors/transfer.yaml', name: 'transfer', description: '', errors: 0, warnings: 0, fit: { cell: '', obstacle: '' } },
+    ])
     .on('GET /sweep-factors', [])
     .on('POST /sweeps', { id: ID })
   live()
   const user = show(<SweepsPage onOpen={opened} />)
   await user.click(await screen.findByRole('button', { name: 'New sweep' }))
-  await user.selectOptions(await screen.findByRole('combobox', { name: 'Behavior' }), await screen.findByRole('option', { name: 'transfer.yaml' }))
+  await user.selectOptions(
+    await screen.findByRole('combobox', { name: 'Behavior' }),
+    await screen.findByRole('option', { name: 'transfer.yaml' }),
+  )
   await user.selectOptions(screen.getByRole('combobox', { name: 'To find out' }), 'how it fails: a search for failures')
   expect(screen.queryByLabelText('Required success rate, %')).toBeNull()
   await user.selectOptions(screen.getByRole('combobox', { name: 'Towards' }), 'the least of a number')
@@ -260,6 +308,9 @@ it('makes a search for failures of what the form says', async () => {
   await user.click(screen.getByRole('button', { name: 'Make only' }))
   await waitFor(() => expect(opened.mock.calls).toEqual([[AT]]))
   expect(server().bodies('POST /sweeps')[0]).toMatchObject({
-    document: { factors: { 'parameters.speed': { uniform: [0.1, 1] } }, search: { towards: 'least left.gripper.force_min_n', method: 'cross_entropy', runs: 100, stop_after: 3 } },
+    document: {
+      factors: { 'parameters.speed': { uniform: [0.1, 1] } },
+      search: { towards: 'least left.gripper.force_min_n', method: 'cross_entropy', runs: 100, stop_after: 3 },
+    },
   })
 })

@@ -57,7 +57,10 @@ async function read(id: string): Promise<Shown> {
 function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string) => void }) {
   const { line } = view
   const [selected, setSelected] = useState<number | undefined>(ofAddress)
-  const live = currentLive(line, useLive((s) => lookup(s.sweeps, line.id)))
+  const live = currentLive(
+    line,
+    useLive((s) => lookup(s.sweeps, line.id)),
+  )
   const mayOperate = useLive((s) => s.role) === 'operator'
   const broken = runs.runs.filter((run) => run.status === 'crashed' || run.status === 'hung').length
 
@@ -72,7 +75,13 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
     setSelected(run)
   }
 
-  const of = { mayOperate, selected, onSelect: select, onOpenRecording: (path: string) => onOpen(recordingHref(path)), onOpenSweep: (other: string) => onOpen(sweepHref(other)) }
+  const of = {
+    mayOperate,
+    selected,
+    onSelect: select,
+    onOpenRecording: (path: string) => onOpen(recordingHref(path)),
+    onOpenSweep: (other: string) => onOpen(sweepHref(other)),
+  }
   return (
     <div className="sweep-page">
       <header className="page-head">

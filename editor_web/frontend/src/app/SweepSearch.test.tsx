@@ -24,7 +24,17 @@ const LIVE: SweepLive = {
   search: { failures: 2, nearest: 4.5, is_satisfied: false },
   problem: '',
 }
-const LINE: SweepLine = { id: ID, description: '', behavior: 'behaviors/transfer.yaml', design: 'random', require: '', towards: 'most duration_s', factors: ['parameters.speed'], live: LIVE, problem: '' }
+const LINE: SweepLine = {
+  id: ID,
+  description: '',
+  behavior: 'behaviors/transfer.yaml',
+  design: 'random',
+  require: '',
+  towards: 'most duration_s',
+  factors: ['parameters.speed'],
+  live: LIVE,
+  problem: '',
+}
 const opened = vi.fn()
 
 function trial(number: number, success: boolean): TrialResult {
@@ -67,13 +77,26 @@ const VIEW: SearchView = {
   target: { name: 'duration_s', sign: -1, guides: true },
   ended_by: 'interrupted',
   refused: 0,
-  clusters: [{ cause: { at: 'cup', message: 'it slipped', runs: 2, examples: [1, 3] }, regions: [{ address: 'parameters.speed', listed: false, failing: [0.1, 0.3], executed: [0, 0.3], share: 0.2, passed_inside: 1 }] }],
+  clusters: [
+    {
+      cause: { at: 'cup', message: 'it slipped', runs: 2, examples: [1, 3] },
+      regions: [{ address: 'parameters.speed', listed: false, failing: [0.1, 0.3], executed: [0, 0.3], share: 0.2, passed_inside: 1 }],
+    },
+  ],
   nearest: [trial(0, true)],
   batches: [{ batch: 0, runs: 3, failures: 2, refused: 0, nearest: 4.5 }],
   probability: { estimate: 0.325, interval: [0.145, 0.642], effective_failures: 1.5 },
   cpu_s: 3,
 }
-const SHRUNK: Shrunk = { result: FAILING, changed: { 'parameters.speed': [0.1, 0.3] }, runs: 7, passes: { 'parameters.speed': 0.25 }, seed_matters: false, placement_noise: false, interrupted: false }
+const SHRUNK: Shrunk = {
+  result: FAILING,
+  changed: { 'parameters.speed': [0.1, 0.3] },
+  runs: 7,
+  passes: { 'parameters.speed': 0.25 },
+  seed_matters: false,
+  placement_noise: false,
+  interrupted: false,
+}
 const NEVER: Shrinking = { status: 'idle', progress: null, found: null, saved_as: '', problem: '' }
 const FOUND: Shrinking = { ...NEVER, found: { subject: 'f00', failing: FAILING.configuration, shrunk: SHRUNK } }
 
@@ -115,7 +138,10 @@ it('goes on with a search until it has found as many failures as it is for', asy
   const user = show(<SweepPage id={ID} onOpen={opened} />)
   await user.click(await screen.findByRole('button', { name: 'Go on with 17 runs' }))
   await waitFor(() => expect(server().bodies(`POST ${AT}/start`)).toEqual([{ again: false }]))
-  socket.tell({ k: 'sweeps', changed: { [ID]: { ...LIVE, status: 'running', done: 5, search: { failures: 1, nearest: null, is_satisfied: false } } } })
+  socket.tell({
+    k: 'sweeps',
+    changed: { [ID]: { ...LIVE, status: 'running', done: 5, search: { failures: 1, nearest: null, is_satisfied: false } } },
+  })
   expect(screen.getByText('1 failure')).toBeVisible()
   const satisfied = { ...LIVE, search: { failures: 3, nearest: 4.5, is_satisfied: true } }
   server().on(`GET ${AT}`, { ...VIEW, line: { ...LINE, live: satisfied } })
@@ -133,7 +159,11 @@ it('shrinks a run, follows it, and saves what is left as a test case', async () 
   await user.selectOptions(await screen.findByRole('combobox', { name: /as long as/ }), 'its root cause is the same too')
   server()
     .on(`POST ${SHRINKING}`, undefined)
-    .on(`GET ${SHRINKING}`, { ...NEVER, status: 'running', progress: { runs: 4, most_runs: 200, step: 'round', changed: ['parameters.speed'] } })
+    .on(`GET ${SHRINKING}`, {
+      ...NEVER,
+      status: 'running',
+      progress: { runs: 4, most_runs: 200, step: 'round', changed: ['parameters.speed'] },
+    })
   await user.click(screen.getByRole('button', { name: 'Shrink this run' }))
   expect(server().bodies(`POST ${SHRINKING}`)).toEqual([{ same: 'cause' }])
   expect(await screen.findByText('4 of at most 200 runs tried: round')).toBeVisible()
@@ -145,7 +175,9 @@ it('shrinks a run, follows it, and saves what is left as a test case', async () 
   server().on(`POST ${SHRINKING}/case`, new Refusal(422, { message: 'there is a file already', hint: '' }))
   await user.click(screen.getByRole('button', { name: 'Save as a test case' }))
   expect(await screen.findByRole('alert')).toHaveTextContent('there is a file already')
-  server().on(`POST ${SHRINKING}/case`, { id: 'tests/cases/a.yaml' }).on(`GET ${SHRINKING}`, { ...FOUND, saved_as: 'tests/cases/a.yaml' })
+  server()
+    .on(`POST ${SHRINKING}/case`, { id: 'tests/cases/a.yaml' })
+    .on(`GET ${SHRINKING}`, { ...FOUND, saved_as: 'tests/cases/a.yaml' })
   await user.clear(screen.getByRole('textbox', { name: 'File of the test case' }))
   await user.type(screen.getByRole('textbox', { name: 'File of the test case' }), 'tests/cases/a.yaml')
   await user.click(screen.getByRole('button', { name: 'Save as a test case' }))
@@ -155,7 +187,9 @@ it('shrinks a run, follows it, and saves what is left as a test case', async () 
 })
 
 it('stops with the smallest so far, and says why nothing was found', async () => {
-  server().on(`GET ${SHRINKING}`, { ...NEVER, status: 'running' }).on(`POST ${SHRINKING}/stop`, undefined)
+  server()
+    .on(`GET ${SHRINKING}`, { ...NEVER, status: 'running' })
+    .on(`POST ${SHRINKING}/stop`, undefined)
   const user = shrinkRun()
   server().on(`GET ${SHRINKING}`, { ...NEVER, problem: 'the sweep process has ended' })
   await user.click(await screen.findByRole('button', { name: 'Stop with the smallest so far' }))
@@ -170,9 +204,19 @@ it('shows a viewer what was found, and offers him nothing', async () => {
   expect(screen.queryByRole('button')).toBeNull()
 })
 
-const BASELINE: Baseline = { results: '.flexcell/sweeps.db', version: { version: 'old', runs: 12, successes: 9, changed: ['behavior'], saved_unix_s: 1795658400 } }
+const BASELINE: Baseline = {
+  results: '.flexcell/sweeps.db',
+  version: { version: 'old', runs: 12, successes: 9, changed: ['behavior'], saved_unix_s: 1795658400 },
+}
 const COMPARED: SweepComparison = {
-  comparison: { baseline: 'old', changed: ['behavior'], pair: { both: 6, only_first: 3, only_second: 1, neither: 2 }, interval: [-0.5, 0.2], margin: null, broken: [4, 7] },
+  comparison: {
+    baseline: 'old',
+    changed: ['behavior'],
+    pair: { both: 6, only_first: 3, only_second: 1, neither: 2 },
+    interval: [-0.5, 0.2],
+    margin: null,
+    broken: [4, 7],
+  },
   verdict: null,
   words: 'not known to differ from the baseline',
 }

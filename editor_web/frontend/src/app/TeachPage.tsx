@@ -97,6 +97,13 @@ function Tabs({ arms, arm }: { readonly arms: readonly ArmInfo[]; readonly arm: 
     Triggers: <TriggerTable arms={names} />,
     Buttons: <ButtonPanel />,
   }
-  const shown = Object.fromEntries(Object.entries(bodies).map(([name, body]) => [name, <div key={name} className="teach-body">{body}</div>]))
+  const shown = Object.fromEntries(
+    Object.entries(bodies).map(([name, body]) => [
+      name,
+      <div key={name} className="teach-body">
+        {body}
+      </div>,
+    ]),
+  )
   return <OpenedTabs label="Teaching" bodies={shown} />
 }

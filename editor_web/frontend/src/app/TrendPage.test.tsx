@@ -6,7 +6,20 @@ import type { PastRun, RunTrend } from '../api/types'
 import { TrendPage } from './TrendPage'
 
 function run(id: string, started_at_s: number, told: Partial<PastRun> = {}): PastRun {
-  return { id, behavior: 'pick', document: 'd', status: 'finished', outcome: 'good', success: true, cause: '', started_at_s, duration_s: 4, waits: '', events: 9, ...told }
+  return {
+    id,
+    behavior: 'pick',
+    document: 'd',
+    status: 'finished',
+    outcome: 'good',
+    success: true,
+    cause: '',
+    started_at_s,
+    duration_s: 4,
+    waits: '',
+    events: 9,
+    ...told,
+  }
 }
 
 const SPREAD = { count: 2, median_s: 4, lower_s: 3.5, upper_s: 4.5, least_s: 3, most_s: 5, last_s: 6 }

@@ -21,7 +21,10 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
   if (problem) return <Empty title="The runs cannot be read">{problem}</Empty>
   if (!trend) return <div className="page-wait" role="status" aria-label="Loading" />
   // Newest first, so the older one is the left one.
-  const [left, right] = trend.runs.map((run) => run.id).filter((id) => chosen.includes(id)).toReversed()
+  const [left, right] = trend.runs
+    .map((run) => run.id)
+    .filter((id) => chosen.includes(id))
+    .toReversed()
   return (
     <div className={styles.page}>
       <header className="page-head">
@@ -32,7 +35,13 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
           </p>
         </div>
         <span className="spacer" />
-        <NativeSelect size="xs" aria-label="Number of runs" value={String(last)} data={LAST.map((each) => ({ value: String(each), label: `Last ${each}` }))} onChange={(event) => setLast(Number(event.currentTarget.value))} />
+        <NativeSelect
+          size="xs"
+          aria-label="Number of runs"
+          value={String(last)}
+          data={LAST.map((each) => ({ value: String(each), label: `Last ${each}` }))}
+          onChange={(event) => setLast(Number(event.currentTarget.value))}
+        />
         <Button
           size="xs"
           variant="default"

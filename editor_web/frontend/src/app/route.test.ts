@@ -1,6 +1,17 @@
 /** Addresses. */
 import { expect, it } from 'vitest'
-import { behaviorHref, sideBySideHref, editHref, PAST_HREF, recordingHref, routeOf, RUNS_HREF, SWEEPS_HREF, sweepHref, TEACH_HREF } from './route'
+import {
+  behaviorHref,
+  sideBySideHref,
+  editHref,
+  PAST_HREF,
+  recordingHref,
+  routeOf,
+  RUNS_HREF,
+  SWEEPS_HREF,
+  sweepHref,
+  TEACH_HREF,
+} from './route'
 
 it('finds the way back from the address of a behavior, slashes and blanks included', () => {
   const id = 'behaviors/my cell/a%b.yaml'

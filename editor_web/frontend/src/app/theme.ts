@@ -2,7 +2,16 @@
 import { createTheme, type MantineColorsTuple } from '@mantine/core'
 
 const accent: MantineColorsTuple = [
-  '#eef3ff', '#dbe4fd', '#b5c7f8', '#8ca8f3', '#698dee', '#527cec', '#3a66dd', '#2f57c6', '#274db2', '#1a419d',
+  '#eef3ff',
+  '#dbe4fd',
+  '#b5c7f8',
+  '#8ca8f3',
+  '#698dee',
+  '#527cec',
+  '#3a66dd',
+  '#2f57c6',
+  '#274db2',
+  '#1a419d',
 ]
 
 export const theme = createTheme({

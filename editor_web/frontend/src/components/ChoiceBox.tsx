@@ -41,7 +41,17 @@ const MOST = 60
 const WIDTH = 420
 const HEIGHT = 400
 
-export function ChoiceBox({ label, placeholder, choices, hits = NONE, onText, nothing = 'Nothing has this name', fromText, at, onClose }: ChoiceBoxProps) {
+export function ChoiceBox({
+  label,
+  placeholder,
+  choices,
+  hits = NONE,
+  onText,
+  nothing = 'Nothing has this name',
+  fromText,
+  at,
+  onClose,
+}: ChoiceBoxProps) {
   const [text, setText] = useState('')
   const [index, setIndex] = useState(0)
   const element = useRef<HTMLDialogElement>(null)

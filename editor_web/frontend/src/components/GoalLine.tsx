@@ -15,7 +15,14 @@ export function GoalLine({ path }: { path: string }) {
     <span className="goal-line" title={`${goal.address} ${goal.status}`}>
       <span className="goal-words">{words}</span>
       {percent !== undefined && (
-        <span className="goal-bar" role="progressbar" aria-label={`Progress of ${goal.address}`} aria-valuenow={percent} aria-valuemin={0} aria-valuemax={100}>
+        <span
+          className="goal-bar"
+          role="progressbar"
+          aria-label={`Progress of ${goal.address}`}
+          aria-valuenow={percent}
+          aria-valuemin={0}
+          aria-valuemax={100}
+        >
           <span style={{ width: `${percent}%` }} />
         </span>
       )}

@@ -39,9 +39,7 @@ export function OpenedTabs({ label, bodies, className = '', asked }: OpenedTabsP
       </Tabs.List>
       {names.map((name) => (
         <Tabs.Panel key={name} value={name}>
-          {opened.has(name) && (
-            <Loading name={name}>{bodies[name]}</Loading>
-          )}
+          {opened.has(name) && <Loading name={name}>{bodies[name]}</Loading>}
         </Tabs.Panel>
       ))}
     </Tabs>

@@ -20,7 +20,12 @@ export function marginOf(text: string): number | undefined | string {
 }
 
 /** The success rates of the baseline and of the version now, on the runs of both. */
-export function ratesOf({ both, only_first: broken, only_second: mended, neither }: RatePair): readonly { readonly name: string; readonly successes: number; readonly runs: number }[] {
+export function ratesOf({
+  both,
+  only_first: broken,
+  only_second: mended,
+  neither,
+}: RatePair): readonly { readonly name: string; readonly successes: number; readonly runs: number }[] {
   const runs = both + broken + mended + neither
   return [
     { name: 'Baseline', successes: both + broken, runs },

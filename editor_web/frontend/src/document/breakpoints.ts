@@ -8,7 +8,10 @@ export type CompleteBreakpoint = Required<Breakpoint>
 export function matches(pattern: string, path: string): boolean {
   if (pattern === path) return true
   if (!/[*?]/.test(pattern)) return false
-  const source = pattern.replace(/[.+^${}()|[\]\\]/g, '\\$&').replace(/\*/g, '.*').replace(/\?/g, '.')
+  const source = pattern
+    .replace(/[.+^${}()|[\]\\]/g, '\\$&')
+    .replace(/\*/g, '.*')
+    .replace(/\?/g, '.')
   return new RegExp(`^${source}$`, 's').test(path)
 }
 

@@ -4,11 +4,30 @@ import type { ControlView, RunView, GateWait } from '../api/types'
 import { disabledReason, operatorWords, waitingWords, type Command, type Situation } from './commands'
 
 const run: RunView = {
-  id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '',
+  id: 'r',
+  behavior: 'b',
+  status: 'running',
+  outcome: null,
+  success: false,
+  cause: '',
+  started_at_s: 0,
+  duration_s: 0,
+  waits: '',
 }
 const control: ControlView = {
-  paused: false, confirmed: false, stepping: false, cannot: [], active: [], waiting: [], locks: [], breakpoints: [], autonomy: 'full',
-  operator: 'none', demanded: false, loss_policy: 'hold', loss_timeout_s: 5,
+  paused: false,
+  confirmed: false,
+  stepping: false,
+  cannot: [],
+  active: [],
+  waiting: [],
+  locks: [],
+  breakpoints: [],
+  autonomy: 'full',
+  operator: 'none',
+  demanded: false,
+  loss_policy: 'hold',
+  loss_timeout_s: 5,
 }
 const now: Situation = { role: 'operator', isConnected: true, run, control, node: undefined, nodeStatus: 'idle' }
 const asks: GateWait = { path: 'root/a', visit: 1, point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
@@ -43,9 +62,7 @@ describe('a command', () => {
 describe('the words of a run', () => {
   it('says where a node waits and for what', () => {
     expect(waitingWords(asks)).toBe('with held: asks for your agreement')
-    expect(waitingWords({ ...asks, point: 'before', outcome: '', reasons: ['pause', 'lock'] })).toBe(
-      'before its entry: paused, locked',
-    )
+    expect(waitingWords({ ...asks, point: 'before', outcome: '', reasons: ['pause', 'lock'] })).toBe('before its entry: paused, locked')
   })
 
   it('says what becomes of the run when the page is lost', () => {

@@ -14,7 +14,18 @@ export const LEVEL_WORDS: Record<Level, string> = {
 }
 
 export type Command =
-  | 'pause' | 'resume' | 'step' | 'back' | 'stop' | 'autonomy' | 'operate' | 'change' | 'lock' | 'force' | 'repeat' | 'breakpoint'
+  | 'pause'
+  | 'resume'
+  | 'step'
+  | 'back'
+  | 'stop'
+  | 'autonomy'
+  | 'operate'
+  | 'change'
+  | 'lock'
+  | 'force'
+  | 'repeat'
+  | 'breakpoint'
 
 export interface Situation {
   readonly role: string
@@ -85,7 +96,5 @@ export function operatorWords(control: ControlView, isMine: boolean): string {
   if (control.operator === 'lost') return `The operator was lost: ${lossWords(control)}`
   if (isMine) return `You operate this run. If this page is lost, ${lossWords(control)}.`
   if (control.operator === 'attached') return 'Another page or console operates this run.'
-  return control.demanded
-    ? 'This run has no operator, but demands one: it asks anyway.'
-    : 'This run has no operator: it asks nothing.'
+  return control.demanded ? 'This run has no operator, but demands one: it asks anyway.' : 'This run has no operator: it asks nothing.'
 }

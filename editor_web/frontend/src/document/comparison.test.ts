@@ -26,12 +26,12 @@ it('subtracts the left duration from the right one', () => {
 })
 
 it('tells how a visit ended', () => {
-  expect([endWords(null), endWords(visit()), endWords(visit({ outcome: '', status: 'stopped' })), endWords(visit({ status: 'active', end_s: null }))]).toEqual([
-    'not entered',
-    'ok',
-    'stopped',
-    'not ended',
-  ])
+  expect([
+    endWords(null),
+    endWords(visit()),
+    endWords(visit({ outcome: '', status: 'stopped' })),
+    endWords(visit({ status: 'active', end_s: null })),
+  ]).toEqual(['not entered', 'ok', 'stopped', 'not ended'])
 })
 
 it('names each visit of a comparison in the address, and finds it again', () => {

@@ -47,4 +47,3 @@ export function indexAt(visits: readonly AlignedVisit[], place: string): number 
 export function dataOf(data: readonly DataDifference[], index: number): readonly DataDifference[] {
   return data.filter((each) => each.index === index)
 }
-

@@ -5,11 +5,31 @@ import { differenceLines, expectedWords, measuredWords, missWords, placesOf, rep
 
 const OPENING: MeasuredValue = { quantity: 'opening', measured: 1.2, unit: 'mm', least: 20, most: 40 }
 const RUN: RunView = {
-  id: 'r2', behavior: 'behaviors/pick.yaml', status: 'finished', outcome: 'missed', success: false, cause: '', started_at_s: 0, duration_s: 3, waits: '',
+  id: 'r2',
+  behavior: 'behaviors/pick.yaml',
+  status: 'finished',
+  outcome: 'missed',
+  success: false,
+  cause: '',
+  started_at_s: 0,
+  duration_s: 3,
+  waits: '',
 }
 const FAILURE: RunFailure = {
-  seq: 9, entered_seq: 7, time_s: 1.5, path: 'root/grasp', text: 'the fingers ended 1.2 mm apart', hint: 'look at the part',
-  links: [{ message: 'the fingers of the left one ended beside hca_north', where: 'right/gripper/grasp', kind: 'GraspFailed', compared: [OPENING] }],
+  seq: 9,
+  entered_seq: 7,
+  time_s: 1.5,
+  path: 'root/grasp',
+  text: 'the fingers ended 1.2 mm apart',
+  hint: 'look at the part',
+  links: [
+    {
+      message: 'the fingers of the left one ended beside hca_north',
+      where: 'right/gripper/grasp',
+      kind: 'GraspFailed',
+      compared: [OPENING],
+    },
+  ],
   steps: [],
   around: [{ seq: 8, time_s: 1.4, kind: 'goal', level: 'info', path: 'root/grasp', text: 'right/gripper/grasp sent', causes: [] }],
 }
@@ -18,9 +38,15 @@ const COMPARISON: RunComparison = {
   left: { ...PAST, id: 'r1', outcome: 'good', success: true },
   right: PAST,
   divergence: { kind: 'outcome', path: 'root/grasp', index: 2, left_s: 1, right_s: 1.5, text: 'root/grasp ended with missed, held before' },
-  visits: [], left_out: 0, data: [], data_left_out: 0,
+  visits: [],
+  left_out: 0,
+  data: [],
+  data_left_out: 0,
   nodes: [node('root', 2, 3), node('root/look', 1, 1.05), node('root/grasp', 0.5, 1.5), node('root/new', 0, 1, 0)],
-  settings: [{ at: 'parameters.width_m', left: '0.02', right: '0.03' }, { at: 'inputs.tray', left: null, right: '"a"' }],
+  settings: [
+    { at: 'parameters.width_m', left: '0.02', right: '0.03' },
+    { at: 'inputs.tray', left: null, right: '"a"' },
+  ],
   documents: [{ name: 'behaviors/pick.yaml', lines: [] }],
 }
 

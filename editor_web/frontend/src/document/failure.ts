@@ -39,7 +39,9 @@ export function differenceLines(comparison: RunComparison): readonly string[] {
 
 function slowest(nodes: readonly NodeDifference[]): readonly NodeDifference[] {
   // Containers take as long as what is inside them.
-  const leaves = nodes.filter((node) => node.visits_left > 0 && node.visits_right > 0 && !nodes.some((other) => other.path.startsWith(`${node.path}/`)))
+  const leaves = nodes.filter(
+    (node) => node.visits_left > 0 && node.visits_right > 0 && !nodes.some((other) => other.path.startsWith(`${node.path}/`)),
+  )
   return leaves
     .filter((node) => change(node) >= Math.max(LEAST_DIFFERENCE_S, LEAST_SHARE * node.duration_left_s))
     .toSorted((a, b) => change(b) - change(a))
@@ -84,7 +86,9 @@ export function reportOf(run: RunView, failure: RunFailure, comparison: RunCompa
     ...link.compared.map((each) => `  ${each.quantity}: measured ${measuredWords(each)}, expected ${expectedWords(each)}`),
   ])
   const around = failure.around.map((line) => `- ${line.time_s.toFixed(2)} s ${line.text}`)
-  const good = comparison ? [comparison.divergence?.text ?? 'nothing diverges', ...differenceLines(comparison)].map((line) => `- ${line}`) : ['- no earlier run succeeded']
+  const good = comparison
+    ? [comparison.divergence?.text ?? 'nothing diverges', ...differenceLines(comparison)].map((line) => `- ${line}`)
+    : ['- no earlier run succeeded']
   return [
     ...head,
     ...section('Why, innermost cause first', why),

@@ -9,7 +9,19 @@ const noCall: LayoutCall = () => Promise.reject(new Error('a straight machine ne
 
 function leaf(path: string): GraphNode {
   const name = path.split('/').pop() ?? ''
-  return { path, name, kind: 'state', title: 'motion.MoveJoints', description: '', outcomes: ['done', 'failed'], children: [], transitions: [], initial: null, conditions: [], disabled: false }
+  return {
+    path,
+    name,
+    kind: 'state',
+    title: 'motion.MoveJoints',
+    description: '',
+    outcomes: ['done', 'failed'],
+    children: [],
+    transitions: [],
+    initial: null,
+    conditions: [],
+    disabled: false,
+  }
 }
 
 function straight(path: string, names: readonly string[]): GraphNode {
@@ -33,12 +45,24 @@ describe('drawnOutcomes', () => {
 describe('chainOf', () => {
   it('gives up on a branch', () => {
     const branch = [...machine.transitions, { source: 'a', outcome: 'again', target: 'c' }]
-    expect(chainOf(machine, branch.filter((t) => t.target !== 'failed'), ['finished'])).toBeUndefined()
+    expect(
+      chainOf(
+        machine,
+        branch.filter((t) => t.target !== 'failed'),
+        ['finished'],
+      ),
+    ).toBeUndefined()
   })
 
   it('gives up on a loop', () => {
     const loop = machine.transitions.map((t) => (t.target === 'finished' ? { ...t, target: 'a' } : t))
-    expect(chainOf(machine, loop.filter((t) => t.target !== 'failed'), [])).toBeUndefined()
+    expect(
+      chainOf(
+        machine,
+        loop.filter((t) => t.target !== 'failed'),
+        [],
+      ),
+    ).toBeUndefined()
   })
 })
 
@@ -103,7 +127,11 @@ describe('layOut', () => {
 
 describe('roundedPath', () => {
   it('rounds corners by no more than half of the shorter leg', () => {
-    const points = [{ x: 0, y: 0 }, { x: 4, y: 0 }, { x: 4, y: 100 }]
+    const points = [
+      { x: 0, y: 0 },
+      { x: 4, y: 0 },
+      { x: 4, y: 100 },
+    ]
     expect(roundedPath(points)).toBe('M 0 0 L 2 0 Q 4 0 4 2 L 4 100')
   })
 })

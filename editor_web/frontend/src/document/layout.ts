@@ -97,9 +97,7 @@ export function arrowId(path: string, source: string, outcome: string): string {
  */
 export function drawnOutcomes(parent: GraphNode): readonly string[] {
   const inside = new Set(parent.children.map((child) => child.name))
-  return parent.outcomes.filter(
-    (outcome) => !inside.has(outcome) && parent.transitions.filter((t) => t.target === outcome).length === 1,
-  )
+  return parent.outcomes.filter((outcome) => !inside.has(outcome) && parent.transitions.filter((t) => t.target === outcome).length === 1)
 }
 
 function drawnTransitions(parent: GraphNode): readonly GraphTransition[] {
@@ -133,12 +131,7 @@ interface Inner {
   courses: Course[]
 }
 
-async function layOutNode(
-  node: GraphNode,
-  parent: GraphNode | undefined,
-  style: Style,
-  call: LayoutCall,
-): Promise<Inner> {
+async function layOutNode(node: GraphNode, parent: GraphNode | undefined, style: Style, call: LayoutCall): Promise<Inner> {
   const inner = await layOutInside(node, { ...style, rowLimit: style.rowLimit - 2 * PADDING }, call)
   const exits = exitsOf(parent, node.name)
   if (exits.length === 0) return inner
@@ -180,7 +173,13 @@ function regions(node: GraphNode, inside: readonly Inner[], direction: Direction
     if (!size) return
     const width = direction === 'RIGHT' ? breadth : size.width
     const height = direction === 'RIGHT' ? size.height : breadth
-    place(child.path, { x, y, width: child.children.length > 0 ? size.width : width, height: child.children.length > 0 ? size.height : height }, size, boxes, courses)
+    place(
+      child.path,
+      { x, y, width: child.children.length > 0 ? size.width : width, height: child.children.length > 0 ? size.height : height },
+      size,
+      boxes,
+      courses,
+    )
     if (direction === 'RIGHT') y += size.height + GAP
     else x += size.width + GAP
   })
@@ -194,12 +193,7 @@ function regions(node: GraphNode, inside: readonly Inner[], direction: Direction
   }
 }
 
-async function machine(
-  node: GraphNode,
-  inside: readonly Inner[],
-  style: Style,
-  call: LayoutCall,
-): Promise<Inner> {
+async function machine(node: GraphNode, inside: readonly Inner[], style: Style, call: LayoutCall): Promise<Inner> {
   const chain = style.direction === 'RIGHT' ? chainOf(node, drawnTransitions(node), drawnOutcomes(node)) : undefined
   if (chain) return straightMachine(node, inside, chain, style.rowLimit)
   const laidOut = await call(machineGraph(node, inside, style))
@@ -223,12 +217,7 @@ async function machine(
   }
 }
 
-function straightMachine(
-  node: GraphNode,
-  inside: readonly Inner[],
-  chain: readonly GraphTransition[],
-  rowLimit: number,
-): Inner {
+function straightMachine(node: GraphNode, inside: readonly Inner[], chain: readonly GraphTransition[], rowLimit: number): Inner {
   const sizes = new Map(node.children.map((child, index) => [child.name, { id: child.path, inner: inside[index] }]))
   const names = [chain[0]?.source ?? node.children[0]?.name ?? '', ...chain.map((t) => t.target)]
   const items = names.map((name) => {
@@ -323,10 +312,7 @@ function courseOf(node: GraphNode, arrow: ElkArrow, shift: Point): Course | unde
     target: arrow.targets[0] ?? '',
     outcome,
     points: points.map((point) => moved(point, shift)),
-    label: moved(
-      { x: (label?.x ?? 0) + (label?.width ?? 0) / 2, y: (label?.y ?? 0) + (label?.height ?? 0) / 2 },
-      shift,
-    ),
+    label: moved({ x: (label?.x ?? 0) + (label?.width ?? 0) / 2, y: (label?.y ?? 0) + (label?.height ?? 0) / 2 }, shift),
   }
 }
 

@@ -58,7 +58,12 @@ export const EMPTY: LiveState = {
 export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 'gap' {
   switch (frame.k) {
     case 'hello':
-      return { ...(state.epoch === frame.epoch ? state : EMPTY), epoch: frame.epoch, role: frame.role, serverZeroS: frame.server_time_s - atMs / 1000 }
+      return {
+        ...(state.epoch === frame.epoch ? state : EMPTY),
+        epoch: frame.epoch,
+        role: frame.role,
+        serverZeroS: frame.server_time_s - atMs / 1000,
+      }
     case 'snapshot':
       return fromSnapshot(state, frame, atMs)
     case 'delta':
@@ -79,7 +84,22 @@ function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): Live
   const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
   const { robots, stop } = frame
   const control = unchanged(state.control, frame.control)
-  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, lockReasons: frame.lock_reasons, robots, stop: unchanged(state.stop, stop) }
+  return {
+    ...state,
+    run,
+    seq,
+    nowS: frame.now_s,
+    atMs,
+    ticking,
+    runs,
+    nodes,
+    log,
+    dropped,
+    control,
+    lockReasons: frame.lock_reasons,
+    robots,
+    stop: unchanged(state.stop, stop),
+  }
 }
 
 function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState {

@@ -7,7 +7,9 @@ export interface MomentPlace {
 }
 
 export function momentText(timeS: number | undefined, node: string | undefined): string {
-  return [timeS !== undefined && `t=${Number(timeS.toFixed(3))}`, node && `node=${encodeURI(node).replaceAll('&', '%26')}`].filter(Boolean).join('&')
+  return [timeS !== undefined && `t=${Number(timeS.toFixed(3))}`, node && `node=${encodeURI(node).replaceAll('&', '%26')}`]
+    .filter(Boolean)
+    .join('&')
 }
 
 /** What an address names; what it does not know is left out. */

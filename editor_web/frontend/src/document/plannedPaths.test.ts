@@ -45,7 +45,12 @@ describe('the paths that a question is about', () => {
 
 describe('arms whose path is blocked', () => {
   it('are listed by name', () => {
-    const robots = { right: robot('right', path('blocked')), middle: robot('middle', path('moving')), left: robot('left', path('blocked')), far: robot('far', null) }
+    const robots = {
+      right: robot('right', path('blocked')),
+      middle: robot('middle', path('moving')),
+      left: robot('left', path('blocked')),
+      far: robot('far', null),
+    }
     expect(blockedPaths(robots).map((each) => each.robot)).toEqual(['left', 'right'])
   })
 

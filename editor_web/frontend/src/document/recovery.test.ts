@@ -3,7 +3,16 @@ import { describe, expect, it } from 'vitest'
 import type { ArmRecovery, CellStop, StoppedDevice } from '../api/types'
 import { deviceWords, nextStep, partWords, releaseObstacle, stepsOf, undecided, type StepState } from './recovery'
 
-const ARM: ArmRecovery = { name: 'left', part: '', kept: false, can_release: true, has_moved: false, home: 'left_home', home_names: ['left_home'], at_home: false }
+const ARM: ArmRecovery = {
+  name: 'left',
+  part: '',
+  kept: false,
+  can_release: true,
+  has_moved: false,
+  home: 'left_home',
+  home_names: ['left_home'],
+  at_home: false,
+}
 const AT_REST: StoppedDevice = { name: 'left', status: 'at_rest', after_s: 0.42, reason: '' }
 const STOP: CellStop = {
   number: 1,

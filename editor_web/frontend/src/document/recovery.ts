@@ -90,7 +90,9 @@ function homeStep(stop: CellStop): RecoveryStep {
 function resetStep(stop: CellStop): RecoveryStep {
   const step = { id: 'reset', title: 'Reset the parts' } as const
   if (stop.parts === 'absent') return { ...step, state: 'none', words: 'only a simulation can do this' }
-  return stop.parts === 'reset' ? { ...step, state: 'done', words: 'at their initial poses' } : { ...step, state: 'open', words: 'if the next run begins anew' }
+  return stop.parts === 'reset'
+    ? { ...step, state: 'done', words: 'at their initial poses' }
+    : { ...step, state: 'open', words: 'if the next run begins anew' }
 }
 
 function releaseStep(stop: CellStop): RecoveryStep {

@@ -21,7 +21,13 @@ export const layOutRoughly: LayoutCall = (graph) => {
     widest = Math.max(widest, x - ALONG)
     return turned(at, isDown)
   })
-  return Promise.resolve({ ...graph, children: placed, edges: [], ...turned({ id: '', width: widest, height: y + row }, isDown), id: graph.id })
+  return Promise.resolve({
+    ...graph,
+    children: placed,
+    edges: [],
+    ...turned({ id: '', width: widest, height: y + row }, isDown),
+    id: graph.id,
+  })
 }
 
 function turned(shape: ElkShape, isDown: boolean): ElkShape {

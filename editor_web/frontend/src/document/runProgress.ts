@@ -34,7 +34,8 @@ export function pathWords(path: string): string {
 
 /** `2 of 5 steps done, 1 active, 1 failed`. A node that waits with its outcome is not done yet. */
 export function progressText(cells: readonly GraphNode[], nodes: Nodes, waiting: readonly string[] = []): string {
-  const count = (status: string) => cells.filter((cell) => lookup(nodes, cell.path)?.status === status && !waiting.includes(cell.path)).length
+  const count = (status: string) =>
+    cells.filter((cell) => lookup(nodes, cell.path)?.status === status && !waiting.includes(cell.path)).length
   const waits = cells.filter((cell) => waiting.includes(cell.path)).length
   const more = [
     [count('active'), 'active'],

@@ -4,13 +4,36 @@ import type { ControlView, GateWait, RunView } from '../api/types'
 import { isFailed, nodeWords, requestsOf, runStateOf, runWords } from './runState'
 
 function run(told: Partial<RunView> = {}): RunView {
-  return { id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '', ...told }
+  return {
+    id: 'r',
+    behavior: 'b',
+    status: 'running',
+    outcome: null,
+    success: false,
+    cause: '',
+    started_at_s: 0,
+    duration_s: 0,
+    waits: '',
+    ...told,
+  }
 }
 
 function control(told: Partial<ControlView> = {}): ControlView {
   return {
-    paused: false, confirmed: false, stepping: false, cannot: [], active: [], waiting: [], locks: [], breakpoints: [], autonomy: 'full',
-    operator: 'none', demanded: false, loss_policy: 'hold', loss_timeout_s: 5, ...told,
+    paused: false,
+    confirmed: false,
+    stepping: false,
+    cannot: [],
+    active: [],
+    waiting: [],
+    locks: [],
+    breakpoints: [],
+    autonomy: 'full',
+    operator: 'none',
+    demanded: false,
+    loss_policy: 'hold',
+    loss_timeout_s: 5,
+    ...told,
   }
 }
 
@@ -47,7 +70,11 @@ describe('the state of a run', () => {
     [{ paused: true, confirmed: true }, 'Paused', 'everything is at rest'],
     [{ paused: true, confirmed: true, waiting: [atGrasp] }, 'Paused', 'everything is at rest'],
     [{ paused: true, confirmed: true, waiting: [atGrasp], breakpoints: [{ path: 'root/*' }] }, 'Paused', 'breakpoint at grasp'],
-    [{ paused: true, confirmed: true, waiting: [atGrasp], breakpoints: [{ path: 'root/*', when: 'after' }] }, 'Paused', 'everything is at rest'],
+    [
+      { paused: true, confirmed: true, waiting: [atGrasp], breakpoints: [{ path: 'root/*', when: 'after' }] },
+      'Paused',
+      'everything is at rest',
+    ],
     [{ paused: true, confirmed: true, cannot: ['g1'] }, 'Paused', 'cannot be held: g1'],
     [{ paused: true, stepping: true }, 'Stepping', 'to the next stop'],
     [{ waiting: [asks('root/a')] }, 'Waiting for answer', ''],
@@ -58,13 +85,21 @@ describe('the state of a run', () => {
   })
 
   it('never calls a run running that is paused', () => {
-    const looks = [runStateOf(run({ waits: 'paused' })), runStateOf(run(), control({ paused: true, confirmed: true })), runStateOf(run(), control({ paused: true }))]
+    const looks = [
+      runStateOf(run({ waits: 'paused' })),
+      runStateOf(run(), control({ paused: true, confirmed: true })),
+      runStateOf(run(), control({ paused: true })),
+    ]
     expect(looks.map(({ word, look }) => `${word} ${look}`).join()).not.toMatch(/running|active/i)
   })
 })
 
 it('is a failure where it was no success', () => {
-  expect([run({ status: 'errored' }), run({ status: 'finished' }), run({ status: 'finished', success: true }), run({ status: 'stopped' })].map(isFailed)).toEqual([true, true, false, false])
+  expect(
+    [run({ status: 'errored' }), run({ status: 'finished' }), run({ status: 'finished', success: true }), run({ status: 'stopped' })].map(
+      isFailed,
+    ),
+  ).toEqual([true, true, false, false])
 })
 
 it('asks only for what waits for agreement', () => {
@@ -74,5 +109,10 @@ it('asks only for what waits for agreement', () => {
 })
 
 it('says of a node how it is, and with what it ended', () => {
-  expect([nodeWords('idle'), nodeWords('active'), nodeWords('done', 'held'), nodeWords('failed', 'failed')]).toEqual(['Not entered', 'Active', 'Done: held', 'Failed'])
+  expect([nodeWords('idle'), nodeWords('active'), nodeWords('done', 'held'), nodeWords('failed', 'failed')]).toEqual([
+    'Not entered',
+    'Active',
+    'Done: held',
+    'Failed',
+  ])
 })

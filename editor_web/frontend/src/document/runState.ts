@@ -77,7 +77,9 @@ function watched(control: ControlView): RunState {
   if (control.paused) return { word: 'Paused', look: 'paused', reason: pauseReason(control) }
   if (asked > 0) return { word: 'Waiting for answer', look: 'waiting', reason: asked === 1 ? '' : `${asked} questions` }
   const locked = control.waiting.find((each) => each.reasons.includes('lock'))
-  return locked ? { word: 'Waiting at lock', look: 'locked', reason: lastName(locked.path) } : { word: 'Running', look: 'active', reason: '' }
+  return locked
+    ? { word: 'Waiting at lock', look: 'locked', reason: lastName(locked.path) }
+    : { word: 'Running', look: 'active', reason: '' }
 }
 
 /** `breakpoint at grasp`, where it is known to be one. */
@@ -96,7 +98,12 @@ function lastName(path: string): string {
 }
 
 const NODE_WORDS: Readonly<Record<string, string>> = {
-  idle: 'Not entered', active: 'Active', done: 'Done', failed: 'Failed', stopped: 'Stopped', skipped: 'Skipped',
+  idle: 'Not entered',
+  active: 'Active',
+  done: 'Done',
+  failed: 'Failed',
+  stopped: 'Stopped',
+  skipped: 'Skipped',
 }
 
 /** The state of a node in one word, with its outcome where it has one. */

@@ -21,7 +21,10 @@ describe('fieldOf', () => {
 })
 
 it('shows what a run was started with so that the form sends the same again', () => {
-  const fields = [fieldOf({ name: 'n', schema: { type: 'number' }, required: false }), fieldOf({ name: 'o', schema: { type: 'object' }, required: false })]
+  const fields = [
+    fieldOf({ name: 'n', schema: { type: 'number' }, required: false }),
+    fieldOf({ name: 'o', schema: { type: 'object' }, required: false }),
+  ]
   const started = { n: 0.25, o: { x: [1, 2] } }
   const values = Object.fromEntries(fields.map(({ name, kind }) => [name, shownValue(kind, started[name as 'n' | 'o'])]))
   expect(parametersOf(fields, values)).toEqual(started)

@@ -12,7 +12,13 @@ const SHRUNK: Shrunk = {
   placement_noise: false,
   interrupted: false,
 }
-const FOUND: Shrinking = { status: 'idle', progress: null, found: { subject: 'f00', failing: RUN, shrunk: SHRUNK }, saved_as: '', problem: '' }
+const FOUND: Shrinking = {
+  status: 'idle',
+  progress: null,
+  found: { subject: 'f00', failing: RUN, shrunk: SHRUNK },
+  saved_as: '',
+  problem: '',
+}
 
 it('lists what is left of a change, with the nearest value that does not fail', () => {
   expect(shrunkRows(SHRUNK)).toEqual([
@@ -38,11 +44,25 @@ it('takes what was found only for the run and the versions that it is of', () =>
 })
 
 it('names searches, failures, ranges and files', () => {
-  const line = { id: 's', description: '', behavior: '', design: 'latin_hypercube', require: '', towards: '', factors: [], live: {} as never, problem: '' }
+  const line = {
+    id: 's',
+    description: '',
+    behavior: '',
+    design: 'latin_hypercube',
+    require: '',
+    towards: '',
+    factors: [],
+    live: {} as never,
+    problem: '',
+  }
   expect(designText(line)).toBe('latin hypercube design')
   expect(designText({ ...line, towards: 'failure' })).toBe('search for failures')
   expect(designText({ ...line, towards: 'least left.force_n' })).toBe('search for failures towards least left.force_n')
-  expect([0, 1, 2].map((failures) => failuresText({ failures, nearest: null, is_satisfied: false }))).toEqual(['no failure', '1 failure', '2 failures'])
+  expect([0, 1, 2].map((failures) => failuresText({ failures, nearest: null, is_satisfied: false }))).toEqual([
+    'no failure',
+    '1 failure',
+    '2 failures',
+  ])
   expect([rangeText([0.12345, 2], false), rangeText(['none', 'slip.yaml'], true)]).toEqual(['0.1235 to 2', 'none, slip.yaml'])
   expect(proposedCase('behaviors/sweeps/transfer.yaml', 17)).toBe('tests/cases/transfer_17.yaml')
 })

@@ -46,8 +46,11 @@ export function shrunkRows({ changed, passes }: Shrunk): readonly ShrunkRow[] {
 export function chanceText({ result, changed, seed_matters: seedMatters, placement_noise: isNoisy }: Shrunk): string {
   const { seed } = result.configuration
   const noise = isNoisy ? 'with placement noise' : 'without placement noise'
-  if (Object.keys(changed).length > 0) return seedMatters ? `Seed ${seed}: with the nominal one it does not fail so; ${noise}.` : `Seed ${seed}, ${noise}.`
-  return seedMatters ? `Nothing is varied: seed ${seed} alone fails, ${noise}.` : `Nothing is varied: it fails with all nominal values, ${noise}.`
+  if (Object.keys(changed).length > 0)
+    return seedMatters ? `Seed ${seed}: with the nominal one it does not fail so; ${noise}.` : `Seed ${seed}, ${noise}.`
+  return seedMatters
+    ? `Nothing is varied: seed ${seed} alone fails, ${noise}.`
+    : `Nothing is varied: it fails with all nominal values, ${noise}.`
 }
 
 /** What was found, if it is of this run: a number is another run once the sweep or the behavior has changed. */

@@ -83,5 +83,8 @@ function notes({ answer, engine, process, heard }: StopProgress): readonly strin
 }
 
 function namesOf({ answer }: StopProgress, is: (device: DeviceStop) => boolean): string {
-  return (answer?.devices ?? []).filter(is).map((device) => device.name).join(', ')
+  return (answer?.devices ?? [])
+    .filter(is)
+    .map((device) => device.name)
+    .join(', ')
 }

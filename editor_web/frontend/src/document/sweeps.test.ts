@@ -21,12 +21,38 @@ import {
   type SearchDraft,
 } from './sweeps'
 
-const LIVE: SweepLive = { status: 'idle', planned: 10, done: 4, looked_at: 4, successes: 3, interval: [0.2, 0.9], verdict: null, rate_hz: 0, remaining_s: null, search: null, problem: '' }
-const LINE: SweepLine = { id: 's.yaml', description: '', behavior: 'b.yaml', design: 'random', require: '', towards: '', factors: [], live: LIVE, problem: '' }
+const LIVE: SweepLive = {
+  status: 'idle',
+  planned: 10,
+  done: 4,
+  looked_at: 4,
+  successes: 3,
+  interval: [0.2, 0.9],
+  verdict: null,
+  rate_hz: 0,
+  remaining_s: null,
+  search: null,
+  problem: '',
+}
+const LINE: SweepLine = {
+  id: 's.yaml',
+  description: '',
+  behavior: 'b.yaml',
+  design: 'random',
+  require: '',
+  towards: '',
+  factors: [],
+  live: LIVE,
+  problem: '',
+}
 const CHOICE: FactorChoice = { address: 'parameters.speed', nominal: 0.5, unit: '', description: '', least: 0.05, most: 1, options: [] }
 const DRAFT: FactorDraft = { address: 'parameters.speed', kind: 'uniform', first: '0.1', second: '0.9', values: '' }
 
-function run(number: number, changes: Partial<TrialResult> = {}, values: Record<string, unknown> = { x: number / 10, part: 'bolt' }): TrialResult {
+function run(
+  number: number,
+  changes: Partial<TrialResult> = {},
+  values: Record<string, unknown> = { x: number / 10, part: 'bolt' },
+): TrialResult {
   return {
     configuration: { number, seed: number, values },
     status: 'finished',
@@ -98,7 +124,12 @@ it('tells how much of a factor the runs have covered', () => {
 })
 
 it('lists failing runs first, and runs in any other order', () => {
-  const runs = [run(0), run(1, { success: false, outcome: 'missed' }), run(2, { success: false, outcome: null, status: 'errored' }), run(10)]
+  const runs = [
+    run(0),
+    run(1, { success: false, outcome: 'missed' }),
+    run(2, { success: false, outcome: null, status: 'errored' }),
+    run(10),
+  ]
   const numbers = (by: string, isFalling = false) => orderedRuns(runs, { by, isFalling }).map((each) => each.configuration.number)
   expect(numbers('ended')).toEqual([2, 1, 0, 10])
   expect(numbers('number', true)).toEqual([10, 2, 1, 0])
@@ -115,7 +146,11 @@ it('finds the runs with the same cause', () => {
 })
 
 it('draws runs over what varies, numbers first', () => {
-  const runs = [run(0, {}, { part: 'nut', fixed: 1, x: 2 }), run(1, {}, { part: 'bolt', fixed: 1, x: 4 }), run(2, {}, { part: 'bolt', fixed: 1, x: 3 })]
+  const runs = [
+    run(0, {}, { part: 'nut', fixed: 1, x: 2 }),
+    run(1, {}, { part: 'bolt', fixed: 1, x: 4 }),
+    run(2, {}, { part: 'bolt', fixed: 1, x: 3 }),
+  ]
   expect(scatterAxes(runs, ['fixed', 'part', 'x'])).toEqual(['x', 'part', 'duration'])
   expect(scatterAxes([], [])).toEqual(['duration'])
   const numbers = axisScale(runs, 'x')
@@ -128,8 +163,16 @@ it('draws runs over what varies, numbers first', () => {
 
 it('proposes a distribution for what is varied', () => {
   expect(proposedFactor(CHOICE)).toMatchObject({ kind: 'uniform', first: '0.05', second: '1' })
-  expect(proposedFactor({ ...CHOICE, address: 'displace.bolt.x_m', nominal: 0, least: null, most: null })).toMatchObject({ kind: 'normal', first: '0', second: '0.005' })
-  expect(proposedFactor({ ...CHOICE, address: 'cell.parts.bolt.mass_kg', nominal: -2, least: null, most: null })).toMatchObject({ kind: 'uniform', first: '-2.4', second: '-1.6' })
+  expect(proposedFactor({ ...CHOICE, address: 'displace.bolt.x_m', nominal: 0, least: null, most: null })).toMatchObject({
+    kind: 'normal',
+    first: '0',
+    second: '0.005',
+  })
+  expect(proposedFactor({ ...CHOICE, address: 'cell.parts.bolt.mass_kg', nominal: -2, least: null, most: null })).toMatchObject({
+    kind: 'uniform',
+    first: '-2.4',
+    second: '-1.6',
+  })
   expect(proposedFactor({ ...CHOICE, options: [true, 'a'] })).toMatchObject({ kind: 'values', values: 'true, "a"' })
   expect(proposedFactor({ ...CHOICE, nominal: 'miss', least: null, most: null })).toMatchObject({ kind: 'values', values: '"miss"' })
 })
@@ -150,7 +193,13 @@ it.each([
 
 it('makes the document of a form, or says what is wrong', () => {
   const draft = { id: '', behavior: 'behaviors/a.yaml', runs: '20', required: '98', factors: [DRAFT], search: undefined }
-  expect(documentOf(draft)).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', runs: 20, require: 'success >= 0.98', factors: { 'parameters.speed': { uniform: [0.1, 0.9] } } })
+  expect(documentOf(draft)).toEqual({
+    flexcell: 1,
+    behavior: 'behaviors/a.yaml',
+    runs: 20,
+    require: 'success >= 0.98',
+    factors: { 'parameters.speed': { uniform: [0.1, 0.9] } },
+  })
   expect(documentOf({ ...draft, required: '', factors: [] })).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', runs: 20, factors: {} })
   expect(documentOf({ ...draft, behavior: '' })).toBe('Choose a behavior')
   expect(documentOf({ ...draft, runs: '1.5' })).toBe('Runs are a whole number, 1 at least')
@@ -164,9 +213,13 @@ it('makes the document of a search, which requires no rate', () => {
   const factors = { 'parameters.speed': { uniform: [0.1, 0.9] } }
   const spec = { towards: 'most duration_s', method: 'cross_entropy', runs: 20, stop_after: 3 }
   expect(documentOf(draft)).toEqual({ flexcell: 1, behavior: 'behaviors/a.yaml', factors, search: spec })
-  expect(documentOf({ ...draft, search: { ...search, towards: 'failure', stopAfter: '' } })).toMatchObject({ search: { towards: 'failure', runs: 20 } })
+  expect(documentOf({ ...draft, search: { ...search, towards: 'failure', stopAfter: '' } })).toMatchObject({
+    search: { towards: 'failure', runs: 20 },
+  })
   expect(documentOf({ ...draft, search: { ...search, name: 'a b' } })).toBe('A search towards a number needs its name, without spaces')
-  expect(documentOf({ ...draft, search: { ...search, stopAfter: '0' } })).toBe('The failures after which it ends are a whole number, 1 at least')
+  expect(documentOf({ ...draft, search: { ...search, stopAfter: '0' } })).toBe(
+    'The failures after which it ends are a whole number, 1 at least',
+  )
   expect(documentOf({ ...draft, factors: [] })).toBe('A search varies something: add a factor')
 })
 

@@ -1,5 +1,20 @@
 /** What a sweep has shown, in words, orders and scales. Pure. */
-import type { Factor, FactorChoice, FactorCoverage, Interval, JudgedRequirement, MeasureSpread, Quantiles, SearchSpec, SweepDocument, SweepLine, SweepLive, SweepRuns, SweepView, TrialResult } from '../api/types'
+import type {
+  Factor,
+  FactorChoice,
+  FactorCoverage,
+  Interval,
+  JudgedRequirement,
+  MeasureSpread,
+  Quantiles,
+  SearchSpec,
+  SweepDocument,
+  SweepLine,
+  SweepLive,
+  SweepRuns,
+  SweepView,
+  TrialResult,
+} from '../api/types'
 import { lookup } from './dict'
 import { numeral, plainText } from './values'
 
@@ -90,7 +105,9 @@ function measureRows({ name, successes, failures }: MeasureSpread): readonly Qua
 /** How much of a factor the runs have covered, and where there was none. */
 export function coverageText({ parts, covered, gap, gap_share }: FactorCoverage): string {
   const share = `${covered} of ${parts} parts have a run`
-  return gap === null ? share : `${share}; none from ${short(gap[0])} to ${short(gap[1])}${gap_share === null ? '' : ` (${percent(gap_share)})`}`
+  return gap === null
+    ? share
+    : `${share}; none from ${short(gap[0])} to ${short(gap[1])}${gap_share === null ? '' : ` (${percent(gap_share)})`}`
 }
 
 export interface RunOrder {
@@ -205,7 +222,10 @@ export function factorOf(draft: FactorDraft): Factor | string {
   const name = draft.address || 'a factor'
   if (!draft.address) return 'A factor needs a name'
   if (draft.kind === 'values') {
-    const values = draft.values.split(',').map((each) => each.trim()).filter(Boolean)
+    const values = draft.values
+      .split(',')
+      .map((each) => each.trim())
+      .filter(Boolean)
     return values.length > 0 ? { values: values.map(parsed) } : `${name} needs values`
   }
   const [first, second] = [Number(draft.first), Number(draft.second)]

@@ -1,6 +1,19 @@
 import { describe, expect, it } from 'vitest'
 import type { Trace } from '../api/types'
-import { apart, changesOf, curveOf, endOf, errorsOf, heldWords, jogVelocity, nameFault, rollPitchYaw, tagFault, tagsOf, toolStep } from './teaching'
+import {
+  apart,
+  changesOf,
+  curveOf,
+  endOf,
+  errorsOf,
+  heldWords,
+  jogVelocity,
+  nameFault,
+  rollPitchYaw,
+  tagFault,
+  tagsOf,
+  toolStep,
+} from './teaching'
 
 function trace(times_s: number[], joint: (t: number) => number): Trace {
   return {
@@ -14,7 +27,12 @@ function trace(times_s: number[], joint: (t: number) => number): Trace {
 
 describe('names and tags', () => {
   it('are checked as the store checks them', () => {
-    expect([nameFault('station_1/above.tray'), nameFault(''), nameFault('Up'), nameFault('a b')].map(Boolean)).toEqual([false, true, true, true])
+    expect([nameFault('station_1/above.tray'), nameFault(''), nameFault('Up'), nameFault('a b')].map(Boolean)).toEqual([
+      false,
+      true,
+      true,
+      true,
+    ])
     expect(tagsOf('one, two  one')).toEqual(['one', 'two'])
     expect([tagFault('one two'), tagFault('One')].map(Boolean)).toEqual([false, true])
   })
@@ -43,23 +61,71 @@ describe('what a change moves', () => {
   it('is told by where the arm starts and ends, and how long it takes', () => {
     const before = trace([0, 1, 2], (t) => 0.1 * t)
     expect(changesOf(before, before)).toEqual(['is the same'])
-    expect(changesOf(before, trace([0, 3], (t) => 0.1 * t))).toEqual(['ends 10.0 cm away', 'joint 1 ends 5.7° away', 'lasts 3.00 s instead of 2.00 s'])
-    expect(changesOf(endOf(before), trace([0], () => 0.21))).toEqual(['the tool moves by 10.0 mm', 'joint 1 ends 0.6° away'])
+    expect(
+      changesOf(
+        before,
+        trace([0, 3], (t) => 0.1 * t),
+      ),
+    ).toEqual(['ends 10.0 cm away', 'joint 1 ends 5.7° away', 'lasts 3.00 s instead of 2.00 s'])
+    expect(
+      changesOf(
+        endOf(before),
+        trace([0], () => 0.21),
+      ),
+    ).toEqual(['the tool moves by 10.0 mm', 'joint 1 ends 0.6° away'])
   })
 })
 
 it('measures how far two curves are apart where both are', () => {
-  const one = curveOf(trace([0, 1, 2], (t) => 0.001 * t), 'one', 'tool 0')
-  const two = curveOf(trace([0.5, 1.5], (t) => 0.001 * t + 0.002), 'two', 'tool 0')
+  const one = curveOf(
+    trace([0, 1, 2], (t) => 0.001 * t),
+    'one',
+    'tool 0',
+  )
+  const two = curveOf(
+    trace([0.5, 1.5], (t) => 0.001 * t + 0.002),
+    'two',
+    'tool 0',
+  )
   expect(apart(one, one)).toEqual({ rms: 0, most: 0 })
   expect(apart(two, one)?.most).toBeCloseTo(2)
-  expect(apart(one, curveOf(trace([5, 6], () => 0), 'far', 'tool 0'))).toBeUndefined()
+  expect(
+    apart(
+      one,
+      curveOf(
+        trace([5, 6], () => 0),
+        'far',
+        'tool 0',
+      ),
+    ),
+  ).toBeUndefined()
 })
 
 it('measures the errors of what was learned in the joints and at the tool, where both are', () => {
   const times = [0, 1, 2]
-  const shown: Trace = { times_s: times, joint_names: ['a', 'b'], joints: [[0, 0], [1, 0], [2, 0]], poses: times.map((x) => [x, 0, 0, 0, 0, 0, 1]), remark: '' }
-  const learned: Trace = { ...shown, times_s: [1, 2], joints: [[1.1, 0], [2, 0]], poses: [[1, 0.003, 0.004, 0, 0, 0, 1], [2, 0, 0, 0, 0, 0, 1]] }
+  const shown: Trace = {
+    times_s: times,
+    joint_names: ['a', 'b'],
+    joints: [
+      [0, 0],
+      [1, 0],
+      [2, 0],
+    ],
+    poses: times.map((x) => [x, 0, 0, 0, 0, 0, 1]),
+    remark: '',
+  }
+  const learned: Trace = {
+    ...shown,
+    times_s: [1, 2],
+    joints: [
+      [1.1, 0],
+      [2, 0],
+    ],
+    poses: [
+      [1, 0.003, 0.004, 0, 0, 0, 1],
+      [2, 0, 0, 0, 0, 0, 1],
+    ],
+  }
   const errors = errorsOf(shown, learned)
   expect(errors.joints?.most).toBeCloseTo(0.1)
   expect(errors.joints?.rms).toBeCloseTo(0.05)

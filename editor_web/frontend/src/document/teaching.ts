@@ -43,7 +43,11 @@ export function jogVelocity(space: Space, axis: number, share: number, joints: n
 }
 
 /** A step along one axis of the tool: `step_m` and `turn_rad`. */
-export function toolStep(axis: number, step_m: number, turn_rad: number): { readonly step_m: readonly number[]; readonly turn_rad: readonly number[] } {
+export function toolStep(
+  axis: number,
+  step_m: number,
+  turn_rad: number,
+): { readonly step_m: readonly number[]; readonly turn_rad: readonly number[] } {
   const along = (of: number, size: number) => [0, 1, 2].map((at) => (at === of ? size : 0))
   return { step_m: along(axis, step_m), turn_rad: along(axis - 3, turn_rad) }
 }
@@ -154,7 +158,11 @@ export function errorsOf(shown: Trace, learned: Trace): Errors {
 function distances(one: Trace, two: Trace, columns: number, rows: 'joints' | 'poses'): readonly (readonly number[])[] {
   const from = Math.max(one.times_s[0] ?? 0, two.times_s[0] ?? 0)
   const to = Math.min(one.times_s.at(-1) ?? 0, two.times_s.at(-1) ?? 0)
-  const curves = Array.from({ length: columns }, (_, at) => ({ name: '', times_s: two.times_s, values: two[rows].map((row) => row[at] ?? 0) }))
+  const curves = Array.from({ length: columns }, (_, at) => ({
+    name: '',
+    times_s: two.times_s,
+    values: two[rows].map((row) => row[at] ?? 0),
+  }))
   const made: number[][] = []
   one.times_s.forEach((time, index) => {
     if (time < from || time > to || columns === 0) return

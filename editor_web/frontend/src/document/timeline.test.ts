@@ -2,7 +2,21 @@
 import { describe, expect, it } from 'vitest'
 import type { PastRunState, NodeLive, ActivationInterval, TimelineMarker, Timeline } from '../api/types'
 import { EMPTY } from './live'
-import { afterKey, neighbor, panned, placeWords, revealing, rowsOf, spanAt, ticks, timeAt, wholeView, withTimeline, xOf, zoomed } from './timeline'
+import {
+  afterKey,
+  neighbor,
+  panned,
+  placeWords,
+  revealing,
+  rowsOf,
+  spanAt,
+  ticks,
+  timeAt,
+  wholeView,
+  withTimeline,
+  xOf,
+  zoomed,
+} from './timeline'
 import { atMoment, nextMoment } from './timelineMoment'
 
 const span = (seq: number, start_s: number, end_s: number | null): ActivationInterval => ({
@@ -90,7 +104,11 @@ describe('the view', () => {
     [{ fromS: 0, untilS: 0.1 }, 900, ['0.00 s', '0.01 s', '0.02 s']],
     [{ fromS: 58, untilS: 68 }, 900, ['58 s', '59 s', '1:00']],
   ] as const)('has round ticks: %j', (view, width, labels) => {
-    expect(ticks(view, width).slice(0, 3).map((tick) => tick.label)).toEqual(labels)
+    expect(
+      ticks(view, width)
+        .slice(0, 3)
+        .map((tick) => tick.label),
+    ).toEqual(labels)
   })
 })
 
@@ -124,7 +142,16 @@ it('says where it is', () => {
 })
 
 describe('a moment', () => {
-  const node = (status: string): NodeLive => ({ status, visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', last_transition: '', plan: null })
+  const node = (status: string): NodeLive => ({
+    status,
+    visits: 1,
+    outcome: '',
+    entered_s: 0,
+    duration_s: 0,
+    cause: '',
+    last_transition: '',
+    plan: null,
+  })
   const moment = (seq: number, nodes: PastRunState['nodes'], lines: readonly number[]): PastRunState => ({
     seq,
     time_s: seq / 10,

@@ -11,17 +11,7 @@ import type { LayoutCall } from '../layout'
 import { arrowId, outcomeId } from '../layout'
 import { adopt, empty, put, sized, type Content } from './content'
 import { byEngine, entryOf, portOf } from './engineLayout'
-import {
-  FRAME_HEAD,
-  frameWidth,
-  leafSize,
-  PILL_HEIGHT,
-  pillsOf,
-  pillWidth,
-  rowsHeight,
-  tableHeight,
-  twigSize,
-} from './measure'
+import { FRAME_HEAD, frameWidth, leafSize, PILL_HEIGHT, pillsOf, pillWidth, rowsHeight, tableHeight, twigSize } from './measure'
 import { isFrame, isMachine, isTreePart, outgoingTransitions, type EditNode } from './model'
 
 export interface ArrangeOptions {
@@ -135,8 +125,7 @@ async function tree(node: EditNode, options: ArrangeOptions): Promise<Content> {
 async function twig(node: EditNode, parent: EditNode, options: ArrangeOptions): Promise<Content> {
   const own = await unit(node, parent, options)
   const content = empty(own.width, own.height)
-  const isBranch =
-    isTreePart(node.kind) && node.kind !== 'tree' && options.isOpen(node.path) && node.children.length > 0
+  const isBranch = isTreePart(node.kind) && node.kind !== 'tree' && options.isOpen(node.path) && node.children.length > 0
   if (!isBranch) {
     put(content, node.path, { x: 0, y: 0, width: own.width, height: own.height }, own)
     return content
@@ -161,12 +150,7 @@ async function twig(node: EditNode, parent: EditNode, options: ArrangeOptions): 
   return content
 }
 
-async function machine(
-  node: EditNode,
-  units: readonly Content[],
-  options: ArrangeOptions,
-  isScope: boolean,
-): Promise<Content> {
+async function machine(node: EditNode, units: readonly Content[], options: ArrangeOptions, isScope: boolean): Promise<Content> {
   const { drawn, gathered } = pillsOf(node, options.declared(node))
   if (node.children.length === 0) return withGathered(node, empty(240, 70), gathered)
   const isManual = node.children.some((child) => child.position !== null)
@@ -177,9 +161,7 @@ async function machine(
 /** Outcomes that several arrows lead to, or none, stand in a line below: those arrows are written at their ports. */
 function withGathered(node: EditNode, flow: Content, gathered: readonly string[]): Content {
   if (gathered.length === 0) return flow
-  const bottoms = node.children
-    .map((child) => flow.own.get(child.path))
-    .flatMap((box) => (box ? [box.y + box.height] : []))
+  const bottoms = node.children.map((child) => flow.own.get(child.path)).flatMap((box) => (box ? [box.y + box.height] : []))
   const lefts = node.children.map((child) => flow.own.get(child.path)).flatMap((box) => (box ? [box.x] : []))
   const y = Math.max(flow.height, ...bottoms) + 18
   let x = Math.min(...(lefts.length > 0 ? lefts : [0]))
@@ -207,12 +189,7 @@ function placed(node: EditNode, units: readonly Content[], drawn: readonly strin
     const own = units[index]
     const position = at[index]
     if (own && position)
-      put(
-        content,
-        child.path,
-        { x: position[0] + origin.x, y: position[1] + origin.y, width: own.width, height: own.height },
-        own,
-      )
+      put(content, child.path, { x: position[0] + origin.x, y: position[1] + origin.y, width: own.width, height: own.height }, own)
   })
   const below = Math.max(...[...boxesOf(content, node)].map((box) => box.y + box.height)) + 30
   let x = isScope ? left : 0
@@ -243,15 +220,8 @@ function boxesOf(content: Content, node: EditNode): readonly Box[] {
   return node.children.flatMap((child) => content.own.get(child.path) ?? [])
 }
 
-async function laidOut(
-  node: EditNode,
-  units: readonly Content[],
-  drawn: readonly string[],
-  options: ArrangeOptions,
-): Promise<Content> {
-  const shown = node.transitions.filter(
-    (t) => drawn.includes(t.target) || node.children.some((child) => child.name === t.target),
-  )
+async function laidOut(node: EditNode, units: readonly Content[], drawn: readonly string[], options: ArrangeOptions): Promise<Content> {
+  const shown = node.transitions.filter((t) => drawn.includes(t.target) || node.children.some((child) => child.name === t.target))
   const chain = chainOf(node, shown, drawn)
   return chain ? inRows(node, units, chain, options.rowLimit) : byEngine(node, units, drawn, options)
 }
@@ -263,8 +233,7 @@ function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: 
   const names = [chain[0]?.source ?? node.children[0]?.name ?? '', ...chain.map((t) => t.target)]
   const items = names.map((name) => {
     const child = sizes.get(name)
-    if (!child?.own)
-      return { id: outcomeId(node.path, name), width: pillWidth(name), height: PILL_HEIGHT, own: undefined, lift: 0 }
+    if (!child?.own) return { id: outcomeId(node.path, name), width: pillWidth(name), height: PILL_HEIGHT, own: undefined, lift: 0 }
     const { width, height } = child.own
     const lift = isSmall(child.own) ? entryOf(node, name, child.own) - height / 2 : 0
     // A row is in line where its arrows are, not in the middle of its nodes.
@@ -284,13 +253,7 @@ function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: 
     if (from && to && source) {
       content.routes.set(
         arrowId(node.path, arrow.source, arrow.outcome),
-        course(
-          from,
-          to,
-          portOf(node, source, arrow.outcome, from),
-          entryOf(node, names[index + 1] ?? '', to),
-          rows.boxes,
-        ),
+        course(from, to, portOf(node, source, arrow.outcome, from), entryOf(node, names[index + 1] ?? '', to), rows.boxes),
       )
     }
   })
@@ -314,12 +277,5 @@ function course(from: Box, to: Box, port: number, entry: number, boxes: Readonly
   const between = Math.max(...row.map((box) => box.y + box.height)) + 17
   const right = start.x + 14
   const left = end.x - 16
-  return [
-    start,
-    { x: right, y: start.y },
-    { x: right, y: between },
-    { x: left, y: between },
-    { x: left, y: end.y },
-    end,
-  ]
+  return [start, { x: right, y: start.y }, { x: right, y: between }, { x: left, y: between }, { x: left, y: end.y }, end]
 }

@@ -3,17 +3,19 @@ import { containersOfMarks, markingsOf, meaningful, wordsOfChange } from './chan
 import type { NodeChange } from '../../api/types'
 import { machineNode, node } from './testNodes'
 
-const changed = (path: string, change: NodeChange['change'], more = {}): NodeChange => ({ path, change, before_path: null, fields: [], ...more })
+const changed = (path: string, change: NodeChange['change'], more = {}): NodeChange => ({
+  path,
+  change,
+  before_path: null,
+  fields: [],
+  ...more,
+})
 
 test('a change is said in words', () => {
   expect(wordsOfChange(changed('root/box/grasp', 'added')).title).toBe('grasp added in box')
   expect(wordsOfChange(changed('root/grasp', 'removed')).title).toBe('grasp removed')
-  expect(wordsOfChange(changed('root/take', 'moved', { before_path: 'root/grasp' })).title).toBe(
-    'grasp renamed to take',
-  )
-  expect(wordsOfChange(changed('root/box/grasp', 'moved', { before_path: 'root/grasp' })).title).toBe(
-    'grasp moved into box',
-  )
+  expect(wordsOfChange(changed('root/take', 'moved', { before_path: 'root/grasp' })).title).toBe('grasp renamed to take')
+  expect(wordsOfChange(changed('root/box/grasp', 'moved', { before_path: 'root/grasp' })).title).toBe('grasp moved into box')
   const fields = [
     { field: 'with.speed', before: 1, after: 2 },
     { field: 'timeout', before: null, after: { after: 3 } },

@@ -16,9 +16,7 @@ export interface ChangeWords {
 /** Without what follows from other changes: a container's order counts only where what stays changed places. */
 export function meaningful(changes: readonly NodeChange[]): readonly NodeChange[] {
   return changes.flatMap((change) => {
-    const fields = change.fields.filter(
-      ({ field, before, after }) => !field.endsWith('.order') || isReordered(before, after),
-    )
+    const fields = change.fields.filter(({ field, before, after }) => !field.endsWith('.order') || isReordered(before, after))
     if (fields.length === 0 && change.fields.length > 0 && change.change === 'changed') return []
     return [{ ...change, fields }]
   })
@@ -32,11 +30,7 @@ function isReordered(before: unknown, after: unknown): boolean {
 
 export function wordsOfChange(change: NodeChange): ChangeWords {
   const isDocument = change.path === 'document'
-  const name = isDocument
-    ? 'The behavior'
-    : change.path === 'root'
-      ? 'The outermost container'
-      : nameOfPath(change.path)
+  const name = isDocument ? 'The behavior' : change.path === 'root' ? 'The outermost container' : nameOfPath(change.path)
   const around = parentPath(change.path)
   const place = isDocument || around === 'root' || around === '' ? '' : ` in ${nameOfPath(around)}`
   const lines = change.fields.map(({ field, before, after }) => fieldWords(field, before, after))
@@ -89,11 +83,7 @@ export interface Markings {
 }
 
 /** The marks of nodes and arrows in the older and in the newer drawing. */
-export function markingsOf(
-  changes: readonly NodeChange[],
-  before: EditNode | undefined,
-  after: EditNode | undefined,
-): Markings {
+export function markingsOf(changes: readonly NodeChange[], before: EditNode | undefined, after: EditNode | undefined): Markings {
   const older = new Map<string, Marking>()
   const newer = new Map<string, Marking>()
   for (const change of changes) {
@@ -114,9 +104,7 @@ export function markingsOf(
 function arrowsOf(root: EditNode | undefined): ReadonlyMap<string, string> {
   const machines = root ? allNodes(root).filter((node) => isMachine(node.kind)) : []
   return new Map(
-    machines.flatMap((machine) =>
-      machine.transitions.map((t) => [arrowId(machine.path, t.source, t.outcome), t.target] as const),
-    ),
+    machines.flatMap((machine) => machine.transitions.map((t) => [arrowId(machine.path, t.source, t.outcome), t.target] as const)),
   )
 }
 

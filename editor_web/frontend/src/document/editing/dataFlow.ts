@@ -60,7 +60,9 @@ export function drawnLinks(links: readonly FlowLink[], drawn: ReadonlySet<string
 }
 
 function nearestDrawn(drawn: ReadonlySet<string>, path: string): string | undefined {
-  return pathsTo(path).toReversed().find((each) => drawn.has(each))
+  return pathsTo(path)
+    .toReversed()
+    .find((each) => drawn.has(each))
 }
 
 /** What a node reads and writes. */
@@ -75,9 +77,7 @@ export interface NodeFlow {
 
 export function flowOfNode(flows: readonly KeyFlow[], path: string): NodeFlow {
   return {
-    reads: flows.flatMap((flow) =>
-      flow.readers.filter((reader) => reader.path === path).map((reader) => ({ key: flow.key, reader })),
-    ),
+    reads: flows.flatMap((flow) => flow.readers.filter((reader) => reader.path === path).map((reader) => ({ key: flow.key, reader }))),
     writes: flows.flatMap((flow) =>
       flow.writers
         .filter((writer) => writer.path === path)
@@ -118,12 +118,7 @@ export function kindOfKey(
   return [...kinds].join(' or ')
 }
 
-function schemaKind(
-  catalogue: CatalogueBody | undefined,
-  node: EditNode | undefined,
-  part: 'inputs' | 'outputs',
-  name: string,
-): string {
+function schemaKind(catalogue: CatalogueBody | undefined, node: EditNode | undefined, part: 'inputs' | 'outputs', name: string): string {
   const state = catalogue?.states.find((each) => each.name === node?.state)
   const type = state?.[part].find((key) => key.name === name)?.schema['type']
   return typeof type === 'string' ? (type === 'array' ? 'list' : type) : ''
@@ -162,9 +157,6 @@ function edgeTowards(box: Box, point: Point): Point {
   const middle = centre(box)
   const [dx, dy] = [point.x - middle.x, point.y - middle.y]
   if (dx === 0 && dy === 0) return middle
-  const share = Math.min(
-    dx === 0 ? Infinity : box.width / 2 / Math.abs(dx),
-    dy === 0 ? Infinity : box.height / 2 / Math.abs(dy),
-  )
+  const share = Math.min(dx === 0 ? Infinity : box.width / 2 / Math.abs(dx), dy === 0 ? Infinity : box.height / 2 / Math.abs(dy))
   return { x: middle.x + dx * share, y: middle.y + dy * share }
 }

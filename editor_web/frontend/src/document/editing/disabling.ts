@@ -11,9 +11,7 @@ export interface Disabling {
 
 /** Enable the nodes where all are disabled, else disable those that are not. */
 export function disabling(root: EditNode, paths: readonly string[]): Disabling {
-  const nodes = paths
-    .filter((path) => path !== ROOT && !isForeign(root, path))
-    .flatMap((path) => nodeOf(root, path) ?? [])
+  const nodes = paths.filter((path) => path !== ROOT && !isForeign(root, path)).flatMap((path) => nodeOf(root, path) ?? [])
   const isEnabling = nodes.length > 0 && nodes.every((node) => node.disabled !== false)
   if (nodes.length === 0) return { edits: [], isEnabling, obstacle: 'the behavior as a whole cannot be disabled' }
   if (isEnabling) return { edits: nodes.map((node) => setField(node.path, 'disabled', null)), isEnabling, obstacle: undefined }
@@ -21,8 +19,7 @@ export function disabling(root: EditNode, paths: readonly string[]): Disabling {
   for (const node of nodes) {
     if (node.disabled !== false) continue
     const value = passing(root, node)
-    if (value === undefined)
-      return { edits: [], isEnabling, obstacle: `${node.name} has no outcome with which it could be passed over` }
+    if (value === undefined) return { edits: [], isEnabling, obstacle: `${node.name} has no outcome with which it could be passed over` }
     edits.push(setField(node.path, 'disabled', value))
   }
   return { edits, isEnabling, obstacle: undefined }

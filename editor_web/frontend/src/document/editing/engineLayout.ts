@@ -48,11 +48,8 @@ export async function byEngine(
   const children: (ElkShape & { ports: Port[] })[] = node.children.map((child, index) => {
     const { width, height } = units[index] ?? empty()
     const outgoing = outgoingTransitions(node, child)
-    const outs = outgoing.map((each, row) =>
-      port(`${child.path}>${each.outcome}`, width, portY(height, outgoing.length, row), 'EAST'),
-    )
-    const first: Record<string, string> =
-      child.name === node.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
+    const outs = outgoing.map((each, row) => port(`${child.path}>${each.outcome}`, width, portY(height, outgoing.length, row), 'EAST'))
+    const first: Record<string, string> = child.name === node.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
     return {
       id: child.path,
       width,

@@ -33,9 +33,7 @@ function poseLines(value: Dict<unknown>): readonly EntryLine[] {
   const frame = value['frame']
   return [
     { label: 'place', words: `${xyz.map((each) => each.toFixed(3)).join(', ')} m` },
-    ...(turn.length === 4
-      ? [{ label: 'roll, pitch, yaw', words: `${rollPitchYaw(turn).map(degrees).join(', ')}°` }]
-      : []),
+    ...(turn.length === 4 ? [{ label: 'roll, pitch, yaw', words: `${rollPitchYaw(turn).map(degrees).join(', ')}°` }] : []),
     ...(typeof frame === 'string' && frame ? [{ label: 'frame', words: frame }] : []),
   ]
 }

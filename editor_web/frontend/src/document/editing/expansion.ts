@@ -23,18 +23,12 @@ export function expandedByDefault(scope: EditNode): ReadonlySet<string> {
 /** The branches of a tree that fills the canvas are always seen. */
 function onlyBranches(scope: EditNode): ReadonlySet<string> {
   const below = (node: EditNode): readonly string[] =>
-    node.children.flatMap((child) =>
-      isTreePart(child.kind) && child.kind !== 'tree' ? [child.path, ...below(child)] : [],
-    )
+    node.children.flatMap((child) => (isTreePart(child.kind) && child.kind !== 'tree' ? [child.path, ...below(child)] : []))
   return new Set(isTreePart(scope.kind) ? below(scope) : [])
 }
 
 /** Is the inside of `path` shown? What was opened or closed by hand stays so. */
-export function expansionOf(
-  scope: EditNode,
-  byHand: ReadonlyMap<string, boolean>,
-  opens = true,
-): (path: string) => boolean {
+export function expansionOf(scope: EditNode, byHand: ReadonlyMap<string, boolean>, opens = true): (path: string) => boolean {
   const byItself = opens ? expandedByDefault(scope) : onlyBranches(scope)
   return (path) => byHand.get(path) ?? byItself.has(path)
 }

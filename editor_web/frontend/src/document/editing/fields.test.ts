@@ -2,8 +2,7 @@
 import { expect, it } from 'vitest'
 import { editFieldOf, fieldProblem, fittingNames, limitsText, looseValue, typedValue } from './fields'
 
-const key = (schema: Record<string, unknown>, more = {}) =>
-  editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
+const key = (schema: Record<string, unknown>, more = {}) => editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
 
 it('knows numbers with limits and unit, also where none is allowed', () => {
   const field = key({
@@ -11,12 +10,12 @@ it('knows numbers with limits and unit, also where none is allowed', () => {
   })
   expect(field).toMatchObject({ kind: 'number', unit: 's', description: 'Travel time', isNullable: true, minimum: 0 })
   expect(limitsText(field)).toBe('> 0 s')
-  expect([
-    fieldProblem(field, 0),
-    fieldProblem(field, 1),
-    fieldProblem(field, '${t}'),
-    fieldProblem(field, null),
-  ]).toEqual(['Must be > 0 s', undefined, undefined, undefined])
+  expect([fieldProblem(field, 0), fieldProblem(field, 1), fieldProblem(field, '${t}'), fieldProblem(field, null)]).toEqual([
+    'Must be > 0 s',
+    undefined,
+    undefined,
+    undefined,
+  ])
 })
 
 it('knows vectors, choices, and targets that are named entries', () => {

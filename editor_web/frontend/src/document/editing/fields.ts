@@ -83,9 +83,7 @@ function resolved(schema: Schema, definitions: Schema): Resolved {
   if (reference) return resolved(record(lookup(definitions, reference)), definitions)
   const options = Array.isArray(schema['anyOf']) ? schema['anyOf'].map(record) : []
   if (options.length === 0) return { schema, isNullable: schema['type'] === 'null' }
-  const real = options
-    .filter((option) => option['type'] !== 'null')
-    .map((option) => resolved(option, definitions).schema)
+  const real = options.filter((option) => option['type'] !== 'null').map((option) => resolved(option, definitions).schema)
   const target = real.find((option) => 'entry' in record(option['properties']))
   const chosen = real.length === 1 ? real[0] : target
   return { schema: { ...chosen, ...withoutShape(schema) }, isNullable: real.length < options.length }

@@ -6,7 +6,19 @@ import { machineNode, node } from './testNodes'
 
 const a = node('root/a', ['done'], { line: 5, end_line: 7 })
 const b = node('root/b', ['done'], { line: 8, end_line: 9 })
-const root = { ...machineNode('root', 'a', [a, b], [['a', 'done', 'b'], ['b', 'done', 'good']]), line: 2, end_line: 9 }
+const root = {
+  ...machineNode(
+    'root',
+    'a',
+    [a, b],
+    [
+      ['a', 'done', 'b'],
+      ['b', 'done', 'good'],
+    ],
+  ),
+  line: 2,
+  end_line: 9,
+}
 
 function difference(more: Partial<GraphDifference>): GraphDifference {
   return { base: 'h', nodes: {}, children: {}, arrows: {}, shifts: [], lines: {}, ...more }
@@ -37,7 +49,11 @@ test('a new child comes with its lines and arrows, and moves what is below it', 
       shifts: [[8, 3]],
     }),
   )
-  expect(made?.children.map((child) => [child.name, child.line, child.end_line])).toEqual([['a', 5, 7], ['c', 8, 10], ['b', 11, 12]])
+  expect(made?.children.map((child) => [child.name, child.line, child.end_line])).toEqual([
+    ['a', 5, 7],
+    ['c', 8, 10],
+    ['b', 11, 12],
+  ])
   expect(made?.transitions.map((arrow) => `${arrow.source}>${arrow.target}`)).toEqual(['a>c', 'c>b', 'b>good'])
   expect(made?.end_line).toBe(12)
   expect(nodeOf(made, 'root/a')).toBe(a)

@@ -35,8 +35,7 @@ export function withDifference(root: EditNode, difference: GraphDifference): Edi
     const isPlace = was?.line === line && was.column === column && was.end_line === end_line
     if (own === was && isPlace && isReference) return was
     const arrows = lookup(difference.arrows, path)
-    const isInside =
-      was?.children.length === children.length && children.every((child, index) => child === was.children[index])
+    const isInside = was?.children.length === children.length && children.every((child, index) => child === was.children[index])
     if (own === was && isPlace && isInside && !arrows) return was
     const transitions = arrows || lookup(difference.children, path) ? transitionsOf(names, was, arrows) : (was?.transitions ?? [])
     return { ...own, line, column, end_line, children: isInside ? was.children : children, transitions }
@@ -51,11 +50,7 @@ function linesOf(path: string, was: EditNode | undefined, difference: GraphDiffe
 }
 
 /** The transitions between children, in the order of the children; those of before where nothing is said. */
-function transitionsOf(
-  names: readonly string[],
-  was: EditNode | undefined,
-  given: Dict<Transitions> | undefined,
-): Transitions {
+function transitionsOf(names: readonly string[], was: EditNode | undefined, given: Dict<Transitions> | undefined): Transitions {
   const before = new Map<string, Transitions>()
   for (const arrow of was?.transitions ?? []) before.set(arrow.source, [...(before.get(arrow.source) ?? []), arrow])
   return names.flatMap((name) => lookup(given, name) ?? before.get(name) ?? [])

@@ -3,7 +3,17 @@ import { expect, it } from 'vitest'
 import { canRedo, canUndo, newHistory, presentOf, pushed, redone, settled, undone } from './history'
 import type { Draft } from './model'
 
-const draft = (text: string): Draft => ({ text, root: undefined, hash: '', findings: [], isChecked: true, targets: [], areTargetsKnown: true, isStale: false, document: undefined })
+const draft = (text: string): Draft => ({
+  text,
+  root: undefined,
+  hash: '',
+  findings: [],
+  isChecked: true,
+  targets: [],
+  areTargetsKnown: true,
+  isStale: false,
+  document: undefined,
+})
 
 it('leads back through every text and forth again, to the very same ones', () => {
   let history = newHistory(draft('a'))

@@ -54,9 +54,7 @@ export function pillWidth(outcome: string): number {
 
 /** The rules of a concurrency container as a table: its head and a line for each. */
 export function tableHeight(node: EditNode): number {
-  return node.kind === 'concurrency'
-    ? (Math.max(1, node.rules.length + (node.otherwise ? 1 : 0)) + 1) * RULE_HEIGHT + 10
-    : 0
+  return node.kind === 'concurrency' ? (Math.max(1, node.rules.length + (node.otherwise ? 1 : 0)) + 1) * RULE_HEIGHT + 10 : 0
 }
 
 /** Where the port of the `index`-th outcome is, from the top of a node of this height with `count` of them. */

@@ -55,16 +55,7 @@ export function pathsTo(path: string): readonly string[] {
 }
 
 /** All other kinds are trees and their parts. */
-const OUTSIDE_TREES: ReadonlySet<string> = new Set([
-  '',
-  'state',
-  'machine',
-  'concurrency',
-  'priority',
-  'foreach',
-  'behavior',
-  'behaviour',
-])
+const OUTSIDE_TREES: ReadonlySet<string> = new Set(['', 'state', 'machine', 'concurrency', 'priority', 'foreach', 'behavior', 'behaviour'])
 const COMPOSITES: ReadonlySet<string> = new Set(['sequence', 'selector', 'parallel'])
 
 /** Parts whose children have roles, which say how many there may be. */
@@ -89,8 +80,7 @@ const HOLDERS: ReadonlySet<string> = new Set(['machine', 'priority', 'concurrenc
 
 /** Can its inside be shown, in place or by going into it? */
 export function isFrame(node: EditNode): boolean {
-  if (isMachine(node.kind) || node.kind === 'concurrency' || node.kind === 'tree' || node.kind === 'foreach')
-    return true
+  if (isMachine(node.kind) || node.kind === 'concurrency' || node.kind === 'tree' || node.kind === 'foreach') return true
   return !isTreePart(node.kind) && node.children.length > 0
 }
 
@@ -153,9 +143,7 @@ export function outgoingTransitions(parent: EditNode | undefined, node: EditNode
   const targets = new Map(own.map((t) => [t.outcome, t.target]))
   const outcomes = inOrder(node, own).map((outcome) => ({ outcome, target: targets.get(outcome), isOutcome: true }))
   const known = new Set(node.outcomes)
-  const others = own
-    .filter((t) => !known.has(t.outcome))
-    .map((t) => ({ outcome: t.outcome, target: t.target, isOutcome: false }))
+  const others = own.filter((t) => !known.has(t.outcome)).map((t) => ({ outcome: t.outcome, target: t.target, isOutcome: false }))
   return [...outcomes, ...others]
 }
 

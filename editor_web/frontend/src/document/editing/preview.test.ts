@@ -25,7 +25,13 @@ test('the arm is the one that the state moves', () => {
 
 test('a place is told in degrees and millimetres', () => {
   const half = Math.sqrt(0.5)
-  const there = { times_s: [0], joint_names: ['a', 'b'], joints: [[Math.PI / 2, -1e-9]], poses: [[0.5, -0.1, 0, 0, 0, half, half]], remark: '' }
+  const there = {
+    times_s: [0],
+    joint_names: ['a', 'b'],
+    joints: [[Math.PI / 2, -1e-9]],
+    poses: [[0.5, -0.1, 0, 0, 0, half, half]],
+    remark: '',
+  }
   expect(traceLines(there)).toEqual([
     { label: 'Joints', words: '90.0  0.0 °' },
     { label: 'Tool', words: '500.0  -100.0  0.0 mm' },
@@ -34,7 +40,11 @@ test('a place is told in degrees and millimetres', () => {
 })
 
 test('a motion is told by its time, the way of the tool and its end', () => {
-  const rows = [[0, 0, 0, 0, 0, 0, 1], [0.3, 0, 0, 0, 0, 0, 1], [0.3, 0.4, 0, 0, 0, 0, 1]]
+  const rows = [
+    [0, 0, 0, 0, 0, 0, 1],
+    [0.3, 0, 0, 0, 0, 0, 1],
+    [0.3, 0.4, 0, 0, 0, 0, 1],
+  ]
   const lines = traceLines({ times_s: [0, 1, 2.5], joint_names: [], joints: [], poses: rows, remark: 'out of reach' })
   expect(lines.map((line) => line.label)).toEqual(['Motion', 'Tool at the end', 'Roll, pitch, yaw'])
   expect(lines[0]?.words).toBe('2.50 s, 0.70 m of the tool')

@@ -49,19 +49,34 @@ export function traceLines(trace: Trace): readonly EntryLine[] {
   const joints = trace.joints.at(-1)
   const pose = trace.poses.at(-1)
   const lines: EntryLine[] = []
-  if (isMotion) lines.push({ label: 'Motion', words: `${duration(trace.times_s.at(-1) ?? 0)}, ${pathLength(trace).toFixed(2)} m of the tool` })
-  if (joints) lines.push({ label: isMotion ? 'Joints at the end' : 'Joints', words: `${joints.map((value) => tenths(degrees(value))).join('  ')} °` })
+  if (isMotion)
+    lines.push({ label: 'Motion', words: `${duration(trace.times_s.at(-1) ?? 0)}, ${pathLength(trace).toFixed(2)} m of the tool` })
+  if (joints)
+    lines.push({ label: isMotion ? 'Joints at the end' : 'Joints', words: `${joints.map((value) => tenths(degrees(value))).join('  ')} °` })
   if (pose) {
     lines.push(
-      { label: isMotion ? 'Tool at the end' : 'Tool', words: `${pose.slice(0, 3).map((value) => tenths(value * 1000)).join('  ')} mm` },
-      { label: 'Roll, pitch, yaw', words: `${rollPitchYaw(pose.slice(3)).map((value) => tenths(degrees(value))).join('  ')} °` },
+      {
+        label: isMotion ? 'Tool at the end' : 'Tool',
+        words: `${pose
+          .slice(0, 3)
+          .map((value) => tenths(value * 1000))
+          .join('  ')} mm`,
+      },
+      {
+        label: 'Roll, pitch, yaw',
+        words: `${rollPitchYaw(pose.slice(3))
+          .map((value) => tenths(degrees(value)))
+          .join('  ')} °`,
+      },
     )
   }
   return lines
 }
 
 function pathLength({ poses }: Trace): number {
-  return poses.slice(1).reduce((sum, pose, at) => sum + Math.hypot(...[0, 1, 2].map((axis) => (pose[axis] ?? 0) - (poses[at]?.[axis] ?? 0))), 0)
+  return poses
+    .slice(1)
+    .reduce((sum, pose, at) => sum + Math.hypot(...[0, 1, 2].map((axis) => (pose[axis] ?? 0) - (poses[at]?.[axis] ?? 0))), 0)
 }
 
 /** Without the minus of what is rounded to zero. */

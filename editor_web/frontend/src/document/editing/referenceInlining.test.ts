@@ -4,12 +4,7 @@ import { allNodes } from './model'
 import { nodeAtLine } from './textPositions'
 import { machineNode, node } from './testNodes'
 
-const INNER = machineNode(
-  'root',
-  'wait',
-  [node('root/wait', ['done'], { line: 8, end_line: 9 })],
-  [['wait', 'done', 'good']],
-)
+const INNER = machineNode('root', 'wait', [node('root/wait', ['done'], { line: 8, end_line: 9 })], [['wait', 'done', 'good']])
 const NAP = node('root/box/nap', ['good'], { kind: 'behavior', document: 'behaviors/nap.yaml', line: 4, end_line: 6 })
 const OUTER = machineNode('root', 'box', [machineNode('root/box', 'nap', [NAP], []), node('root/last', ['done'])], [])
 

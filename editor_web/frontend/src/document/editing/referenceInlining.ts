@@ -46,16 +46,11 @@ function relocated(body: EditNode, reference: EditNode): EditNode {
 }
 
 /** The reference around a node of another document, and where the node is there. */
-export function enclosingReference(
-  root: EditNode,
-  path: string,
-): { readonly reference: EditNode; readonly inner: string } | undefined {
+export function enclosingReference(root: EditNode, path: string): { readonly reference: EditNode; readonly inner: string } | undefined {
   let found: { reference: EditNode; inner: string } | undefined
   let node: EditNode | undefined = root
   while (node && node.path !== path) {
-    const next: EditNode | undefined = node.children.find(
-      (child) => path === child.path || path.startsWith(`${child.path}/`),
-    )
+    const next: EditNode | undefined = node.children.find((child) => path === child.path || path.startsWith(`${child.path}/`))
     if (node.kind === 'behavior') found = { reference: node, inner: path.slice(node.path.length + 1) }
     node = next
   }

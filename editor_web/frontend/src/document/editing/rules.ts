@@ -52,7 +52,12 @@ export function renamedOutcome(rules: readonly ConcurrencyCondition[], index: nu
 }
 
 /** Ask for an outcome of a child in one rule; empty asks for none. A rule asks for one child at least. */
-export function withChild(rules: readonly ConcurrencyCondition[], index: number, child: string, outcome: string): readonly ConcurrencyCondition[] {
+export function withChild(
+  rules: readonly ConcurrencyCondition[],
+  index: number,
+  child: string,
+  outcome: string,
+): readonly ConcurrencyCondition[] {
   return rules.map((rule, at) => {
     if (at !== index) return rule
     const when = outcome === '' ? withoutName(rule.when, child) : { ...rule.when, [child]: outcome }
@@ -75,9 +80,7 @@ export function added(
   rules: readonly ConcurrencyCondition[],
   children: readonly Pick<EditNode, 'name' | 'outcomes'>[],
 ): readonly ConcurrencyCondition[] {
-  const all = Object.fromEntries(
-    children.flatMap((child) => (child.outcomes[0] ? [[child.name, child.outcomes[0]]] : [])),
-  )
+  const all = Object.fromEntries(children.flatMap((child) => (child.outcomes[0] ? [[child.name, child.outcomes[0]]] : [])))
   const candidates: ConcurrencyCondition[] = [
     { outcome: 'finished', when: all, at_least: null, preempt: [] },
     ...children.flatMap((child) =>

@@ -68,10 +68,7 @@ function middle(a: readonly string[], b: readonly string[]): readonly LinePair[]
       pairs.push({ left: a[i], right: b[j], isSame: true })
       i += 1
       j += 1
-    } else if (
-      j >= b.length ||
-      (i < a.length && (longest[(i + 1) * width + j] ?? 0) >= (longest[i * width + j + 1] ?? 0))
-    ) {
+    } else if (j >= b.length || (i < a.length && (longest[(i + 1) * width + j] ?? 0) >= (longest[i * width + j + 1] ?? 0))) {
       removed.push(a[i] ?? '')
       i += 1
     } else {
@@ -93,9 +90,7 @@ function paired(a: readonly string[], b: readonly string[]): readonly LinePair[]
 
 /** Runs of equal lines longer than `context` on both sides are folded; `undefined` stands for a fold. */
 export function folded(pairs: readonly LinePair[], context = 3): readonly (LinePair | undefined)[] {
-  const near = pairs.map((_, index) =>
-    pairs.slice(Math.max(0, index - context), index + context + 1).some((pair) => !pair.isSame),
-  )
+  const near = pairs.map((_, index) => pairs.slice(Math.max(0, index - context), index + context + 1).some((pair) => !pair.isSame))
   const out: (LinePair | undefined)[] = []
   pairs.forEach((pair, index) => {
     if (near[index]) out.push(pair)

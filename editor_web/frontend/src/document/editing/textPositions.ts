@@ -5,10 +5,7 @@ import { allNodes, type EditNode } from './model'
 export function nodeAtLine(root: EditNode, line: number): EditNode | undefined {
   return allNodes(root)
     .filter((node) => node.line <= line && line <= node.end_line)
-    .reduce<EditNode | undefined>(
-      (best, node) => (!best || node.path.length >= best.path.length ? node : best),
-      undefined,
-    )
+    .reduce<EditNode | undefined>((best, node) => (!best || node.path.length >= best.path.length ? node : best), undefined)
 }
 
 /** What is being written at a place of the text: the key before the cursor and the words above it. */

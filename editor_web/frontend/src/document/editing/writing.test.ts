@@ -99,12 +99,7 @@ it('writes whom a rule preempts, and gives it an outcome again when it preempts 
 })
 
 it('finds the node of a line, and what is written at a place', () => {
-  const root = machineNode(
-    'root',
-    'a',
-    [node('root/a', [], { line: 4, end_line: 6 }), node('root/b', [], { line: 7, end_line: 8 })],
-    [],
-  )
+  const root = machineNode('root', 'a', [node('root/a', [], { line: 4, end_line: 6 }), node('root/b', [], { line: 7, end_line: 8 })], [])
   expect(nodeAtLine({ ...root, line: 1, end_line: 9 }, 7)?.path).toBe('root/b')
   const text = 'states:\n  a:\n    state: motion.MoveJoints\n    with:\n      ro'
   expect(writingAt(text, text.length)).toMatchObject({ key: '', word: 'ro', around: ['with', 'a', 'states'] })

@@ -116,7 +116,9 @@ it('calls a service from its form, and says what is missing before anything is s
 
 it('shows the course of a goal, and cancels it', async () => {
   const goal = streamed()
-  server().on('POST /bus/goals', () => goal.answer).on('POST /bus/goals/g1/cancel', {})
+  server()
+    .on('POST /bus/goals', () => goal.answer)
+    .on('POST /bus/goals/g1/cancel', {})
   const { user } = await at('Actions')
   await user.click(row(/^travel/))
   expect(screen.getByText(/This may move the robot/)).toBeVisible()

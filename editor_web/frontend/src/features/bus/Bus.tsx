@@ -65,7 +65,12 @@ export function Bus({ session }: BusProps) {
       {width === 0 ? null : width > 520 ? (
         <SegmentedControl size="xs" aria-label="Part of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value)} />
       ) : (
-        <select className="bus-kind" aria-label="Part of the bus" value={kind} onChange={(event) => setKind(event.currentTarget.value as BusKind)}>
+        <select
+          className="bus-kind"
+          aria-label="Part of the bus"
+          value={kind}
+          onChange={(event) => setKind(event.currentTarget.value as BusKind)}
+        >
           {KINDS.map((each) => (
             <option key={each.value} value={each.value}>
               {each.label}
@@ -128,7 +133,12 @@ export function Bus({ session }: BusProps) {
 
 function NoEntries({ kind, isFiltered }: { kind: BusKind; isFiltered: boolean }) {
   const icon = <IconPlugConnected size={26} stroke={1.4} aria-hidden />
-  if (isFiltered) return <Empty icon={icon} title="Nothing matches">Clear the search to see everything.</Empty>
+  if (isFiltered)
+    return (
+      <Empty icon={icon} title="Nothing matches">
+        Clear the search to see everything.
+      </Empty>
+    )
   return (
     <Empty icon={icon} title={`There are no ${kind}`}>
       The robots and modules of a cell bring them: serve one with <code>flexcell serve --cell FILE</code>.

@@ -71,5 +71,9 @@ const Row = memo(
     )
   },
   (before, after) =>
-    before.name === after.name && before.type === after.type && before.isChosen === after.isChosen && before.rate === after.rate && before.age === after.age,
+    before.name === after.name &&
+    before.type === after.type &&
+    before.isChosen === after.isChosen &&
+    before.rate === after.rate &&
+    before.age === after.age,
 )

@@ -44,7 +44,13 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
               {isAction ? 'Send goal' : 'Call'}
             </Button>
             {isActive && isAction && (
-              <Button size="xs" color="red" variant="outline" onClick={() => void cancel(facts.name)} leftSection={<IconPlayerStopFilled size={14} aria-hidden />}>
+              <Button
+                size="xs"
+                color="red"
+                variant="outline"
+                onClick={() => void cancel(facts.name)}
+                leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
+              >
                 Cancel goal
               </Button>
             )}
@@ -65,7 +71,9 @@ function CourseView({ course }: { course: RequestProgress }) {
         {course.cause && `: ${course.cause}`}
       </p>
       {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Progress" />}
-      {course.feedback !== null && course.feedback !== undefined && !isOver(course) && <ValueTree label="Feedback" value={course.feedback} />}
+      {course.feedback !== null && course.feedback !== undefined && !isOver(course) && (
+        <ValueTree label="Feedback" value={course.feedback} />
+      )}
       {course.answer !== null && course.answer !== undefined && <ValueTree label="Answer" value={course.answer} />}
     </div>
   )

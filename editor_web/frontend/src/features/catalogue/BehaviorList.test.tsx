@@ -5,7 +5,14 @@ import { live, run, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { BehaviorList } from './BehaviorList'
 
-const SHIFT = { id: 'behaviors/day/shift.yaml', name: 'shift', description: 'moves cups', errors: 0, warnings: 2, fit: { cell: '', obstacle: '' } }
+const SHIFT = {
+  id: 'behaviors/day/shift.yaml',
+  name: 'shift',
+  description: 'moves cups',
+  errors: 0,
+  warnings: 2,
+  fit: { cell: '', obstacle: '' },
+}
 const NAP = { id: 'behaviors/nap.yaml', name: 'nap', description: '', errors: 1, warnings: 0, fit: { cell: 'home', obstacle: '' } }
 const opened = vi.fn()
 const made = vi.fn()
@@ -13,7 +20,15 @@ const made = vi.fn()
 const BOTH = [SHIFT, NAP]
 
 function List({ mayMake = true, behaviors = BOTH }: { readonly mayMake?: boolean; readonly behaviors?: readonly (typeof NAP)[] }) {
-  return <BehaviorList behaviors={behaviors} current={NAP.id} href={(id) => `/behaviors/${id}`} onOpen={opened} onMade={mayMake ? made : undefined} />
+  return (
+    <BehaviorList
+      behaviors={behaviors}
+      current={NAP.id}
+      href={(id) => `/behaviors/${id}`}
+      onOpen={opened}
+      onMade={mayMake ? made : undefined}
+    />
+  )
 }
 
 it('lists them with folder, problems, and whether they run', async () => {

@@ -66,12 +66,7 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
     >
       <label>
         Name
-        <input
-          className="new-input"
-          ref={first}
-          value={name}
-          onChange={(event) => setName(event.currentTarget.value)}
-        />
+        <input className="new-input" ref={first} value={name} onChange={(event) => setName(event.currentTarget.value)} />
       </label>
       <label>
         Folder, if any

@@ -18,7 +18,10 @@ export function FirstDivergence({ divergence, onShow }: FirstDivergenceProps) {
       </div>
     )
   }
-  const times = [divergence.left_s !== null && `left at ${divergence.left_s.toFixed(2)} s`, divergence.right_s !== null && `right at ${divergence.right_s.toFixed(2)} s`]
+  const times = [
+    divergence.left_s !== null && `left at ${divergence.left_s.toFixed(2)} s`,
+    divergence.right_s !== null && `right at ${divergence.right_s.toFixed(2)} s`,
+  ]
   return (
     <div className={styles.divergence} role="status">
       <IconGitFork size={18} aria-hidden />

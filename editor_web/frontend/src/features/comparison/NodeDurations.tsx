@@ -13,7 +13,12 @@ export function NodeDurations({ nodes }: { readonly nodes: readonly NodeDifferen
   return (
     <>
       <div className={styles.details}>
-        <Checkbox size="xs" label="Largest difference first" checked={isByDifference} onChange={(event) => setByDifference(event.currentTarget.checked)} />
+        <Checkbox
+          size="xs"
+          label="Largest difference first"
+          checked={isByDifference}
+          onChange={(event) => setByDifference(event.currentTarget.checked)}
+        />
       </div>
       <table className={styles.table}>
         <thead>
@@ -37,7 +42,9 @@ export function NodeDurations({ nodes }: { readonly nodes: readonly NodeDifferen
           {rows.map((each) => (
             <tr key={each.path}>
               <th scope="row">{each.path}</th>
-              <td className={styles.number}>{each.visits_left === each.visits_right ? each.visits_left : `${each.visits_left} → ${each.visits_right}`}</td>
+              <td className={styles.number}>
+                {each.visits_left === each.visits_right ? each.visits_left : `${each.visits_left} → ${each.visits_right}`}
+              </td>
               <td className={styles.number}>{each.visits_left > 0 ? duration(each.duration_left_s) : ''}</td>
               <td className={styles.number}>{each.visits_right > 0 ? duration(each.duration_right_s) : ''}</td>
               <td className={styles.number}>{signed(change(each))}</td>

@@ -12,7 +12,11 @@ export function Settings({ settings, documents }: SettingsProps) {
   return (
     <div className={styles.details}>
       <h3>Parameters, inputs, seed, clock</h3>
-      {settings.length === 0 ? <p className="quiet">Both runs were started with the same.</p> : <DifferenceTable rows={settings} name="Setting" />}
+      {settings.length === 0 ? (
+        <p className="quiet">Both runs were started with the same.</p>
+      ) : (
+        <DifferenceTable rows={settings} name="Setting" />
+      )}
       <h3>Documents</h3>
       {documents.length === 0 && <p className="quiet">Both runs executed the same version.</p>}
       {documents.map((document) => (

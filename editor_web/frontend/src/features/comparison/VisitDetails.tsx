@@ -21,7 +21,11 @@ export function VisitDetails({ visit, data, href, onOpen }: VisitDetailsProps) {
       <OfRun side="left" visit={visit.left} href={href} onOpen={onOpen} />
       <OfRun side="right" visit={visit.right} href={href} onOpen={onOpen} />
       <h3>Values that differ</h3>
-      {data.length === 0 ? <p className="quiet">It read and wrote the same values.</p> : <DifferenceTable rows={data.map((each) => ({ ...each, at: `${each.kind} ${each.at}` }))} name="Value" />}
+      {data.length === 0 ? (
+        <p className="quiet">It read and wrote the same values.</p>
+      ) : (
+        <DifferenceTable rows={data.map((each) => ({ ...each, at: `${each.kind} ${each.at}` }))} name="Value" />
+      )}
     </div>
   )
 }
@@ -43,7 +47,8 @@ function OfRun({ side, visit, href, onOpen }: OfRunProps) {
   const target = href(side, visit.end_s ?? visit.start_s, visit.path)
   return (
     <div className={styles.ofRun}>
-      <span className={styles.side}>{name}</span> {endWords(visit)}, from {duration(visit.start_s)} {visit.end_s !== null && `to ${duration(visit.end_s)} `}
+      <span className={styles.side}>{name}</span> {endWords(visit)}, from {duration(visit.start_s)}{' '}
+      {visit.end_s !== null && `to ${duration(visit.end_s)} `}
       <PageLink href={target} onOpen={() => onOpen(target)}>
         Open the {side} run there
       </PageLink>

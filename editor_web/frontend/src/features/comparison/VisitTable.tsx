@@ -67,7 +67,15 @@ export function VisitTable({ visits, leftOut, selected, onSelect }: VisitTablePr
   )
 }
 
-function Row({ visit, isSelected, onSelect }: { readonly visit: AlignedVisit; readonly isSelected: boolean; readonly onSelect: () => void }) {
+function Row({
+  visit,
+  isSelected,
+  onSelect,
+}: {
+  readonly visit: AlignedVisit
+  readonly isSelected: boolean
+  readonly onSelect: () => void
+}) {
   const row = useRef<HTMLTableRowElement>(null)
   useEffect(() => {
     if (isSelected) row.current?.scrollIntoView({ block: 'nearest' })

@@ -72,7 +72,17 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
         onChange={(event) => setCondition(event.currentTarget.value)}
         onBlur={keep}
       />
-      <NumberInput size="xs" label="From time" min={1} allowDecimal={false} w={84} value={hits} disabled={isOff} onChange={setHits} onBlur={keep} />
+      <NumberInput
+        size="xs"
+        label="From time"
+        min={1}
+        allowDecimal={false}
+        w={84}
+        value={hits}
+        disabled={isOff}
+        onChange={setHits}
+        onBlur={keep}
+      />
       <button type="submit" className="visually-hidden" tabIndex={-1}>
         Keep
       </button>

@@ -14,8 +14,8 @@ export function ChangeReport({ commands }: { commands: Commands }) {
         ))}
       </ul>
       <p className="quiet">
-        Nodes that are active keep the parameters they were entered with. Transitions, conditions and autonomy are those of
-        the file at once.
+        Nodes that are active keep the parameters they were entered with. Transitions, conditions and autonomy are those of the file at
+        once.
       </p>
       {/* oxlint-disable-next-line jsx-a11y/no-autofocus -- the only control of a modal dialog */}
       <Button onClick={forgetReport} autoFocus>

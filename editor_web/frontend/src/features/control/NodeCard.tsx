@@ -51,7 +51,13 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
       <h3>Force</h3>
       <div className="command-row" id={FORCE_ID} role="group" aria-label="Force an outcome">
         {node.outcomes.map((outcome) => (
-          <CommandButton key={outcome} {...forced} label={outcome} hint={`End it with ${outcome}; what runs in it is preempted and cleans up first`} onPress={() => void commands.force(node.path, outcome)} />
+          <CommandButton
+            key={outcome}
+            {...forced}
+            label={outcome}
+            hint={`End it with ${outcome}; what runs in it is preempted and cleans up first`}
+            onPress={() => void commands.force(node.path, outcome)}
+          />
         ))}
       </div>
       <h3>Repeat</h3>
@@ -83,14 +89,27 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
   if (isLocked) {
     return (
       <div className="command-row">
-        <CommandButton {...common} label="Unlock" icon={<IconLockOpen size={16} aria-hidden />} onPress={() => void commands.unlock(path)} />
+        <CommandButton
+          {...common}
+          label="Unlock"
+          icon={<IconLockOpen size={16} aria-hidden />}
+          onPress={() => void commands.unlock(path)}
+        />
         <span className="quiet">{given ? `Locked: ${given}` : 'Locked without a reason given'}</span>
       </div>
     )
   }
   return (
     <div className="command-row">
-      <TextInput size="xs" aria-label="Reason of the lock" placeholder="Reason" maxLength={200} value={reason} onChange={(event) => setReason(event.currentTarget.value)} className="grow" />
+      <TextInput
+        size="xs"
+        aria-label="Reason of the lock"
+        placeholder="Reason"
+        maxLength={200}
+        value={reason}
+        onChange={(event) => setReason(event.currentTarget.value)}
+        className="grow"
+      />
       <CommandButton
         {...common}
         label="Lock"

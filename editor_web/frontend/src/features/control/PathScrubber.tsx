@@ -12,7 +12,9 @@ export function PathScrubber() {
   const robots = useLive((s) => s.robots)
   const nodes = useLive((s) => s.nodes)
   if (asked === undefined) return null
-  const arms = plansOf(nodes, asked).map((plan) => plan.robot).filter((robot) => isProposed(lookup(robots, robot)))
+  const arms = plansOf(nodes, asked)
+    .map((plan) => plan.robot)
+    .filter((robot) => isProposed(lookup(robots, robot)))
   return (
     <div className={classes.scrubber}>
       {arms.map((robot) => (

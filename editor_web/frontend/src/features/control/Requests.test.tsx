@@ -63,5 +63,8 @@ it('says what way an answer is about, and whether the 3D view shows it', () => {
 it('lets a viewer read the question, and answer nothing', () => {
   live(asking('root/left'), 'viewer')
   show(<Asked />)
-  expect(screen.getByRole('button', { name: 'Agree: a' })).toHaveAttribute('title', 'Not possible: you may look only; log in with the operator token')
+  expect(screen.getByRole('button', { name: 'Agree: a' })).toHaveAttribute(
+    'title',
+    'Not possible: you may look only; log in with the operator token',
+  )
 })

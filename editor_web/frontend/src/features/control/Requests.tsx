@@ -29,7 +29,13 @@ export function Requests({ root, commands, onShow, of }: RequestsProps) {
         <section className="requests" id={of ? undefined : REQUESTS_ID} aria-label={of ? `${of} asks` : 'The run asks'}>
           <ul className="plain-list">
             {requests.map((each) => (
-              <Request key={each.path} request={each} outcomes={(root && nodeAt(root, each.path)?.outcomes) ?? []} commands={commands} onShow={onShow} />
+              <Request
+                key={each.path}
+                request={each}
+                outcomes={(root && nodeAt(root, each.path)?.outcomes) ?? []}
+                commands={commands}
+                onShow={onShow}
+              />
             ))}
           </ul>
         </section>
@@ -65,7 +71,13 @@ function Request({ request, outcomes, commands, onShow }: RequestProps) {
       <span className="request-answers">
         <CommandButton {...common} label={`Agree: ${outcome}`} tone="strong" onPress={() => void commands.answer(path)} />
         {others.map((each) => (
-          <CommandButton key={each} {...common} label={`Force outcome: ${each}`} hint={`End it with ${each}`} onPress={() => void commands.force(path, each)} />
+          <CommandButton
+            key={each}
+            {...common}
+            label={`Force outcome: ${each}`}
+            hint={`End it with ${each}`}
+            onPress={() => void commands.force(path, each)}
+          />
         ))}
         <CommandButton {...common} label="Run again" hint="Run the node again from its start" onPress={() => void commands.repeat(path)} />
       </span>
@@ -81,7 +93,8 @@ function Planned({ path }: { path: string }) {
     <span key={plan.robot} className="request-plan" title={planWords(plan)}>
       <IconRoute size={15} aria-hidden />
       <span>
-        <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}
+        <strong>{plan.robot}</strong>: {planWords(plan)};{' '}
+        {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}
       </span>
     </span>
   ))

@@ -143,7 +143,11 @@ it.each([
   const user = show(<Bar of={RUN} />)
   await user.click(button(name))
   const report = await screen.findByRole('dialog')
-  expect(within(report).getAllByRole('listitem').map((each) => each.textContent)).toEqual(['root/put is added', 'root/set is removed'])
+  expect(
+    within(report)
+      .getAllByRole('listitem')
+      .map((each) => each.textContent),
+  ).toEqual(['root/put is added', 'root/set is removed'])
   expect(server().bodies('POST /runs/r1/control/change')).toEqual([{ preempt }])
   await user.click(button('Understood'))
   expect(screen.queryByRole('dialog')).toBeNull()

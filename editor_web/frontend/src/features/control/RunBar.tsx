@@ -53,10 +53,34 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           isCompact={false}
           onPress={commands.pauseOrResume}
         />
-        <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut={key('i')} onPress={() => commands.step('into')} />
-        <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut={key('o')} onPress={() => commands.step('over')} />
-        <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut={key('u')} onPress={() => commands.step('out')} />
-        <CommandButton {...bar('back', 'Step back')} hint="Undo the last started node, and return to before its entry" icon={<IconArrowBackUp size={16} aria-hidden />} shortcut={key('z')} onPress={commands.stepBack} />
+        <CommandButton
+          {...bar('step', 'Step into')}
+          hint="Go on to the entry of the next node"
+          icon={<IconArrowBarDown size={16} aria-hidden />}
+          shortcut={key('i')}
+          onPress={() => commands.step('into')}
+        />
+        <CommandButton
+          {...bar('step', 'Step over')}
+          hint="Go on past everything inside this node"
+          icon={<IconArrowRampRight size={16} aria-hidden />}
+          shortcut={key('o')}
+          onPress={() => commands.step('over')}
+        />
+        <CommandButton
+          {...bar('step', 'Step out')}
+          hint="Go on until the container around it has its outcome"
+          icon={<IconArrowBarUp size={16} aria-hidden />}
+          shortcut={key('u')}
+          onPress={() => commands.step('out')}
+        />
+        <CommandButton
+          {...bar('back', 'Step back')}
+          hint="Undo the last started node, and return to before its entry"
+          icon={<IconArrowBackUp size={16} aria-hidden />}
+          shortcut={key('z')}
+          onPress={commands.stepBack}
+        />
         <span className="run-bar-gap" />
         <CommitSlider
           label="Autonomy"
@@ -88,7 +112,17 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           icon={<IconRefreshAlert size={16} aria-hidden />}
           onPress={() => commands.change(true)}
         />
-        {onSheet && <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />}
+        {onSheet && (
+          <CommandButton
+            label="Keys"
+            hint="All keyboard shortcuts"
+            icon={<IconKeyboard size={16} aria-hidden />}
+            shortcut="?"
+            tone="quiet"
+            isCompact
+            onPress={onSheet}
+          />
+        )}
       </div>
     </section>
   )

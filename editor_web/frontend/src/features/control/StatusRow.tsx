@@ -50,7 +50,13 @@ export function StatusRow({ run, root, commands, onShow, onFailure, notices, of 
         <div className={asks ? `${classes.question} ${classes.asks}` : classes.question}>
           <Requests root={root} commands={commands} onShow={onShow} of={of} />
           {hasFailed && onFailure && (
-            <Button variant="light" color="red" size="compact-sm" leftSection={<IconZoomExclamation size={15} aria-hidden />} onClick={onFailure}>
+            <Button
+              variant="light"
+              color="red"
+              size="compact-sm"
+              leftSection={<IconZoomExclamation size={15} aria-hidden />}
+              onClick={onFailure}
+            >
               Show failure
             </Button>
           )}

@@ -69,8 +69,7 @@ export function useCommands(run: RunView | undefined, node: string | undefined, 
         if (why) showRefusal(of('Take control'), why)
         else operate(useLive.getState().operated === id ? '' : id)
       },
-      change: (preempt) =>
-        attempt('change', 'Apply the current file', async () => setReport((await api.change(id, { preempt })).changes)),
+      change: (preempt) => attempt('change', 'Apply the current file', async () => setReport((await api.change(id, { preempt })).changes)),
       lock: (path, reason) => sendOf('Lock', () => api.lock(id, path, reason)),
       unlock: (path) => sendOf('Unlock', () => api.unlock(id, path)),
       force: (path, outcome) => sendOf(`Force ${outcome}`, () => api.force(id, path, outcome)),

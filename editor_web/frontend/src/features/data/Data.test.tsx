@@ -29,7 +29,9 @@ function told(scopes = SCOPES, problem = '') {
 }
 
 function line(name: string): HTMLElement {
-  const found = within(screen.getByRole('region', { name: 'Behavior' })).getAllByRole('listitem').find((each) => each.textContent?.startsWith(name))
+  const found = within(screen.getByRole('region', { name: 'Behavior' }))
+    .getAllByRole('listitem')
+    .find((each) => each.textContent?.startsWith(name))
   if (!found) throw new Error(`there is no line ${name}`)
   return found
 }

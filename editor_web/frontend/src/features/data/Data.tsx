@@ -58,7 +58,12 @@ export function Data({ run, onShow }: DataProps) {
     if (!current) return <div className="page-wait" role="status" aria-label="Loading" />
     if (current.problem) return <NoData title="The data cannot be shown">{current.problem}</NoData>
     if (scopes.length === 0 && search) return <NoData title="Nothing matches">Clear the search to see everything.</NoData>
-    if (scopes.length === 0) return <NoData title="This behavior shares no data">States share values that stand under <code>userdata</code> of the behavior or a container.</NoData>
+    if (scopes.length === 0)
+      return (
+        <NoData title="This behavior shares no data">
+          States share values that stand under <code>userdata</code> of the behavior or a container.
+        </NoData>
+      )
     return (
       <div className="data-scroll" tabIndex={0} role="region" aria-label="Userdata">
         {scopes.map((scope) => (
@@ -108,7 +113,11 @@ const Line = memo(
       <li className="data-line">
         <span className="data-key mono">{name}</span>
         <span className="data-value" key={line.writes} data-written={line.writes > 0 || undefined}>
-          {isShort(line.value) ? <span className="mono">{inShort(line.value)}</span> : <ValueTree label={`Value of ${name}`} value={line.value} open={0} />}
+          {isShort(line.value) ? (
+            <span className="mono">{inShort(line.value)}</span>
+          ) : (
+            <ValueTree label={`Value of ${name}`} value={line.value} open={0} />
+          )}
         </span>
         <span className="data-by">
           {line.by ? (

@@ -34,7 +34,9 @@ function wanted(): DemonstrationBody | undefined {
 }
 
 function names(): (string | null)[] {
-  return within(screen.getByRole('region', { name: 'Steps' })).queryAllByRole('listitem').map((each) => each.getAttribute('aria-label'))
+  return within(screen.getByRole('region', { name: 'Steps' }))
+    .queryAllByRole('listitem')
+    .map((each) => each.getAttribute('aria-label'))
 }
 
 beforeEach(() => {
@@ -53,11 +55,11 @@ it('offers what was taught, and says what its steps will do', async () => {
   expect(screen.queryByRole('button', { name: /note/ })).toBeNull()
   expect(names()).toEqual(['Step 1: above', 'Step 2: tray', 'Step 3: Close gripper'])
   const words = await screen.findByText('goes to close')
-  expect(within(screen.getByRole('region', { name: 'Resulting steps' })).getAllByRole('listitem').map((each) => each.textContent)).toEqual([
-    'goes to above',
-    'goes to tray',
-    words.textContent,
-  ])
+  expect(
+    within(screen.getByRole('region', { name: 'Resulting steps' }))
+      .getAllByRole('listitem')
+      .map((each) => each.textContent),
+  ).toEqual(['goes to above', 'goes to tray', words.textContent])
   expect(screen.getByText('nothing says where it begins')).toBeVisible()
   expect(screen.getByLabelText('What tray is for')).toHaveValue('grasp')
 })
@@ -73,7 +75,12 @@ it('changes the order, takes steps away, and says what a step is for', async () 
   expect(step(/tray/).getByRole('button', { name: 'Earlier' })).toBeDisabled()
   await user.click(step(/sweep/).getByRole('button', { name: 'Remove' }))
   await user.selectOptions(await screen.findByLabelText('What above is for'), 'depart')
-  await waitFor(() => expect(wanted()?.steps).toEqual([{ kind: 'pose', name: 'tray' }, { kind: 'joints', name: 'above', role: 'depart' }]))
+  await waitFor(() =>
+    expect(wanted()?.steps).toEqual([
+      { kind: 'pose', name: 'tray' },
+      { kind: 'joints', name: 'above', role: 'depart' },
+    ]),
+  )
   await user.selectOptions(await screen.findByLabelText('Grasped part'), 'cup')
   await waitFor(() => expect(wanted()?.steps[0]).toEqual({ kind: 'pose', name: 'tray', part: 'cup' }))
 })
@@ -99,7 +106,11 @@ it('is made under a name, in the arm that is chosen', async () => {
   await screen.findByText('goes to above')
   await user.click(screen.getByRole('button', { name: 'Create and open' }))
   await waitFor(() => expect(made.mock.calls).toEqual([['behaviors/taught_transfer.yaml']]))
-  expect(wanted()).toMatchObject({ id: 'behaviors/taught_transfer.yaml', options: { arm: 'right' }, steps: [{ kind: 'joints', name: 'above' }] })
+  expect(wanted()).toMatchObject({
+    id: 'behaviors/taught_transfer.yaml',
+    options: { arm: 'right' },
+    steps: [{ kind: 'joints', name: 'above' }],
+  })
 })
 
 it('says why there is no proposal', async () => {

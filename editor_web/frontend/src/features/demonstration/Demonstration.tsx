@@ -48,12 +48,7 @@ export function Demonstration({ onMade, initial = NO_STEPS }: DemonstrationProps
     <div className="demonstration">
       <div className="demonstration-columns">
         <EntryChoice entries={entries} onAdd={(kind, name) => setSteps(added(steps, kind, name))} />
-        <StepList
-          steps={steps}
-          decided={proposed.proposal?.steps ?? []}
-          parts={proposed.proposal?.parts ?? []}
-          onChange={setSteps}
-        />
+        <StepList steps={steps} decided={proposed.proposal?.steps ?? []} parts={proposed.proposal?.parts ?? []} onChange={setSteps} />
         <div className="proposal">
           <OptionFields options={options} arms={proposed.proposal?.arms ?? []} arm={proposed.proposal?.arm} onChange={setOptions} />
           <Preview proposed={proposed} />
@@ -88,15 +83,27 @@ function OptionFields({ options, arms, arm, onChange }: OptionFieldsProps) {
         </select>
       </label>
       <NumberField
-        label="Speed" unit="of limits" value={options.speed} least={0.01} most={1}
+        label="Speed"
+        unit="of limits"
+        value={options.speed}
+        least={0.01}
+        most={1}
         onChange={(speed) => onChange({ ...options, speed: speed ?? 0.3 })}
       />
       <NumberField
-        label="Approach" unit="m" value={options.approach_m} least={0.001} most={0.5}
+        label="Approach"
+        unit="m"
+        value={options.approach_m}
+        least={0.001}
+        most={0.5}
         onChange={(approach) => onChange({ ...options, approach_m: approach ?? 0.1 })}
       />
       <NumberField
-        label="Part width" unit="m" value={options.width_m} least={0} most={1}
+        label="Part width"
+        unit="m"
+        value={options.width_m}
+        least={0}
+        most={1}
         onChange={(width) => onChange({ ...options, width_m: width ?? null })}
       />
     </div>

@@ -51,9 +51,7 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
         ))}
       </ul>
       {entries && fitting.length === 0 && (
-        <p className="quiet">
-          {all.length === 0 ? 'Nothing has been taught yet: save poses and motions first.' : 'No entry fits.'}
-        </p>
+        <p className="quiet">{all.length === 0 ? 'Nothing has been taught yet: save poses and motions first.' : 'No entry fits.'}</p>
       )}
     </section>
   )
@@ -61,10 +59,6 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
 
 export function KindIcon({ kind }: { kind: Kind }) {
   const Icon =
-    kind === 'joints' || kind === 'pose'
-      ? IconMapPin
-      : kind === 'gripper' || kind === 'action'
-        ? IconArrowsHorizontal
-        : IconRoute
+    kind === 'joints' || kind === 'pose' ? IconMapPin : kind === 'gripper' || kind === 'action' ? IconArrowsHorizontal : IconRoute
   return <Icon size={15} aria-hidden className="taught-icon" />
 }

@@ -45,11 +45,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
                 </StepButton>
               </span>
               {known && takes(known, decided[index - 1]) && (
-                <PartChoice
-                  part={step.part ?? known.part ?? ''}
-                  parts={parts}
-                  onChange={(part) => changed(step.key, { part })}
-                />
+                <PartChoice part={step.part ?? known.part ?? ''} parts={parts} onChange={(part) => changed(step.key, { part })} />
               )}
             </li>
           )
@@ -99,12 +95,7 @@ function PartChoice({ part, parts, onChange }: PartChoiceProps) {
   return (
     <label className="chosen-part">
       takes
-      <select
-        className="chosen-select"
-        aria-label="Grasped part"
-        value={part}
-        onChange={(event) => onChange(event.currentTarget.value)}
-      >
+      <select className="chosen-select" aria-label="Grasped part" value={part} onChange={(event) => onChange(event.currentTarget.value)}>
         <option value="">a part without a name</option>
         {[...new Set([...parts, ...(part ? [part] : [])])].map((name) => (
           <option key={name} value={name}>

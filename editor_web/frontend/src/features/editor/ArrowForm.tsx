@@ -7,9 +7,7 @@ import { rootOf, useEditor } from './store'
 
 export function ArrowForm({ arrow }: { arrow: string }) {
   const [machine = '', source = '', outcome = ''] = arrow.split('|')
-  const target = useEditor(
-    (s) => nodeOf(rootOf(s), machine)?.transitions.find((t) => t.source === source && t.outcome === outcome)?.target,
-  )
+  const target = useEditor((s) => nodeOf(rootOf(s), machine)?.transitions.find((t) => t.source === source && t.outcome === outcome)?.target)
   return (
     <div className="node-form">
       <header className="form-head">

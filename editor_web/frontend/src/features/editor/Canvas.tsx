@@ -62,9 +62,7 @@ export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: bo
     <div className="edit-canvas" ref={ref} aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
-      {arranged && (
-        <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />
-      )}
+      {arranged && <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />}
     </div>
   )
 }
@@ -79,10 +77,7 @@ interface DrawnProps {
 }
 
 function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
-  const { fitView, getViewport, setViewport, screenToFlowPosition, getInternalNode, getZoom } = useReactFlow<
-    CanvasNode,
-    CanvasEdge
-  >()
+  const { fitView, getViewport, setViewport, screenToFlowPosition, getInternalNode, getZoom } = useReactFlow<CanvasNode, CanvasEdge>()
   const selection = useEditor((s) => s.selection)
   const arrow = useEditor((s) => s.arrow)
   const shown = useEditor((s) => s.shown)
@@ -142,21 +137,14 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     if (!shown || handled.current === shown) return
     const { scope } = editor()
     const isCurrent = arranged.root === rootOf(editor()) && arranged.view === scope
-    if (
-      isCurrent &&
-      shown.path !== scope &&
-      nodeOf(arranged.root, shown.path) &&
-      !computed.some((node) => node.id === shown.path)
-    ) {
+    if (isCurrent && shown.path !== scope && nodeOf(arranged.root, shown.path) && !computed.some((node) => node.id === shown.path)) {
       // It is inside a container that is closed here: go there.
       setEditor({ scope: parentPath(shown.path) })
       return
     }
     if (given !== arranged) return
     return trackMotionNextFrame(() => {
-      const target = element.current?.querySelector<HTMLElement>(
-        `.react-flow__node[data-id="${CSS.escape(shown.path)}"]`,
-      )
+      const target = element.current?.querySelector<HTMLElement>(`.react-flow__node[data-id="${CSS.escape(shown.path)}"]`)
       if (!target) {
         // Of many, only those in view are drawn: go there first.
         if (!computed.some((node) => node.id === shown.path)) return undefined
@@ -166,16 +154,8 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       const around = element.current?.getBoundingClientRect()
       const own = target.getBoundingClientRect()
       const isInView =
-        around &&
-        own.left >= around.left &&
-        own.right <= around.right &&
-        own.top >= around.top &&
-        own.bottom <= around.bottom
-      if (
-        !document.activeElement ||
-        document.activeElement === document.body ||
-        element.current?.contains(document.activeElement)
-      )
+        around && own.left >= around.left && own.right <= around.right && own.top >= around.top && own.bottom <= around.bottom
+      if (!document.activeElement || document.activeElement === document.body || element.current?.contains(document.activeElement))
         target.focus({ preventScroll: true })
       if (isInView && getZoom() >= 0.4) return undefined
       return fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1, duration: 200 })
@@ -223,9 +203,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     if (free.length < changed.length) setNodes([...computed])
   })
 
-  const onSelectionDragStop = useCallbackRef((event: unknown, moved: CanvasNode[]) =>
-    onDragStop(event, moved[0] as CanvasNode, moved),
-  )
+  const onSelectionDragStop = useCallbackRef((event: unknown, moved: CanvasNode[]) => onDragStop(event, moved[0] as CanvasNode, moved))
   const onConnectStart = useCallbackRef(() => setConnecting(true))
   const onMoveStart = useCallbackRef((event: unknown) => {
     if (event) isFitted.current = false
@@ -276,12 +254,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     const point = 'changedTouches' in event ? event.changedTouches[0] : event
     if (!point) return
     const screen = { x: point.clientX, y: point.clientY }
-    openPortPalette(
-      state.fromNode.id,
-      state.fromHandle.id,
-      screen,
-      positionIn(parentPath(state.fromNode.id), screenToFlowPosition(screen)),
-    )
+    openPortPalette(state.fromNode.id, state.fromHandle.id, screen, positionIn(parentPath(state.fromNode.id), screenToFlowPosition(screen)))
   })
 
   function onDrop(event: DragEvent): void {
@@ -290,9 +263,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     event.preventDefault()
     const what = JSON.parse(dragged) as Addition
     const screen = { x: event.clientX, y: event.clientY }
-    const hit = document
-      .elementsFromPoint(screen.x, screen.y)
-      .find((each) => each.classList.contains('react-flow__edge-interaction'))
+    const hit = document.elementsFromPoint(screen.x, screen.y).find((each) => each.classList.contains('react-flow__edge-interaction'))
     const edge = hit?.closest('.react-flow__edge')?.getAttribute('data-id')?.split('|')
     if (edge?.length === 3) {
       const [machine = '', source = '', outcome = ''] = edge
@@ -312,9 +283,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     const under = document
       .elementsFromPoint(screen.x, screen.y)
       .map((each) => each.closest('.react-flow__node')?.getAttribute('data-id') ?? '')
-    const twig = under
-      .map((id) => nodeOf(root, id))
-      .find((node) => node && isHolder(node) && node.path.startsWith(frame))
+    const twig = under.map((id) => nodeOf(root, id)).find((node) => node && isHolder(node) && node.path.startsWith(frame))
     const holder = twig ?? nodeOf(root, frame)
     if (!holder || isForeign(root, `${holder.path}/x`)) return undefined
     if (isHolder(holder)) return holder.path

@@ -93,14 +93,7 @@ function Entry({ data }: { data: CardData }) {
   return data.isInTree ? (
     <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
   ) : (
-    <Handle
-      type="target"
-      id={IN}
-      position={Position.Left}
-      className="in-port"
-      style={{ top: data.entryY }}
-      isConnectableStart={false}
-    />
+    <Handle type="target" id={IN} position={Position.Left} className="in-port" style={{ top: data.entryY }} isConnectableStart={false} />
   )
 }
 
@@ -159,7 +152,17 @@ function Transitions({ path, data }: { path: string; data: CardData }) {
   )
 }
 
-function TransitionRow({ path, transition, isDrawn, isForeign }: { path: string; transition: OutgoingTransition; isDrawn: boolean; isForeign: boolean }) {
+function TransitionRow({
+  path,
+  transition,
+  isDrawn,
+  isForeign,
+}: {
+  path: string
+  transition: OutgoingTransition
+  isDrawn: boolean
+  isForeign: boolean
+}) {
   const findings = useTransitionFindings(path, transition.outcome)
   const isLoose = transition.target === undefined
   const classes = `${isLoose ? ' is-loose' : ''}${isFailure(transition.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`

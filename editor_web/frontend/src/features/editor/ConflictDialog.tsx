@@ -50,17 +50,7 @@ export function ConflictDialog() {
   )
 }
 
-function Against({
-  label,
-  side,
-  now,
-  onChoose,
-}: {
-  label: string
-  side: Side
-  now: Side
-  onChoose: (side: Side) => void
-}) {
+function Against({ label, side, now, onChoose }: { label: string; side: Side; now: Side; onChoose: (side: Side) => void }) {
   return (
     <button
       type="button"

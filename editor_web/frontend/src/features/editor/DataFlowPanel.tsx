@@ -24,8 +24,7 @@ export function DataFlowPanel() {
       {!problem && of === undefined && <p className="quiet">Looking at the behavior …</p>}
       {!problem && of !== undefined && flows.length === 0 && (
         <p className="quiet">
-          No userdata yet. Give a state an output, or declare a key in the tab Behavior; what writes and reads it is
-          shown here.
+          No userdata yet. Give a state an output, or declare a key in the tab Behavior; what writes and reads it is shown here.
         </p>
       )}
       <div className="flow-keys">
@@ -46,12 +45,8 @@ function KeyItem({ flow, isChosen }: { flow: KeyFlow; isChosen: boolean }) {
         <span className="mono flow-name">{flow.key}</span>
         {kind && <span className="quiet">{kind}</span>}
         <span className="spacer" />
-        {soundness === 'never' && (
-          <IconCircleXFilled size={14} className="is-never" aria-label="not defined somewhere" />
-        )}
-        {soundness === 'maybe' && (
-          <IconAlertTriangleFilled size={14} className="is-maybe" aria-label="may be undefined somewhere" />
-        )}
+        {soundness === 'never' && <IconCircleXFilled size={14} className="is-never" aria-label="not defined somewhere" />}
+        {soundness === 'maybe' && <IconAlertTriangleFilled size={14} className="is-maybe" aria-label="may be undefined somewhere" />}
         <span className="quiet flow-counts">
           <IconPencil size={12} aria-label="written by" /> {flow.writers.length}
           <IconEye size={13} aria-label="read by" /> {flow.readers.length}

@@ -9,15 +9,7 @@ import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useNames } from './useNames'
 
-export function DataForm({
-  node,
-  inputs,
-  outputs,
-}: {
-  node: EditNode
-  inputs: readonly KeyView[]
-  outputs: readonly KeyView[]
-}) {
+export function DataForm({ node, inputs, outputs }: { node: EditNode; inputs: readonly KeyView[]; outputs: readonly KeyView[] }) {
   const keys = useNames().map((name) => name.name)
   const ins = [...new Set([...inputs.map((key) => key.name), ...Object.keys(node.inputs)])]
   const outs = [...new Set([...outputs.map((key) => key.name), ...Object.keys(node.outputs)])]

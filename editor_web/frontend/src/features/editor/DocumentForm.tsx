@@ -85,9 +85,7 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
                 checked={success.includes(outcome)}
                 onChange={({ currentTarget: { checked } }) =>
                   setDocument('Success', (now) => ({
-                    success: checked
-                      ? [...new Set([...now.success, outcome])]
-                      : now.success.filter((each) => each !== outcome),
+                    success: checked ? [...new Set([...now.success, outcome])] : now.success.filter((each) => each !== outcome),
                   }))
                 }
               />
@@ -123,9 +121,7 @@ function Parameters({ parameters }: { parameters: Mapping }) {
   const set = (name: string, change: Mapping) =>
     setDocument(`Parameter ${name}`, (now) => {
       const present = mappingOf(lookup(now.parameters, name))
-      const next = Object.fromEntries(
-        Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''),
-      )
+      const next = Object.fromEntries(Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''))
       return { parameters: { ...now.parameters, [name]: next } }
     })
   return (
@@ -228,9 +224,7 @@ function Userdata({ userdata }: { userdata: Mapping }) {
             label={`Value of ${name}`}
             isMono
             value={value === null ? 'null' : shownValue(value)}
-            onCommit={(typed) =>
-              setDocument(`Userdata ${name}`, (now) => ({ userdata: { ...now.userdata, [name]: looseValue(typed) } }))
-            }
+            onCommit={(typed) => setDocument(`Userdata ${name}`, (now) => ({ userdata: { ...now.userdata, [name]: looseValue(typed) } }))}
           />
           <button
             type="button"

@@ -121,11 +121,7 @@ function ProblemCount() {
       : [errors > 0 && count(errors, 'error'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(', ')
   const status = errors > 0 ? 'failed' : warnings > 0 ? 'warning' : 'done'
   return (
-    <button
-      type="button"
-      className={`command problem-count is-${status}`}
-      onClick={() => setEditor({ tab: 'problems' })}
-    >
+    <button type="button" className={`command problem-count is-${status}`} onClick={() => setEditor({ tab: 'problems' })}>
       <StatusIcon status={status} size={15} />
       <span aria-live="polite">{words}</span>
     </button>

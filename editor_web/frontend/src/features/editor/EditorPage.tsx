@@ -161,12 +161,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   )
   const canvas = (
     <div className="canvas-area">
-      <CanvasBar
-        hasMap={hasMap}
-        onMap={() => setMap(!hasMap)}
-        boxSelects={boxSelects}
-        onBoxSelects={() => setBoxSelects(!boxSelects)}
-      />
+      <CanvasBar hasMap={hasMap} onMap={() => setMap(!hasMap)} boxSelects={boxSelects} onBoxSelects={() => setBoxSelects(!boxSelects)} />
       <div className="canvas-with-flow">
         <ViewBoundary name="Canvas">
           <Canvas hasMap={hasMap} boxSelects={boxSelects} />

@@ -43,14 +43,9 @@ function Inside({ kind, name }: { kind: string; name: string }) {
     }
   }, [kind, name, mayCall])
   if (problem) return <p className="quiet">{problem}</p>
-  if (known?.of !== of || !known.row)
-    return <p className="quiet">{known?.of === of ? 'It is not in the store.' : '…'}</p>
+  if (known?.of !== of || !known.row) return <p className="quiet">{known?.of === of ? 'It is not in the store.' : '…'}</p>
   const { row, lines } = known
-  const changed = [
-    `revision ${row.revision}`,
-    row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000),
-    row.by && `by ${row.by}`,
-  ]
+  const changed = [`revision ${row.revision}`, row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`]
   return (
     <>
       <p className="quiet">{changed.filter(Boolean).join(', ')}</p>

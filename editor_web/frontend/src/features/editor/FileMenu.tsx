@@ -1,14 +1,6 @@
 /** What can be done with the behavior as a file: versions, another name, a copy, a picture, deleting. */
 import { Menu } from '@mantine/core'
-import {
-  IconCopy,
-  IconCursorText,
-  IconDots,
-  IconFileTypePng,
-  IconFileTypeSvg,
-  IconHistory,
-  IconTrash,
-} from '@tabler/icons-react'
+import { IconCopy, IconCursorText, IconDots, IconFileTypePng, IconFileTypeSvg, IconHistory, IconTrash } from '@tabler/icons-react'
 import { exportPicture } from './exporting'
 import { openFileDialog } from './fileDialogs'
 
@@ -16,12 +8,7 @@ export function FileMenu({ mayEdit }: { mayEdit: boolean }) {
   return (
     <Menu position="bottom-end" shadow="md" width={230} returnFocus>
       <Menu.Target>
-        <button
-          type="button"
-          className="command is-compact"
-          aria-label="File"
-          title="Versions, rename, copy, picture, delete"
-        >
+        <button type="button" className="command is-compact" aria-label="File" title="Versions, rename, copy, picture, delete">
           <IconDots size={16} aria-hidden />
         </button>
       </Menu.Target>
@@ -37,18 +24,10 @@ export function FileMenu({ mayEdit }: { mayEdit: boolean }) {
           Export as PNG
         </Menu.Item>
         <Menu.Divider />
-        <Menu.Item
-          disabled={!mayEdit}
-          leftSection={<IconCursorText size={15} aria-hidden />}
-          onClick={() => openFileDialog('rename')}
-        >
+        <Menu.Item disabled={!mayEdit} leftSection={<IconCursorText size={15} aria-hidden />} onClick={() => openFileDialog('rename')}>
           Rename or move…
         </Menu.Item>
-        <Menu.Item
-          disabled={!mayEdit}
-          leftSection={<IconCopy size={15} aria-hidden />}
-          onClick={() => openFileDialog('duplicate')}
-        >
+        <Menu.Item disabled={!mayEdit} leftSection={<IconCopy size={15} aria-hidden />} onClick={() => openFileDialog('duplicate')}>
           Duplicate…
         </Menu.Item>
         <Menu.Item

@@ -36,15 +36,7 @@ function Arrows() {
           const box = boxes.get(path)
           return (
             box && (
-              <rect
-                key={path}
-                x={box.x - 4}
-                y={box.y - 4}
-                width={box.width + 8}
-                height={box.height + 8}
-                rx={13}
-                className="flow-end"
-              />
+              <rect key={path} x={box.x - 4} y={box.y - 4} width={box.width + 8} height={box.height + 8} rx={13} className="flow-end" />
             )
           )
         })}

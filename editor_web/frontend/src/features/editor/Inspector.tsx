@@ -29,9 +29,7 @@ export function Inspector() {
         </Tabs.Tab>
       </Tabs.List>
       <Tabs.Panel value="node">
-        <div className="tab-body is-flush form-scroll">
-          {arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}
-        </div>
+        <div className="tab-body is-flush form-scroll">{arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}</div>
       </Tabs.Panel>
       <Tabs.Panel value="document">
         <div className="tab-body is-flush form-scroll">

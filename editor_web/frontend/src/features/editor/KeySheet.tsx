@@ -31,8 +31,8 @@ export function KeySheet() {
         ))}
       </div>
       <p className="quiet">
-        Arrow keys go from node to node, Tab through all of them. Commands without a key are in the palette (Ctrl+K).
-        Keys do nothing while you write in a field; out of the text leads Esc, then Tab.
+        Arrow keys go from node to node, Tab through all of them. Commands without a key are in the palette (Ctrl+K). Keys do nothing while
+        you write in a field; out of the text leads Esc, then Tab.
       </p>
       <TourButton onOpened={() => setEditor({ isSheetShown: false })} />
     </Dialog>

@@ -95,12 +95,7 @@ function LibraryGroup({ title, items, isSearching, explained, onExplain }: Group
       {isOpen && (
         <ul className="plain-list">
           {items.map((item) => (
-            <LibraryItem
-              key={item.id}
-              item={item}
-              isExplained={explained === item.id}
-              onExplain={() => onExplain(item.id)}
-            />
+            <LibraryItem key={item.id} item={item} isExplained={explained === item.id} onExplain={() => onExplain(item.id)} />
           ))}
         </ul>
       )}
@@ -125,19 +120,11 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           }}
           onClick={() => addHere(item.addition)}
         >
-          <span className="library-icon">
-            {item.kind === 'entry' ? <IconMapPin size={15} aria-hidden /> : itemIcon(item.kind, 15)}
-          </span>
+          <span className="library-icon">{item.kind === 'entry' ? <IconMapPin size={15} aria-hidden /> : itemIcon(item.kind, 15)}</span>
           <span className="library-name">{short}</span>
         </button>
         {item.entry && item.entry.kind in PLACED && <LibraryPreview entry={item.entry} />}
-        <button
-          type="button"
-          className="library-info"
-          aria-expanded={isExplained}
-          aria-label={`What is ${item.title}`}
-          onClick={onExplain}
-        >
+        <button type="button" className="library-info" aria-expanded={isExplained} aria-label={`What is ${item.title}`} onClick={onExplain}>
           <IconInfoCircle size={15} aria-hidden />
         </button>
       </div>

@@ -21,9 +21,7 @@ export const TransitionLine = memo(function TransitionPath(props: EdgeProps<Tran
   const classes = `${selected ? ' is-selected' : ''}${findings.length > 0 ? ' has-finding' : ''}${data?.isQuiet ? ' is-quiet' : ''}`
   return (
     <g transform={shift && (shift.x !== 0 || shift.y !== 0) ? `translate(${shift.x} ${shift.y})` : undefined}>
-      {!data?.isQuiet && (
-        <path d={path} className="react-flow__edge-interaction" fill="none" strokeOpacity={0} strokeWidth={18} />
-      )}
+      {!data?.isQuiet && <path d={path} className="react-flow__edge-interaction" fill="none" strokeOpacity={0} strokeWidth={18} />}
       <path d={path} className={`transition-line${classes}`} markerEnd={`url(#edit-arrow${selected ? '-selected' : ''})`}>
         {findings.length > 0 && <title>{findings.map((finding) => finding.message).join('\n')}</title>}
       </path>
@@ -62,9 +60,7 @@ function straight({ sourceX, sourceY, targetX, targetY }: EdgeProps<TransitionEd
 }
 
 function middleOf(points: readonly Point[]): Point {
-  const lengths = points
-    .slice(1)
-    .map((point, index) => Math.hypot(point.x - (points[index]?.x ?? 0), point.y - (points[index]?.y ?? 0)))
+  const lengths = points.slice(1).map((point, index) => Math.hypot(point.x - (points[index]?.x ?? 0), point.y - (points[index]?.y ?? 0)))
   let left = lengths.reduce((sum, length) => sum + length, 0) / 2
   for (const [index, length] of lengths.entries()) {
     const [from, to] = [points[index], points[index + 1]]

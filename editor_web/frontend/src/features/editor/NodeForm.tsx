@@ -95,10 +95,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       {isMachine(parent?.kind ?? '') && parent && <OutcomeForm node={node} parent={parent} />}
       {node.kind === 'concurrency' && <RulesForm node={node} />}
       {isMachine(node.kind) && (
-        <BeginForm
-          node={node}
-          onSet={(child) => void perform(`Begin with ${child}`, [{ edit: 'set_initial', path: node.path, child }])}
-        />
+        <BeginForm node={node} onSet={(child) => void perform(`Begin with ${child}`, [{ edit: 'set_initial', path: node.path, child }])} />
       )}
       {(isTreePart(node.kind) || node.kind === 'concurrency') && node.children.length > 1 && <OrderForm node={node} />}
       <SettingsForm node={node} />
@@ -133,11 +130,7 @@ function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => 
     <Section title="Machine">
       <label className="edit-line">
         <span>Begins with</span>
-        <select
-          className="plain-input"
-          value={node.initial ?? ''}
-          onChange={(event) => onSet(event.currentTarget.value)}
-        >
+        <select className="plain-input" value={node.initial ?? ''} onChange={(event) => onSet(event.currentTarget.value)}>
           {!node.children.some((child) => child.name === node.initial) && (
             <option value={node.initial ?? ''}>{node.initial ?? 'choose'}</option>
           )}

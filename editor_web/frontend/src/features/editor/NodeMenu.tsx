@@ -8,7 +8,13 @@ import { COMMANDS, disabledReason } from './commands'
 import classes from './nodeMenu.module.css'
 import { chosenOf, editor, rootOf, setEditor, useEditor } from './store'
 
-const ONE = [['enter', 'open', 'connect', 'initial'], ['run-from', 'run-to'], ['disable', 'rename', 'note'], ['duplicate', 'copy', 'cut', 'remove'], ['alike']] as const
+const ONE = [
+  ['enter', 'open', 'connect', 'initial'],
+  ['run-from', 'run-to'],
+  ['disable', 'rename', 'note'],
+  ['duplicate', 'copy', 'cut', 'remove'],
+  ['alike'],
+] as const
 const SEVERAL = [
   ['disable'],
   ['align-left', 'align-right', 'align-top', 'align-bottom', 'align-row', 'align-column', 'distribute-across', 'distribute-down'],

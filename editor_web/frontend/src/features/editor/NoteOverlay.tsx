@@ -33,10 +33,7 @@ function NodeNotes() {
   const writing = useNotes((s) => s.writing)
   const boxes = useMemo(() => nodeBoxes(nodes), [nodes])
   // Nodes move with each frame of a drag, notes do not.
-  const noted = useMemo(
-    () => (root ? allNodes(root).filter((node) => node.notes || writing === node.path) : []),
-    [root, writing],
-  )
+  const noted = useMemo(() => (root ? allNodes(root).filter((node) => node.notes || writing === node.path) : []), [root, writing])
   if (noted.length === 0) return null
   return (
     <ViewportPortal>
@@ -46,11 +43,7 @@ function NodeNotes() {
         // Above the right end of the node, where it hides neither its name nor a port.
         const at = { x: box.x + box.width - SLIP_PX, y: box.y - 4 }
         return (
-          <div
-            key={node.path}
-            className="node-note"
-            style={{ transform: `translate(${at.x}px, ${at.y}px) translateY(-100%)` }}
-          >
+          <div key={node.path} className="node-note" style={{ transform: `translate(${at.x}px, ${at.y}px) translateY(-100%)` }}>
             <Note path={node.path} text={node.notes} />
           </div>
         )

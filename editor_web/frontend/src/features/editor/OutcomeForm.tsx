@@ -22,9 +22,7 @@ export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode
   const transitions = outgoingTransitions(parent, node).filter((transition) => transition.isOutcome)
   if (!root || transitions.length === 0) return null
   const inside = parent.children.map((child) => child.name)
-  const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
-    (end) => !inside.includes(end),
-  )
+  const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter((end) => !inside.includes(end))
   return (
     <Section title="Outcomes">
       <table className="edit-table">

@@ -1,15 +1,7 @@
 /** The palettes: what to add, and where an outcome leads. */
 import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
-import {
-  isFailure,
-  isMachine,
-  nameOfPath,
-  nodeOf,
-  parentPath,
-  outgoingTransitions,
-  type EditNode,
-} from '../../document/editing/model'
+import { isFailure, isMachine, nameOfPath, nodeOf, parentPath, outgoingTransitions, type EditNode } from '../../document/editing/model'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemIcon, itemsOf } from './additions'
 import { openPortPalette } from './paletteRequests'
@@ -68,9 +60,7 @@ function AddPalette({ request, onClose }: { request: Extract<PaletteRequest, { k
       choices={choices}
       at={request.screen}
       onClose={onClose}
-      fromText={
-        from && !from.isInsert && parent && isMachine(parent.kind) ? (text) => newOutcome(text, from) : undefined
-      }
+      fromText={from && !from.isInsert && parent && isMachine(parent.kind) ? (text) => newOutcome(text, from) : undefined}
     />
   )
 }
@@ -86,10 +76,10 @@ interface From {
 function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly string[], from: From): readonly Choice[] {
   if (!isMachine(parent.kind)) return []
   const inside = new Set(parent.children.map((child) => child.name))
-  const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
-    (outcome) => !inside.has(outcome),
-  )
-  const present = outgoingTransitions(parent, nodeOf(root, from.path) ?? parent).find((transition) => transition.outcome === from.outcome)?.target
+  const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter((outcome) => !inside.has(outcome))
+  const present = outgoingTransitions(parent, nodeOf(root, from.path) ?? parent).find(
+    (transition) => transition.outcome === from.outcome,
+  )?.target
   return [
     ...parent.children.map((child): Choice => ({
       id: `to:${child.name}`,
@@ -146,12 +136,5 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     // In the same update: what is typed on goes to the next box.
     run: () => openPortPalette(path, transition.outcome),
   }))
-  return (
-    <ChoiceBox
-      label={`Connect ${node?.name ?? ''}`}
-      placeholder="Which outcome …"
-      choices={choices}
-      onClose={onClose}
-    />
-  )
+  return <ChoiceBox label={`Connect ${node?.name ?? ''}`} placeholder="Which outcome …" choices={choices} onClose={onClose} />
 }

@@ -46,9 +46,7 @@ const NO_NAMES: Dict<readonly string[]> = {}
 function setParameter(node: EditNode, name: string, value: unknown): void {
   void perform(
     `Set ${name} of ${node.name}`,
-    value === undefined
-      ? [{ edit: 'clear_parameter', path: node.path, name }]
-      : [{ edit: 'set_parameter', path: node.path, name, value }],
+    value === undefined ? [{ edit: 'clear_parameter', path: node.path, name }] : [{ edit: 'set_parameter', path: node.path, name, value }],
   )
 }
 
@@ -110,9 +108,7 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
         onSet={set}
         onPoint={setPointed}
       />
-      {field.kind === 'entry' && (
-        <FieldPreview node={node} field={field} value={value} entries={entries} pointed={pointed} />
-      )}
+      {field.kind === 'entry' && <FieldPreview node={node} field={field} value={value} entries={entries} pointed={pointed} />}
       <div className="edit-hint" id={hintId}>
         {problem ? <span className="is-failed">{problem}</span> : field.description}
       </div>
@@ -232,19 +228,11 @@ interface EntryProps {
 /** A named entry of the store, to be chosen from those of its kind; or the whole value as data. */
 function EntryInput({ field, value, entries, shared, onSet, onPoint }: EntryProps) {
   const named = nameIn(value)
-  const fitting = entries
-    .filter((entry) => !field.entryKind || entry.kind === field.entryKind)
-    .map((entry) => entry.name)
+  const fitting = entries.filter((entry) => !field.entryKind || entry.kind === field.entryKind).map((entry) => entry.name)
   const isData = value !== undefined && value !== null && named === undefined
   if (isData)
     return (
-      <TemplateInput
-        {...shared}
-        isMono
-        isLong
-        value={shownValue(value)}
-        onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))}
-      />
+      <TemplateInput {...shared} isMono isLong value={shownValue(value)} onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))} />
     )
   const chosen = entries.find((entry) => entry.name === named && (!field.entryKind || entry.kind === field.entryKind))
   return (
@@ -281,12 +269,7 @@ function UndeclaredRow({ node, name, isKnown }: { node: EditNode; name: string; 
       <div className="edit-label">
         <span>{name}</span>
         <span className="spacer" />
-        <button
-          type="button"
-          className="mini"
-          aria-label={`Remove ${name}`}
-          onClick={() => setParameter(node, name, undefined)}
-        >
+        <button type="button" className="mini" aria-label={`Remove ${name}`} onClick={() => setParameter(node, name, undefined)}>
           <IconX size={13} aria-hidden />
         </button>
       </div>

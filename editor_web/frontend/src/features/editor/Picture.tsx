@@ -39,14 +39,7 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
       {nodes
         .filter((node) => node.type === 'frame')
         .map((node) => (
-          <Frame
-            key={node.id}
-            node={node}
-            box={boxOf(boxes, node.id)}
-            palette={palette}
-            mark={markings?.get(node.id)}
-            onPick={onPick}
-          />
+          <Frame key={node.id} node={node} box={boxOf(boxes, node.id)} palette={palette} mark={markings?.get(node.id)} onPick={onPick} />
         ))}
       {edges.map((edge) => {
         const source = boxes.get(edge.source)
@@ -61,10 +54,7 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
             { x: target.x + target.width / 2, y: target.y },
           ]
           const bend = (a.y + b.y) / 2
-          const path =
-            a.x === b.x
-              ? `M ${a.x} ${a.y} L ${b.x} ${b.y}`
-              : roundedPath([a, { x: a.x, y: bend }, { x: b.x, y: bend }, b])
+          const path = a.x === b.x ? `M ${a.x} ${a.y} L ${b.x} ${b.y}` : roundedPath([a, { x: a.x, y: bend }, { x: b.x, y: bend }, b])
           return <path key={edge.id} d={path} style={{ fill: 'none', stroke: colour, strokeWidth: 1.6 }} />
         }
         const points = waypoints(

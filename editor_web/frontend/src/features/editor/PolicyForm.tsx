@@ -15,8 +15,7 @@ export function PolicyForm({ node, parent }: { node: EditNode; parent: EditNode 
   const outcomes = useEditor((s) => draftOf(s).document?.outcomes ?? NONE)
   const success = useEditor((s) => draftOf(s).document?.success ?? NONE)
   const targets = targetsOf(node, parent, root, outcomes)
-  const set = (field: string, value: unknown) =>
-    void perform(`${field} of ${node.name}`, [setField(node.path, field, value)])
+  const set = (field: string, value: unknown) => void perform(`${field} of ${node.name}`, [setField(node.path, field, value)])
   const measure = (field: 'guard' | 'timeout' | 'retry', key: string, value: unknown) =>
     void performOn(node.path, `${field} of ${node.name}`, (now) => {
       const next = Object.fromEntries(
@@ -100,9 +99,7 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
               label="Retry, first wait"
               placeholder="0 s"
               value={shownValue(node.retry['backoff'])}
-              onCommit={(typed) =>
-                measure('retry', 'backoff', typed === '' ? undefined : looseValue(typed))
-              }
+              onCommit={(typed) => measure('retry', 'backoff', typed === '' ? undefined : looseValue(typed))}
             />
           </Line>
           <Line label="After outcomes">
@@ -110,13 +107,7 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
               label="Retry, outcomes"
               placeholder="errors only; such as missed, lost"
               value={Array.isArray(node.retry['outcomes']) ? node.retry['outcomes'].join(', ') : ''}
-              onCommit={(typed) =>
-                measure(
-                  'retry',
-                  'outcomes',
-                  typed === '' ? undefined : typed.split(/[\s,]+/).filter(Boolean),
-                )
-              }
+              onCommit={(typed) => measure('retry', 'outcomes', typed === '' ? undefined : typed.split(/[\s,]+/).filter(Boolean))}
             />
           </Line>
         </>
@@ -208,12 +199,7 @@ interface TargetProps {
 function Target({ label, name, value, targets, none, onSet }: TargetProps) {
   return (
     <Line label={label}>
-      <select
-        className="plain-input"
-        aria-label={name}
-        value={value}
-        onChange={(event) => onSet(event.currentTarget.value)}
-      >
+      <select className="plain-input" aria-label={name} value={value} onChange={(event) => onSet(event.currentTarget.value)}>
         {(none !== undefined || value === '') && <option value="">{none ?? 'choose'}</option>}
         {[...new Set([...targets, ...(value ? [value] : [])])].map((target) => (
           <option key={target} value={target}>

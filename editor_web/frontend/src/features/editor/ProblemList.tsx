@@ -27,11 +27,7 @@ function TargetChoice() {
     <div className="target-choice">
       <label>
         <span>Targets out of reach or in collision</span>
-        <select
-          className="plain-input"
-          value={level}
-          onChange={(event) => setTargetLevel(event.currentTarget.value as TargetLevel)}
-        >
+        <select className="plain-input" value={level} onChange={(event) => setTargetLevel(event.currentTarget.value as TargetLevel)}>
           <option value="warning">are warnings</option>
           <option value="error">are errors</option>
           <option value="off">are not looked for</option>

@@ -4,25 +4,14 @@ import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
-import {
-  added,
-  conditionsOf,
-  moved,
-  renamedOutcome,
-  withChild,
-  withCount,
-  without,
-  withPreempted,
-} from '../../document/editing/rules'
+import { added, conditionsOf, moved, renamedOutcome, withChild, withCount, without, withPreempted } from '../../document/editing/rules'
 import { perform, performOn } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 
 export function RulesForm({ node }: { node: EditNode }) {
   const set = (change: (rules: readonly ConcurrencyCondition[]) => readonly ConcurrencyCondition[], words: string) =>
-    void performOn(node.path, words, (now) => [
-      setField(node.path, 'conditions', conditionsOf(change(now.rules))),
-    ])
+    void performOn(node.path, words, (now) => [setField(node.path, 'conditions', conditionsOf(change(now.rules)))])
   return (
     <Section title="Ends with" note="the first line that holds">
       <div className="rules-scroll" role="region" aria-label="Rules" tabIndex={0}>
@@ -52,9 +41,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     <TemplateInput
                       label={`Outcome of rule ${index + 1}`}
                       value={rule.outcome}
-                      onCommit={(typed) =>
-                        typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)
-                      }
+                      onCommit={(typed) => typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)}
                     />
                   )}
                 </td>
@@ -63,9 +50,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     index={index}
                     rule={rule}
                     names={node.children.map((child) => child.name)}
-                    onSet={(child, isPreempted) =>
-                      set((rules) => withPreempted(rules, index, child, isPreempted), `Rule ${index + 1}`)
-                    }
+                    onSet={(child, isPreempted) => set((rules) => withPreempted(rules, index, child, isPreempted), `Rule ${index + 1}`)}
                   />
                 </td>
                 <td>
@@ -73,9 +58,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     className="plain-input"
                     aria-label={`How many in rule ${index + 1}`}
                     value={rule.at_least ?? Object.keys(rule.when).length}
-                    onChange={({ currentTarget: { value } }) =>
-                      set((rules) => withCount(rules, index, Number(value)), `Rule ${index + 1}`)
-                    }
+                    onChange={({ currentTarget: { value } }) => set((rules) => withCount(rules, index, Number(value)), `Rule ${index + 1}`)}
                   >
                     {Object.keys(rule.when).map((name, at) => (
                       <option key={name} value={at + 1}>
@@ -96,10 +79,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     >
                       <option value="">any</option>
                       {[
-                        ...new Set([
-                          ...child.outcomes,
-                          ...(lookup(rule.when, child.name) ? [lookup(rule.when, child.name) ?? ''] : []),
-                        ]),
+                        ...new Set([...child.outcomes, ...(lookup(rule.when, child.name) ? [lookup(rule.when, child.name) ?? ''] : [])]),
                       ].map((outcome) => (
                         <option key={outcome} value={outcome}>
                           {outcome}

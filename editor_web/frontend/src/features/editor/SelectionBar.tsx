@@ -15,16 +15,7 @@ import {
   IconTrash,
 } from '@tabler/icons-react'
 import { useEffect, useRef, useState, type ReactNode } from 'react'
-import {
-  isFrame,
-  isTreePart,
-  nameOfPath,
-  nameProblem,
-  nodeOf,
-  parentPath,
-  ROOT,
-  type EditNode,
-} from '../../document/editing/model'
+import { isFrame, isTreePart, nameOfPath, nameProblem, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
 import { toggleDisabled } from './disabled'
@@ -96,16 +87,10 @@ function One({ node }: { node: EditNode }) {
       </Act>
       {reference !== null && (
         <>
-          <Act
-            label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'}
-            onPress={() => void toggleReference(node.path)}
-          >
+          <Act label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'} onPress={() => void toggleReference(node.path)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
           </Act>
-          <Act
-            label={`Open ${nameOfPath(reference)} in its own page (Enter)`}
-            onPress={() => openReferred(reference, node.path)}
-          >
+          <Act label={`Open ${nameOfPath(reference)} in its own page (Enter)`} onPress={() => openReferred(reference, node.path)}>
             <IconExternalLink size={16} />
           </Act>
         </>

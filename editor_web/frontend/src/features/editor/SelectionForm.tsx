@@ -13,9 +13,8 @@ import { useEditor } from './store'
 export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
   const catalogue = useEditor((s) => s.catalogue)
   const keysOf = (node: EditNode) =>
-    (
-      catalogue?.states.find((each) => each.name === node.state) ?? catalogue?.behaviors.find((each) => each.id === node.document)
-    )?.parameters ?? []
+    (catalogue?.states.find((each) => each.name === node.state) ?? catalogue?.behaviors.find((each) => each.id === node.document))
+      ?.parameters ?? []
   const names = commonParameters((node) => keysOf(node).map((key) => key.name), nodes)
   const areOff = nodes.every((node) => node.disabled !== false)
   const count = `${nodes.length} nodes`
@@ -62,8 +61,21 @@ function NoteOnAll({ nodes, count }: { nodes: readonly EditNode[]; count: string
   const [text, setText] = useState('')
   return (
     <>
-      <Textarea size="xs" autosize minRows={2} label="The same note on all of them" value={text} onChange={(event) => setText(event.currentTarget.value)} />
-      <Button size="xs" mt="xs" variant="default" disabled={text.trim() === ''} onClick={() => void perform(`Note on ${count}`, noteOnAll(nodes, text))}>
+      <Textarea
+        size="xs"
+        autosize
+        minRows={2}
+        label="The same note on all of them"
+        value={text}
+        onChange={(event) => setText(event.currentTarget.value)}
+      />
+      <Button
+        size="xs"
+        mt="xs"
+        variant="default"
+        disabled={text.trim() === ''}
+        onClick={() => void perform(`Note on ${count}`, noteOnAll(nodes, text))}
+      >
         Write note
       </Button>
     </>

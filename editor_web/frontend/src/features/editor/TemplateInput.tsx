@@ -55,9 +55,7 @@ export function TemplateInput(props: TemplateInputProps) {
       const query = next.trim().toLowerCase()
       const fitting = next === value ? options : options.filter((option) => option.toLowerCase().includes(query))
       setOffer(
-        fitting.length > 0
-          ? { items: fitting.slice(0, MOST).map((option) => ({ text: option, detail: '' })), index: -1 }
-          : undefined,
+        fitting.length > 0 ? { items: fitting.slice(0, MOST).map((option) => ({ text: option, detail: '' })), index: -1 } : undefined,
       )
     } else setOffer(undefined)
   }
@@ -145,13 +143,7 @@ export function TemplateInput(props: TemplateInputProps) {
         />
       )}
       {offer && (
-        <ul
-          className="offer"
-          role="listbox"
-          id={`${id}-offer`}
-          aria-label={`Choices for ${label}`}
-          onPointerLeave={() => setHovered(-1)}
-        >
+        <ul className="offer" role="listbox" id={`${id}-offer`} aria-label={`Choices for ${label}`} onPointerLeave={() => setHovered(-1)}>
           {offer.items.map((item, index) => (
             <li
               key={item.text}

@@ -58,20 +58,11 @@ const ROW_PX = 1100
 const HALF_ROW_PX = 640
 const NO_MARKS: ReadonlyMap<string, Marking> = new Map()
 
-function Changes({
-  before,
-  after,
-  difference,
-}: {
-  before: Shown
-  after: Shown
-  difference: DocumentDiff | undefined
-}) {
+function Changes({ before, after, difference }: { before: Shown; after: Shown; difference: DocumentDiff | undefined }) {
   const changes = useMemo(() => meaningful(difference?.changes ?? []), [difference])
   const marks = useMemo(() => markingsOf(changes, before.root, after.root), [changes, before, after])
   const words = changes.map(wordsOfChange)
-  if (!difference)
-    return <p className="quiet">One of the two cannot be read as a behavior; the tab Text shows how they differ.</p>
+  if (!difference) return <p className="quiet">One of the two cannot be read as a behavior; the tab Text shows how they differ.</p>
   if (changes.length === 0)
     return (
       <p className="quiet">

@@ -44,10 +44,7 @@ function Versions() {
     )
   }, [id])
 
-  const order = useMemo(
-    () => [...(dirty ? [DRAFT] : []), ...(versions ?? []).map((version) => version.hash)],
-    [dirty, versions],
-  )
+  const order = useMemo(() => [...(dirty ? [DRAFT] : []), ...(versions ?? []).map((version) => version.hash)], [dirty, versions])
   const before = against ?? order[order.indexOf(shown ?? '') + 1]
   const compared = useCompared(id, before, shown, setProblem)
 
@@ -100,11 +97,7 @@ function Versions() {
         <div className="version-head">
           <label>
             Compare with{' '}
-            <select
-              className="plain-input"
-              value={before ?? ''}
-              onChange={(event) => setAgainst(event.currentTarget.value || undefined)}
-            >
+            <select className="plain-input" value={before ?? ''} onChange={(event) => setAgainst(event.currentTarget.value || undefined)}>
               {before === undefined && <option value="">nothing older</option>}
               {order
                 .filter((hash) => hash !== shown)

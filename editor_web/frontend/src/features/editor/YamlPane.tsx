@@ -2,14 +2,7 @@
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete'
 import { defaultKeymap, indentWithTab } from '@codemirror/commands'
 import { yaml } from '@codemirror/lang-yaml'
-import {
-  bracketMatching,
-  foldGutter,
-  HighlightStyle,
-  indentOnInput,
-  indentUnit,
-  syntaxHighlighting,
-} from '@codemirror/language'
+import { bracketMatching, foldGutter, HighlightStyle, indentOnInput, indentUnit, syntaxHighlighting } from '@codemirror/language'
 import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search'
 import { Annotation, EditorState, StateEffect, StateField } from '@codemirror/state'
@@ -171,9 +164,7 @@ export function YamlPane() {
     const now = view.current
     if (!now) return
     const lines =
-      chosen && chosen.line <= now.state.doc.lines
-        ? { from: chosen.line, to: Math.max(chosen.line, chosen.end_line) }
-        : undefined
+      chosen && chosen.line <= now.state.doc.lines ? { from: chosen.line, to: Math.max(chosen.line, chosen.end_line) } : undefined
     const at = lines && now.state.doc.line(lines.from).from
     const effects: StateEffect<unknown>[] = [markNode.of(lines)]
     if (at !== undefined && !now.hasFocus) effects.push(EditorView.scrollIntoView(at, { y: 'start', yMargin: 60 }))

@@ -66,9 +66,7 @@ export async function add(what: Addition, request: AddRequest): Promise<void> {
       ? [{ edit: 'set_transition', path: request.from.path, outcome: request.from.outcome, target: name }]
       : []
   const answer = await perform(`Add ${name}`, [...kept, node, ...transition])
-  const made =
-    answer?.changed.find((path) => parentPath(path) === parent.path && nameOfPath(path) === name) ??
-    `${parent.path}/${name}`
+  const made = answer?.changed.find((path) => parentPath(path) === parent.path && nameOfPath(path) === name) ?? `${parent.path}/${name}`
   if (answer && nodeOf(rootOf(editor()), made)) {
     if (parent.path !== editor().scope && !made.startsWith(`${editor().scope}/`)) setEditor({ scope: parent.path })
     if (parent.path !== editor().scope) setEditor({ opened: new Map(editor().opened).set(parent.path, true) })
@@ -194,7 +192,11 @@ export function selectAlike(): void {
   const root = rootOf(editor())
   const chosen = chosenOf(editor())
   if (!root || !chosen?.title) return
-  choose(allNodes(root).filter((node) => node.kind === chosen.kind && node.title === chosen.title).map((node) => node.path))
+  choose(
+    allNodes(root)
+      .filter((node) => node.kind === chosen.kind && node.title === chosen.title)
+      .map((node) => node.path),
+  )
 }
 
 export function selectAll(): void {
@@ -228,9 +230,7 @@ export async function disconnect(path: string, outcome: string): Promise<void> {
 
 export async function autoConnect(): Promise<void> {
   const { selection, scope } = editor()
-  await perform('Add obvious transitions', [
-    { edit: 'auto_connect', paths: selection.length > 0 ? selection : [scope] },
-  ])
+  await perform('Add obvious transitions', [{ edit: 'auto_connect', paths: selection.length > 0 ? selection : [scope] }])
 }
 
 export async function makeInitial(): Promise<void> {
@@ -286,8 +286,7 @@ export async function moveInto(paths: readonly string[], parent: string, at = ne
     { edit: 'move_nodes', paths, parent },
     ...(isPlaced ? [{ edit: 'set_positions' as const, positions: { ...seenPositions(holder), ...Object.fromEntries(dropped) } }] : []),
   ])
-  if (answer)
-    choose(paths.map((path) => `${parent}/${nameOfPath(path)}`).filter((path) => nodeOf(rootOf(editor()), path)))
+  if (answer) choose(paths.map((path) => `${parent}/${nameOfPath(path)}`).filter((path) => nodeOf(rootOf(editor()), path)))
 }
 
 /** Go into a container, so that its inside fills the canvas. */

@@ -107,8 +107,7 @@ export function entryAddition(entry: EntryName, catalogue: CatalogueBody): Addit
   const state = catalogue.states.find((each) => each.name === stateNames[entry.kind])
   if (!state) return undefined
   const parameter = state.parameters.find(
-    (key) =>
-      JSON.stringify(key.schema).includes(`"entry":"${entry.kind}"`) || JSON.stringify(key.schema).includes('"entry":'),
+    (key) => JSON.stringify(key.schema).includes(`"entry":"${entry.kind}"`) || JSON.stringify(key.schema).includes('"entry":'),
   )
   if (!parameter) return undefined
   const isObject = JSON.stringify(parameter.schema).includes('"properties"')

@@ -20,7 +20,15 @@ const EDIT: readonly Edit[] = [{ edit: 'duplicate', paths: ['root/a'] }]
 const UNDO = { id: 'undo', words: 'Undo', needs: 'undo' } as Command
 
 function answer(text: string): EditAnswer {
-  return { text, graph: node('root', []), findings: [], checked: false, document: null, changed: [], refused: null } as unknown as EditAnswer
+  return {
+    text,
+    graph: node('root', []),
+    findings: [],
+    checked: false,
+    document: null,
+    changed: [],
+    refused: null,
+  } as unknown as EditAnswer
 }
 
 /** A server that answers when it is told to: with the text it was sent and a `+`. */
@@ -36,7 +44,17 @@ function slowServer(): { readonly sent: string[]; readonly release: () => void }
 
 beforeEach(() => {
   vi.mocked(documents.findings).mockResolvedValue([])
-  const draft = { text: 'a', root: node('root', []), hash: 'h', findings: [], isChecked: true, targets: [], areTargetsKnown: true, isStale: false, document: undefined }
+  const draft = {
+    text: 'a',
+    root: node('root', []),
+    hash: 'h',
+    findings: [],
+    isChecked: true,
+    targets: [],
+    areTargetsKnown: true,
+    isStale: false,
+    document: undefined,
+  }
   useEditor.setState({ ...blank('x.yaml'), phase: 'ready', history: newHistory(draft) }, true)
 })
 

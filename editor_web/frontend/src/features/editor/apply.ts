@@ -39,10 +39,7 @@ export function inTurn<T>(work: () => Promise<T>): Promise<T> {
  * Edits that say anew what is there already are made of what is there then.
  * Positions and notes are shown at once, and again as before where the server does not write them.
  */
-export async function perform(
-  label: string,
-  edits: readonly Edit[] | (() => readonly Edit[]),
-): Promise<EditAnswer | undefined> {
+export async function perform(label: string, edits: readonly Edit[] | (() => readonly Edit[])): Promise<EditAnswer | undefined> {
   const { id } = editor()
   const shown = typeof edits !== 'function' && areOfLayout(edits) ? edits : undefined
   if (shown) setEditor({ unwritten: [...editor().unwritten, shown] })
@@ -102,11 +99,7 @@ function draftAfter(answer: EditAnswer, before: Draft, isLayout: boolean): Draft
 }
 
 /** The same for a node, with edits that are made of what it is by then: for lists and mappings, which are sent as a whole. */
-export function performOn(
-  path: string,
-  label: string,
-  edits: (now: EditNode) => readonly Edit[],
-): Promise<EditAnswer | undefined> {
+export function performOn(path: string, label: string, edits: (now: EditNode) => readonly Edit[]): Promise<EditAnswer | undefined> {
   return perform(label, () => {
     const now = nodeOf(rootOf(editor()), path)
     return now ? edits(now) : []

@@ -17,7 +17,15 @@ import { blank, setEditor, useEditor } from './store'
 
 const ID = 'behaviors/shift.yaml'
 const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfo = { name: 'shift', description: '', cell: null, parameters: {}, userdata: {}, outcomes: ['good'], success: ['good'] }
+const INFO: DocumentInfo = {
+  name: 'shift',
+  description: '',
+  cell: null,
+  parameters: {},
+  userdata: {},
+  outcomes: ['good'],
+  success: ['good'],
+}
 const GRASP = node('root/grasp', ['held', 'failed'], { state: 'test.Give', parameters: { speed: 0.2, force: 3 } })
 const PLACE = node('root/place', ['done'], { state: 'test.Take', parameters: { speed: 0.5 } })
 const INNER = machineNode('root/inner', 'one', [node('root/inner/one', ['done'])], [])
@@ -29,7 +37,17 @@ function edits(): Edit[][] {
 }
 
 function answered(root: DocumentNode): EditAnswer {
-  return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null, difference: null }
+  return {
+    hash: 'h2',
+    graph: root,
+    document: INFO,
+    findings: [],
+    checked: true,
+    text: `${Math.random()}`,
+    changed: [],
+    refused: null,
+    difference: null,
+  }
 }
 
 function parameter(name: string): object {
@@ -132,7 +150,11 @@ it('opens the menu of a node with what can be done with it', async () => {
 
 it('lists the edits, and goes to one of them', async () => {
   const first = useEditor.getState().history
-  const step = (label: string) => ({ label, draft: { ...(first.steps[0]?.draft ?? draftFrom({ hash: '', graph: ROOT, findings: [], checked: true }, '', undefined)), text: label }, burst: '' })
+  const step = (label: string) => ({
+    label,
+    draft: { ...(first.steps[0]?.draft ?? draftFrom({ hash: '', graph: ROOT, findings: [], checked: true }, '', undefined)), text: label },
+    burst: '',
+  })
   setEditor({ history: { steps: [...first.steps, step('Add lift'), step('Rename lift'), step('Delete place')], at: 3 } })
   const user = show(<EditHistory />)
   await user.click(screen.getByRole('button', { name: 'History of edits' }))

@@ -18,11 +18,7 @@ export function onNodeClick(): void {
 
 export function onConnect({ source, sourceHandle, target }: Connection): void {
   if (!sourceHandle) return
-  void connect(
-    source,
-    sourceHandle,
-    target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target),
-  )
+  void connect(source, sourceHandle, target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target))
 }
 
 export function onReconnect(edge: CanvasEdge, link: Connection): void {

@@ -40,8 +40,7 @@ export function storeDraftNow(): void {
 export function storedDraft(id: string): StoredDraft | undefined {
   try {
     const kept = JSON.parse(localStorage.getItem(keyOf(id)) ?? 'null') as Partial<StoredDraft> | null
-    if (typeof kept?.text !== 'string' || typeof kept.base !== 'string' || typeof kept.baseText !== 'string')
-      return undefined
+    if (typeof kept?.text !== 'string' || typeof kept.base !== 'string' || typeof kept.baseText !== 'string') return undefined
     return { text: kept.text, base: kept.base, baseText: kept.baseText }
   } catch {
     return undefined

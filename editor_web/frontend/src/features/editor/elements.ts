@@ -126,9 +126,7 @@ function card(node: EditNode, around: Surroundings | undefined, { scope, arrange
       data: {
         node,
         transitions,
-        drawn: new Set(
-          transitions.filter((each) => each.target !== undefined && ends.has(each.target)).map((each) => each.outcome),
-        ),
+        drawn: new Set(transitions.filter((each) => each.target !== undefined && ends.has(each.target)).map((each) => each.outcome)),
         isInitial: isMachine(parent.kind) && parent.initial === node.name,
         isOpen: isTwig ? isOpen(node.path) : isShown,
         isForeign: around.isForeign,
@@ -223,8 +221,7 @@ function transitionEdges(machine: EditNode, { arrangement, declared }: DrawnInpu
   return machine.transitions.flatMap((t) => {
     const source = paths.get(t.source)
     const isQuiet = gathered.includes(t.target) && !paths.has(t.target)
-    const target =
-      paths.get(t.target) ?? (drawn.includes(t.target) || isQuiet ? outcomeId(machine.path, t.target) : undefined)
+    const target = paths.get(t.target) ?? (drawn.includes(t.target) || isQuiet ? outcomeId(machine.path, t.target) : undefined)
     if (!source || !target || !arrangement.boxes.has(target) || (isQuiet && !chosen.has(source))) return []
     const id = arrowId(machine.path, t.source, t.outcome)
     return [

@@ -47,9 +47,7 @@ async function pictureOfDraft(): Promise<string> {
 function colours(): Palette {
   const style = getComputedStyle(document.documentElement)
   const value = (variable: string) => style.getPropertyValue(variable.slice(4, -1)).trim()
-  return Object.fromEntries(
-    Object.entries(OF_PAGE).map(([part, variable]) => [part, value(String(variable))]),
-  ) as unknown as Palette
+  return Object.fromEntries(Object.entries(OF_PAGE).map(([part, variable]) => [part, value(String(variable))])) as unknown as Palette
 }
 
 async function pngOf(svg: string): Promise<Blob> {

@@ -40,9 +40,7 @@ export function useFreshFixes(isShown = true): readonly FixesBody[] {
 
 /** The fixes of one finding. */
 export function fixesOf(all: readonly FixesBody[], finding: FindingView): readonly Fix[] {
-  const found = all.find(
-    (each) => each.code === finding.code && each.path === finding.path && each.message === finding.message,
-  )
+  const found = all.find((each) => each.code === finding.code && each.path === finding.path && each.message === finding.message)
   return found?.fixes ?? NONE
 }
 

@@ -13,15 +13,59 @@ import { blank, rootOf, setEditor, useEditor } from './store'
 
 const ID = 'behaviors/shift.yaml'
 const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfo = { name: 'shift', description: '', cell: null, parameters: {}, userdata: {}, outcomes: ['good', 'bad'], success: ['good'] }
+const INFO: DocumentInfo = {
+  name: 'shift',
+  description: '',
+  cell: null,
+  parameters: {},
+  userdata: {},
+  outcomes: ['good', 'bad'],
+  success: ['good'],
+}
 
 function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
   const name = path.split('/').at(-1) ?? path
   return {
-    path, name, kind: 'state', title: 'test.Give', outcomes: ['a', 'b', 'c'], children: [], transitions: [], initial: null, conditions: [], label: name, role: '',
-    description: '', line: 1, column: 1, end_line: 1, state: 'test.Give', reference: null, document: null, parameters: {}, inputs: {}, outputs: {}, targets: {},
-    exits: [], autonomy: {}, timeout: null, retry: null, guard: null, post: null, on_error: null, resume: null, success: [], every: null, notes: '', position: null,
-    rules: [], otherwise: null, userdata: {}, settings: {}, disabled: false, ...told,
+    path,
+    name,
+    kind: 'state',
+    title: 'test.Give',
+    outcomes: ['a', 'b', 'c'],
+    children: [],
+    transitions: [],
+    initial: null,
+    conditions: [],
+    label: name,
+    role: '',
+    description: '',
+    line: 1,
+    column: 1,
+    end_line: 1,
+    state: 'test.Give',
+    reference: null,
+    document: null,
+    parameters: {},
+    inputs: {},
+    outputs: {},
+    targets: {},
+    exits: [],
+    autonomy: {},
+    timeout: null,
+    retry: null,
+    guard: null,
+    post: null,
+    on_error: null,
+    resume: null,
+    success: [],
+    every: null,
+    notes: '',
+    position: null,
+    rules: [],
+    otherwise: null,
+    userdata: {},
+    settings: {},
+    disabled: false,
+    ...told,
   }
 }
 
@@ -30,7 +74,13 @@ function rule(outcome: string, when: ConcurrencyCondition['when'], told: Partial
 }
 
 const RULES = [rule('finished', { left: 'a', right: 'a' }), rule('odd', { left: 'b' }), rule('odd', { right: 'b' })]
-const BOTH = part('root/both', { kind: 'concurrency', state: null, outcomes: ['finished', 'odd'], children: [part('root/both/left'), part('root/both/right')], rules: RULES })
+const BOTH = part('root/both', {
+  kind: 'concurrency',
+  state: null,
+  outcomes: ['finished', 'odd'],
+  children: [part('root/both/left'), part('root/both/right')],
+  rules: RULES,
+})
 const SET = part('root/set', { outcomes: ['done'] })
 const LOOK = part('root/watch/look')
 const WATCH = part('root/watch', { kind: 'sequence', state: null, children: [LOOK], settings: { memory: false } })
@@ -38,7 +88,17 @@ const ROOT = part('root', { kind: 'machine', state: null, outcomes: ['good', 'ba
 
 /** The document with other rules, as the server answers after an edit. */
 function answered(root: DocumentNode): EditAnswer {
-  return { hash: 'h2', graph: root, document: INFO, findings: [], checked: true, text: `${Math.random()}`, changed: [], refused: null, difference: null }
+  return {
+    hash: 'h2',
+    graph: root,
+    document: INFO,
+    findings: [],
+    checked: true,
+    text: `${Math.random()}`,
+    changed: [],
+    refused: null,
+    difference: null,
+  }
 }
 
 function Form({ path }: { readonly path: string }) {
@@ -54,7 +114,9 @@ function edits(): Edit[] {
 }
 
 function rows(): string[] {
-  return within(screen.getByRole('region', { name: 'Rules' })).getAllByRole('row').map((each) => each.textContent ?? '')
+  return within(screen.getByRole('region', { name: 'Rules' }))
+    .getAllByRole('row')
+    .map((each) => each.textContent ?? '')
 }
 
 beforeEach(() => {
@@ -103,7 +165,10 @@ it('keeps two changes of rules of which the second is made before the first is a
 })
 
 it('lets a rule preempt some branches while the others go on; then it has no outcome', async () => {
-  const preempting = { ...BOTH, rules: [RULES[0] ?? BOTH.rules[0], rule('', { left: 'b' }, { preempt: ['right'] })] as ConcurrencyCondition[] }
+  const preempting = {
+    ...BOTH,
+    rules: [RULES[0] ?? BOTH.rules[0], rule('', { left: 'b' }, { preempt: ['right'] })] as ConcurrencyCondition[],
+  }
   server().on(EDITS, answered({ ...ROOT, children: [SET, preempting] }))
   const user = show(<Form path="root/both" />)
   const words = 'all: preempted by rule 2'
@@ -175,7 +240,9 @@ it('says what the server refuses, and leaves the document as it was', async () =
   server().on(EDITS, { ...answered(ROOT), refused: { message: 'no such node', hint: 'load it again' } })
   const user = show(<Form path="root/both" />)
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
-  await waitFor(() => expect(useEditor.getState().notice).toMatchObject({ what: 'Delete a rule', message: 'no such node', hint: 'load it again' }))
+  await waitFor(() =>
+    expect(useEditor.getState().notice).toMatchObject({ what: 'Delete a rule', message: 'no such node', hint: 'load it again' }),
+  )
   server().on(EDITS, new Refusal(500, { message: 'the server has failed' }))
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
   await waitFor(() => expect(useEditor.getState().notice).toMatchObject({ message: 'the server has failed' }))

@@ -64,5 +64,7 @@ export function useTransitionFindings(path: string, outcome: string): readonly F
 
 /** The container to show for a finding's node: the nearest one that exists around it. */
 export function nearestPath(paths: ReadonlySet<string>, path: string): string | undefined {
-  return pathsTo(path).toReversed().find((each) => paths.has(each))
+  return pathsTo(path)
+    .toReversed()
+    .find((each) => paths.has(each))
 }

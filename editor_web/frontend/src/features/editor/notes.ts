@@ -18,8 +18,7 @@ export function toggleNotes(): void {
 export function writeNote(path = chosenOf(editor())?.path ?? editor().scope): void {
   const root = rootOf(editor())
   if (!root || !nodeOf(root, path)) return
-  if (isForeign(root, path))
-    showEditorRefusal('Note', 'this is part of another behavior', 'Open that behavior and write it there.')
+  if (isForeign(root, path)) showEditorRefusal('Note', 'this is part of another behavior', 'Open that behavior and write it there.')
   else useNotes.setState({ isShown: true, writing: path })
 }
 

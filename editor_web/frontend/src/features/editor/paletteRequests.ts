@@ -1,13 +1,5 @@
 /** Opening the palettes: what to add or connect, and where. */
-import {
-  holderOf,
-  isForeign,
-  isHolder,
-  isTreePart,
-  nodeOf,
-  parentPath,
-  type EditNode,
-} from '../../document/editing/model'
+import { holderOf, isForeign, isHolder, isTreePart, nodeOf, parentPath, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
 import { chosenOf, editor, isOpenNow, showEditorRefusal, rootOf, scopeOf, setEditor } from './store'
 

@@ -63,11 +63,7 @@ function Sign({ mark, box, palette }: { mark: Marking | undefined; box: Box; pal
   return (
     <g>
       <circle cx={at.x} cy={at.y} r={9} style={{ fill: colourOf(mark, palette.line, palette) }} />
-      <text
-        x={at.x}
-        y={at.y + 4.5}
-        style={{ fontFamily: SANS, fontSize: 14, fontWeight: 700, textAnchor: 'middle', fill: palette.card }}
-      >
+      <text x={at.x} y={at.y + 4.5} style={{ fontFamily: SANS, fontSize: 14, fontWeight: 700, textAnchor: 'middle', fill: palette.card }}>
         {SIGNS[mark]}
       </text>
       <title>{mark}</title>
@@ -92,22 +88,14 @@ export function Frame({ node, box, palette, mark, onPick }: PartProps) {
   return (
     <g {...pickable(node.id, onPick)}>
       <Body of={of} fill={palette.frame} box={box} palette={palette} mark={mark} />
-      <text
-        x={box.x + 14}
-        y={box.y + FRAME_HEAD / 2 + 5}
-        style={{ fontFamily: SANS, fontSize: 14, fontWeight: 620, fill: palette.text }}
-      >
+      <text x={box.x + 14} y={box.y + FRAME_HEAD / 2 + 5} style={{ fontFamily: SANS, fontSize: 14, fontWeight: 620, fill: palette.text }}>
         {of.name}
         <tspan dx={8} style={{ fontSize: 11.5, fontWeight: 400, fill: palette.quiet }}>
           {of.title || kindLabel(of.kind)}
         </tspan>
       </text>
       {tableHeight(of) > 0 && (
-        <Rules
-          node={of}
-          palette={palette}
-          box={{ ...box, y: box.y + box.height - rowsHeight(transitions.length) - tableHeight(of) }}
-        />
+        <Rules node={of} palette={palette} box={{ ...box, y: box.y + box.height - rowsHeight(transitions.length) - tableHeight(of) }} />
       )}
       <Transitions node={node as CardNode} box={box} palette={palette} />
       <Initial node={node as CardNode} box={box} palette={palette} />
@@ -122,11 +110,7 @@ export function Leaf({ node, box, palette, mark, onPick }: PartProps) {
   return (
     <g {...pickable(node.id, onPick)}>
       <Body of={of} fill={palette.card} box={box} palette={palette} mark={mark} />
-      <text
-        x={box.x + 13}
-        y={box.y + 21}
-        style={{ fontFamily: SANS, fontSize: 14, fontWeight: 620, fill: palette.text }}
-      >
+      <text x={box.x + 13} y={box.y + 21} style={{ fontFamily: SANS, fontSize: 14, fontWeight: 620, fill: palette.text }}>
         {fitted(of.name, (box.width - 26) / 8.2)}
       </text>
       <text x={box.x + 13} y={box.y + 37} style={{ fontFamily: MONO, fontSize: 11, fill: palette.quiet }}>
@@ -170,12 +154,7 @@ function Transitions({ node, box, palette }: { node: CardNode; box: Box; palette
         >
           {fitted(words, (box.width - 26) / 6.2)}
         </text>
-        <circle
-          cx={box.x + box.width}
-          cy={y}
-          r={4.5}
-          style={{ fill: transition.target === undefined ? palette.failed : palette.edge }}
-        />
+        <circle cx={box.x + box.width} cy={y} r={4.5} style={{ fill: transition.target === undefined ? palette.failed : palette.edge }} />
       </g>
     )
   })
@@ -188,10 +167,7 @@ function Initial({ node, box, palette }: { node: CardNode; box: Box; palette: Pa
     <g>
       <title>begins here</title>
       <circle cx={at.x} cy={at.y} r={8} style={{ fill: palette.text }} />
-      <path
-        d={`M ${at.x - 2.5} ${at.y - 4} L ${at.x + 4.5} ${at.y} L ${at.x - 2.5} ${at.y + 4} z`}
-        style={{ fill: palette.canvas }}
-      />
+      <path d={`M ${at.x - 2.5} ${at.y - 4} L ${at.x + 4.5} ${at.y} L ${at.x - 2.5} ${at.y + 4} z`} style={{ fill: palette.canvas }} />
     </g>
   )
 }
@@ -234,23 +210,12 @@ export function Rules({ node, box, palette }: { node: EditNode; box: Box; palett
   ]
   return (
     <g style={{ fontFamily: SANS }}>
-      <line
-        x1={box.x}
-        x2={box.x + box.width}
-        y1={box.y}
-        y2={box.y}
-        style={{ stroke: palette.line, strokeWidth: 0.7 }}
-      />
+      <line x1={box.x} x2={box.x + box.width} y1={box.y} y2={box.y} style={{ stroke: palette.line, strokeWidth: 0.7 }} />
       <text x={box.x + 12} y={box.y + 18} style={{ fontSize: 11, fill: palette.quiet }}>
         Ends with
       </text>
       {lines.map(([outcome, when], index) => (
-        <text
-          key={index}
-          x={box.x + 12}
-          y={box.y + 18 + (index + 1) * RULE_HEIGHT}
-          style={{ fontSize: 12, fill: palette.text }}
-        >
+        <text key={index} x={box.x + 12} y={box.y + 18 + (index + 1) * RULE_HEIGHT} style={{ fontSize: 12, fill: palette.text }}>
           <tspan style={{ fontWeight: 620 }}>{outcome}</tspan>
           <tspan x={box.x + 12 + Math.max(80, (outcome ?? '').length * 7.5 + 14)} style={{ fill: palette.quiet }}>
             {fitted(when ?? '', (box.width - 110) / 6.2)}

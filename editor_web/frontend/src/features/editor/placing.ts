@@ -17,9 +17,7 @@ export async function layOutAnew(): Promise<void> {
     showEditorNotice('It is laid out already')
     return
   }
-  await perform('Lay out', [
-    { edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) },
-  ])
+  await perform('Lay out', [{ edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) }])
 }
 
 function positionedBelow(node: EditNode): readonly string[] {
@@ -61,9 +59,7 @@ export async function place(moved: ReadonlyMap<string, { x: number; y: number }>
 
 export async function align(how: Alignment): Promise<void> {
   const { boxes } = canvasBoxes()
-  const chosen = new Map(
-    outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])),
-  )
+  const chosen = new Map(outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])))
   if (chosen.size < 2) {
     showEditorRefusal('Align', 'select two nodes or more')
     return

@@ -12,9 +12,7 @@ export function outermost(): readonly string[] {
 export function own(paths: readonly string[], what: string): readonly string[] {
   const root = rootOf(editor())
   const mine = root ? paths.filter((path) => !isForeign(root, path)) : []
-  if (mine.length < paths.length)
-    showEditorRefusal(what, 'this is part of another behavior', 'Open that behavior and change it there.')
+  if (mine.length < paths.length) showEditorRefusal(what, 'this is part of another behavior', 'Open that behavior and change it there.')
   else if (paths.length === 0) showEditorRefusal(what, 'nothing is selected', 'Select nodes on the canvas first.')
   return mine
 }
-

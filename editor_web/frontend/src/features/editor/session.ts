@@ -79,8 +79,7 @@ export type Side = 'merged' | 'theirs' | 'mine'
 export async function resolve(side: Side): Promise<void> {
   const { conflict } = editor()
   if (!conflict) return
-  const text =
-    side === 'theirs' ? conflict.theirs : side === 'merged' ? (conflict.merged ?? '') : draftOf(editor()).text
+  const text = side === 'theirs' ? conflict.theirs : side === 'merged' ? (conflict.merged ?? '') : draftOf(editor()).text
   setEditor({ conflict: undefined, isOutdated: false, base: { text: conflict.theirs, hash: conflict.theirs_hash } })
   if (side !== 'mine') await takeText(side === 'merged' ? 'Merge with the file' : 'Take the file', text)
   if (side !== 'theirs') await save()

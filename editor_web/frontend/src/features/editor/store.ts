@@ -20,9 +20,7 @@ export interface AddRequest {
   readonly screen?: Point
 }
 
-export type PaletteRequest =
-  | ({ readonly kind: 'add' } & AddRequest)
-  | { readonly kind: 'connect'; readonly path: string }
+export type PaletteRequest = ({ readonly kind: 'add' } & AddRequest) | { readonly kind: 'connect'; readonly path: string }
 
 export interface Notice {
   readonly what: string
@@ -149,8 +147,7 @@ export function rootOf(state: EditorState): EditNode | undefined {
   const { root } = draftOf(state)
   const { unwritten } = state
   if (!root || unwritten.length === 0) return root
-  if (laidOut?.root !== root || laidOut.unwritten !== unwritten)
-    laidOut = { root, unwritten, made: withLayout(root, unwritten.flat()) }
+  if (laidOut?.root !== root || laidOut.unwritten !== unwritten) laidOut = { root, unwritten, made: withLayout(root, unwritten.flat()) }
   return laidOut.made
 }
 

@@ -17,8 +17,7 @@ export function shareUnchanged<T extends { readonly id: string }>(before: readon
 export function isDrawnEqual(one: unknown, other: unknown): boolean {
   if (Object.is(one, other)) return true
   if (typeof one !== 'object' || typeof other !== 'object' || one === null || other === null) return false
-  if (one instanceof Set && other instanceof Set)
-    return one.size === other.size && [...one].every((each) => other.has(each))
+  if (one instanceof Set && other instanceof Set) return one.size === other.size && [...one].every((each) => other.has(each))
   if (Array.isArray(one) !== Array.isArray(other)) return false
   const [a, b] = [one as Record<string, unknown>, other as Record<string, unknown>]
   const isNode = 'end_line' in a

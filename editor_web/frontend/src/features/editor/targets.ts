@@ -40,7 +40,10 @@ async function look(): Promise<void> {
     const isCurrent = editor().id === id && draftOf(editor()).text === text && useTargets.getState().level === level
     if (answer.dropped || !isCurrent) return
     useTargets.setState({ problem: answer.problem })
-    take(answer.findings.map((each): FindingView => ({ ...each, severity: level })), true)
+    take(
+      answer.findings.map((each): FindingView => ({ ...each, severity: level })),
+      true,
+    )
   } catch (error) {
     useTargets.setState({ problem: wordsOf(error) })
   }

@@ -29,8 +29,7 @@ export function completeText(context: CompletionContext): CompletionResult | nul
     context.pos - context.state.doc.lineAt(context.pos).from,
     names.map((name) => ({ name, origin: '', detail: '' })),
   )
-  if (opening)
-    return { from: context.pos - opening.word.length, options: names.map((label) => ({ label, type: 'variable' })) }
+  if (opening) return { from: context.pos - opening.word.length, options: names.map((label) => ({ label, type: 'variable' })) }
   const writing = writingAt(text, context.pos)
   const options = optionsFor(text, context.pos, writing.key, writing.around)
   if (options.length === 0 || (writing.word === '' && !context.explicit && writing.key === '')) return null
@@ -40,12 +39,8 @@ export function completeText(context: CompletionContext): CompletionResult | nul
 function namesHere(): readonly string[] {
   const { document } = draftOf(editor())
   const root = rootOf(editor())
-  const written = root
-    ? allNodes(root).flatMap((node) => [...Object.values(node.outputs), ...Object.keys(node.userdata)])
-    : []
-  return [
-    ...new Set([...Object.keys(document?.parameters ?? {}), ...Object.keys(document?.userdata ?? {}), ...written]),
-  ]
+  const written = root ? allNodes(root).flatMap((node) => [...Object.values(node.outputs), ...Object.keys(node.userdata)]) : []
+  return [...new Set([...Object.keys(document?.parameters ?? {}), ...Object.keys(document?.userdata ?? {}), ...written])]
 }
 
 function optionsFor(text: string, at: number, key: string, around: readonly string[]): readonly Completion[] {
@@ -57,10 +52,8 @@ function optionsFor(text: string, at: number, key: string, around: readonly stri
       type: 'class',
       detail: state.doc.split('\n')[0] ?? '',
     }))
-  if (key === 'entry')
-    return catalogue.entries.map((entry) => ({ label: entry.name, type: 'constant', detail: entry.kind }))
-  if (key === 'behavior')
-    return catalogue.behaviors.map((behavior) => ({ label: behavior.id, type: 'text', detail: behavior.description }))
+  if (key === 'entry') return catalogue.entries.map((entry) => ({ label: entry.name, type: 'constant', detail: entry.kind }))
+  if (key === 'behavior') return catalogue.behaviors.map((behavior) => ({ label: behavior.id, type: 'text', detail: behavior.description }))
   if (key === '' && around[0] === 'with') {
     const state = catalogue.states.find((each) => each.name === stateNear(text, at))
     return (state?.parameters ?? []).map((parameter) => ({
@@ -79,12 +72,13 @@ function optionsFor(text: string, at: number, key: string, around: readonly stri
     return [...new Set(names)].map((label) => ({ label, type: 'enum' }))
   }
   if (key === 'resume') return ['rerun', 'ask'].map((label) => ({ label, type: 'keyword' }))
-  if (around[0] === 'autonomy' && key !== '')
-    return ['off', 'low', 'high', 'full'].map((label) => ({ label, type: 'keyword' }))
+  if (around[0] === 'autonomy' && key !== '') return ['off', 'low', 'high', 'full'].map((label) => ({ label, type: 'keyword' }))
   if (key === '' && (around[1] === 'states' || around[0] === 'root')) {
-    return [...NODE_KEYS, ...catalogue.containers.filter((each) => !each.only_in_tree).map((each) => each.kind)].map(
-      (label) => ({ label, type: 'keyword', apply: `${label}: ` }),
-    )
+    return [...NODE_KEYS, ...catalogue.containers.filter((each) => !each.only_in_tree).map((each) => each.kind)].map((label) => ({
+      label,
+      type: 'keyword',
+      apply: `${label}: `,
+    }))
   }
   return []
 }

@@ -28,8 +28,7 @@ export function useEditorKeys(area: RefObject<HTMLElement | null>): void {
       const isCode = target?.closest('.cm-editor') !== null && target !== undefined
       if (isText && !EVERYWHERE.has(command.id) && !(isCode && IN_TEXT.has(command.id))) return
       // Enter and Space on a button press that button.
-      if (!isText && target && !isOnCanvas(target) && ['Enter', 'Escape', ' '].includes(event.key) && !event.ctrlKey)
-        return
+      if (!isText && target && !isOnCanvas(target) && ['Enter', 'Escape', ' '].includes(event.key) && !event.ctrlKey) return
       if (isText && command.id === 'save') target.blur()
       // What is marked on the page is copied by the browser.
       if (command.id === 'copy' && (getSelection()?.toString() ?? '') !== '') return
@@ -45,10 +44,7 @@ export function useEditorKeys(area: RefObject<HTMLElement | null>): void {
   // A node that gets the keyboard by Tab is the chosen one.
   useEffect(() => {
     const onFocus = (event: FocusEvent) => {
-      const node =
-        event.target instanceof HTMLElement && event.target.classList.contains('react-flow__node')
-          ? event.target
-          : undefined
+      const node = event.target instanceof HTMLElement && event.target.classList.contains('react-flow__node') ? event.target : undefined
       const path = node?.dataset['id']
       if (path && node?.matches(':focus-visible') && !editor().selection.includes(path)) choose([path])
     }

@@ -13,11 +13,7 @@ export const CourseLine = memo(function CourseLine({ data }: EdgeProps<CourseEdg
   const state = `${taken ? ' is-taken' : ''}${/fail|error|abort/.test(course.outcome) ? ' is-failure' : ''}`
   return (
     <>
-      <path
-        d={roundedPath(course.points)}
-        className={`course${state}`}
-        markerEnd={`url(#arrow${taken ? '-taken' : ''})`}
-      />
+      <path d={roundedPath(course.points)} className={`course${state}`} markerEnd={`url(#arrow${taken ? '-taken' : ''})`} />
       <text x={course.label.x} y={course.label.y} className={`course-label${state}`}>
         {course.outcome}
       </text>

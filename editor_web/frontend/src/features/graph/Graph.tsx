@@ -3,13 +3,7 @@ import { lookup, type Dict } from '../../document/dict'
 import '@xyflow/react/dist/style.css'
 import { ActionIcon, Group, Loader, Tooltip } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
-import {
-  IconArrowsMaximize,
-  IconArrowsRightDown,
-  IconFocus2,
-  IconMinus,
-  IconPlus,
-} from '@tabler/icons-react'
+import { IconArrowsMaximize, IconArrowsRightDown, IconFocus2, IconMinus, IconPlus } from '@tabler/icons-react'
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
 import { useCallback, useEffect, useMemo, useState, type MouseEvent, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
@@ -82,27 +76,27 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
         </>
       }
     >
-    <div className="graph" ref={ref}>
-      <ArrowHeads />
-      {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
-      {!laidOut && !problem && (
-        <div className="graph-wait" role="status">
-          <Loader size="sm" aria-hidden />
-          <span>Drawing…</span>
-        </div>
-      )}
-      {laidOut && (
-        <Drawn
-          laidOut={laidOut}
-          pane={`${width}x${height}`}
-          selected={selected}
-          onSelect={onSelect}
-          shown={shown}
-          follows={follows}
-          {...(behavior === undefined ? {} : { behavior })}
-        />
-      )}
-    </div>
+      <div className="graph" ref={ref}>
+        <ArrowHeads />
+        {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
+        {!laidOut && !problem && (
+          <div className="graph-wait" role="status">
+            <Loader size="sm" aria-hidden />
+            <span>Drawing…</span>
+          </div>
+        )}
+        {laidOut && (
+          <Drawn
+            laidOut={laidOut}
+            pane={`${width}x${height}`}
+            selected={selected}
+            onSelect={onSelect}
+            shown={shown}
+            follows={follows}
+            {...(behavior === undefined ? {} : { behavior })}
+          />
+        )}
+      </div>
     </Panel>
   )
 }
@@ -146,10 +140,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: 
     if (shown) void fitView({ nodes: [{ id: shown.path }], padding: 0.6, maxZoom: 1, duration: 300 })
   }, [shown, fitView])
 
-  const onNodeClick = useCallback(
-    (_: unknown, node: CanvasNode) => onSelect(node.type === 'outcome' ? undefined : node.id),
-    [onSelect],
-  )
+  const onNodeClick = useCallback((_: unknown, node: CanvasNode) => onSelect(node.type === 'outcome' ? undefined : node.id), [onSelect])
 
   const onNodeMenu = useCallback(
     (event: MouseEvent, node: CanvasNode) => {
@@ -163,34 +154,34 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: 
 
   return (
     <LowDetailContext value={isFar}>
-    {behavior !== undefined && menu && <GraphMenu behavior={behavior} node={menu.node} at={menu.at} onClose={() => setMenu(undefined)} />}
-    <ReactFlow
-      nodes={nodes}
-      edges={isFar ? NO_EDGES : edges}
-      onlyRenderVisibleElements={hasMany && !isFar}
-      nodeTypes={NODE_TYPES}
-      edgeTypes={EDGE_TYPES}
-      onNodeClick={onNodeClick}
-      onNodeContextMenu={onNodeMenu}
-      onPaneClick={() => onSelect(undefined)}
-      onNodesChange={(changes) => {
-        const chosen = changes.find((change) => change.type === 'select' && change.selected)
-        if (chosen && 'id' in chosen) onSelect(chosen.id)
-      }}
-      nodesDraggable={false}
-      nodesConnectable={false}
-      edgesFocusable={false}
-      deleteKeyCode={null}
-      minZoom={0.03}
-      maxZoom={3}
-      fitView
-      fitViewOptions={fitOptions()}
-      proOptions={{ hideAttribution: false }}
-      aria-label="Graph of the behavior"
-    >
-      <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
-      {isFar && <LowDetailEdges courses={laidOut.layout.courses} />}
-    </ReactFlow>
+      {behavior !== undefined && menu && <GraphMenu behavior={behavior} node={menu.node} at={menu.at} onClose={() => setMenu(undefined)} />}
+      <ReactFlow
+        nodes={nodes}
+        edges={isFar ? NO_EDGES : edges}
+        onlyRenderVisibleElements={hasMany && !isFar}
+        nodeTypes={NODE_TYPES}
+        edgeTypes={EDGE_TYPES}
+        onNodeClick={onNodeClick}
+        onNodeContextMenu={onNodeMenu}
+        onPaneClick={() => onSelect(undefined)}
+        onNodesChange={(changes) => {
+          const chosen = changes.find((change) => change.type === 'select' && change.selected)
+          if (chosen && 'id' in chosen) onSelect(chosen.id)
+        }}
+        nodesDraggable={false}
+        nodesConnectable={false}
+        edgesFocusable={false}
+        deleteKeyCode={null}
+        minZoom={0.03}
+        maxZoom={3}
+        fitView
+        fitViewOptions={fitOptions()}
+        proOptions={{ hideAttribution: false }}
+        aria-label="Graph of the behavior"
+      >
+        <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+        {isFar && <LowDetailEdges courses={laidOut.layout.courses} />}
+      </ReactFlow>
     </LowDetailContext>
   )
 }

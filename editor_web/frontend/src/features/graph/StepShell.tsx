@@ -24,7 +24,10 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
   const live = useNodeLive(id)
   const status = statusOf(live?.status ?? 'idle')
   return (
-    <div className={`step leaf is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`} data-status={status}>
+    <div
+      className={`step leaf is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`}
+      data-status={status}
+    >
       <Ports />
       {data.isInitial && <span className="initial-mark" title="The first state" />}
       <Marks path={id} />
@@ -35,7 +38,9 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
         <span className="step-name">{data.node.name}</span>
         {live && live.visits > 1 && <span className="visits">×{live.visits}</span>}
       </div>
-      <div className="step-title">{data.node.disabled === false ? data.node.title || kindLabel(data.node.kind) : disabledText(data.node.disabled)}</div>
+      <div className="step-title">
+        {data.node.disabled === false ? data.node.title || kindLabel(data.node.kind) : disabledText(data.node.disabled)}
+      </div>
       <div className="step-foot">
         <LiveText live={live} />
         <HeldText path={id} />

@@ -7,7 +7,10 @@ import { exitsOf, outcomeId, type Course, type Exit } from '../../document/layou
 import { flatten, isContainer, kindLabel } from '../../document/tree'
 import type { LaidOut } from './useLayout'
 
-export type StepNode = Node<{ node: GraphNode; isInitial: boolean; isPassedOver: boolean; machine: string; exits: readonly Exit[] }, 'leaf' | 'container'>
+export type StepNode = Node<
+  { node: GraphNode; isInitial: boolean; isPassedOver: boolean; machine: string; exits: readonly Exit[] },
+  'leaf' | 'container'
+>
 export type OutcomeNode = Node<{ machine: string; outcome: string }, 'outcome'>
 export type CanvasNode = StepNode | OutcomeNode
 export type CourseEdge = Edge<{ course: Course }, 'course'>

@@ -31,9 +31,7 @@ export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
       const isLarge = flatten(root).length > MANY
       const inStyle = async (style: Style, call: LayoutCall) => ({ root, style, layout: await layOut(root, style, call) })
       // What is large is laid out once, in the style that is best by a rough look.
-      const all = await Promise.all(
-        stylesOf(flow, area).map((style) => inStyle(style, isLarge ? layOutRoughly : layOutByElk)),
-      )
+      const all = await Promise.all(stylesOf(flow, area).map((style) => inStyle(style, isLarge ? layOutRoughly : layOutByElk)))
       const best = all.reduce((a, b) => (zoom(b.layout.size, area) > zoom(a.layout.size, area) * 1.05 ? b : a))
       const chosen = isLarge ? await inStyle(best.style, layOutByElk) : best
       performance.measure('flexcell:layout', { start: begun })

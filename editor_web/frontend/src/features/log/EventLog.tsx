@@ -82,9 +82,20 @@ function Lines({ lines, hidden, isFiltered, follows, onLeave }: LinesProps) {
   }, [follows, last])
 
   return (
-    <div className="log" role="log" aria-label="Events" aria-live="off" tabIndex={0} ref={area} onWheel={(e) => e.deltaY < 0 && follows && onLeave()}>
+    <div
+      className="log"
+      role="log"
+      aria-label="Events"
+      aria-live="off"
+      tabIndex={0}
+      ref={area}
+      onWheel={(e) => e.deltaY < 0 && follows && onLeave()}
+    >
       {lines.length === 0 && (
-        <Empty icon={<IconListDetails size={26} stroke={1.4} aria-hidden />} title={isFiltered ? 'No line matches' : 'Nothing has happened yet'}>
+        <Empty
+          icon={<IconListDetails size={26} stroke={1.4} aria-hidden />}
+          title={isFiltered ? 'No line matches' : 'Nothing has happened yet'}
+        >
           {isFiltered ? 'Show all levels, or clear the search.' : 'Start the behavior; its events appear here.'}
         </Empty>
       )}

@@ -95,8 +95,8 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
       <p className="quiet start-place">{place}</p>
       <Disclosure title="Another cell or clock">
         <p className="quiet start-place">
-          The cell is chosen when the server starts: <code>flexcell serve --cell …</code>. It goes by the real clock; in virtual time, as fast as can be
-          computed, a behavior is run on the terminal: <code>{terminal}</code>
+          The cell is chosen when the server starts: <code>flexcell serve --cell …</code>. It goes by the real clock; in virtual time, as
+          fast as can be computed, a behavior is run on the terminal: <code>{terminal}</code>
         </p>
       </Disclosure>
     </form>

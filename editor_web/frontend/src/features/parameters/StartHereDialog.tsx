@@ -74,7 +74,11 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
     onDone()
     onStarted()
   }
-  const { fields, values, set, problems, fill, submit, inputs, setInputs, inputsProblem } = useStart(behavior, started, placeOf(here, found))
+  const { fields, values, set, problems, fill, submit, inputs, setInputs, inputsProblem } = useStart(
+    behavior,
+    started,
+    placeOf(here, found),
+  )
   const [isFilled, setFilled] = useState(false)
   useEffect(() => {
     if (isFilled || here.kind === 'to') return
@@ -95,7 +99,13 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
       <Text size="sm">{wordsFor(here, found)}</Text>
       {reason && <Alert color="red">{reason}</Alert>}
       {fields.map((field) => (
-        <ParameterField key={field.name} field={field} value={lookup(values, field.name)} problem={lookup(problems, field.name)} onChange={(value) => set(field.name, value)} />
+        <ParameterField
+          key={field.name}
+          field={field}
+          value={lookup(values, field.name)}
+          problem={lookup(problems, field.name)}
+          onChange={(value) => set(field.name, value)}
+        />
       ))}
       <Textarea
         size="sm"

@@ -26,7 +26,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
         data={[...LEVELS]}
         value={supervision.autonomy}
         allowDeselect={false}
-        onChange={(level) => onChange(withAutonomy(supervision, (level ?? 'full')))}
+        onChange={(level) => onChange(withAutonomy(supervision, level ?? 'full'))}
       />
       <Switch
         size="sm"
@@ -42,7 +42,12 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
         checked={supervision.demandsOperator}
         onChange={(event) => set({ demandsOperator: event.currentTarget.checked })}
       />
-      <Switch size="sm" label="Begin paused" checked={supervision.startsPaused} onChange={(event) => set({ startsPaused: event.currentTarget.checked })} />
+      <Switch
+        size="sm"
+        label="Begin paused"
+        checked={supervision.startsPaused}
+        onChange={(event) => set({ startsPaused: event.currentTarget.checked })}
+      />
       <Switch
         size="sm"
         label="Pause at the breakpoints"

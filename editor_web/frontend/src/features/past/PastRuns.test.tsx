@@ -32,7 +32,11 @@ function past(told: Partial<PastRunBody>): PastRunBody {
   }
 }
 
-const RUNS = [past({ recording: 'r1.mcap' }), past({ id: 'r2', status: 'running', outcome: null }), past({ id: 'r3', failed: true, success: false, outcome: 'bad', cause: 'no contact' })]
+const RUNS = [
+  past({ recording: 'r1.mcap' }),
+  past({ id: 'r2', status: 'running', outcome: null }),
+  past({ id: 'r3', failed: true, success: false, outcome: 'bad', cause: 'no contact' }),
+]
 
 /** The page, once the server has answered it. */
 async function at(runs: readonly PastRunBody[], total = runs.length) {
@@ -92,7 +96,15 @@ it('says why the journal cannot be read', async () => {
 
 it('lists recordings with their size, and why one cannot be opened', async () => {
   opened.mockReset()
-  const file: RecordingFile = { path: 'runs/a.mcap', run: 'r1', behavior: 'shift', started_at_s: 1000, size_bytes: 2_400_000, changed_at_s: 1003, problem: '' }
+  const file: RecordingFile = {
+    path: 'runs/a.mcap',
+    run: 'r1',
+    behavior: 'shift',
+    started_at_s: 1000,
+    size_bytes: 2_400_000,
+    changed_at_s: 1003,
+    problem: '',
+  }
   server().on('GET /recordings', [file, { ...file, path: 'runs/b.mcap', behavior: '', size_bytes: 10, problem: 'it is cut off' }])
   const user = show(<Recordings href={(path) => `/recordings/${path}`} onOpen={opened} />)
   const [whole, cut] = await screen.findAllByRole('listitem')

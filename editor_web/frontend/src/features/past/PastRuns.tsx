@@ -81,7 +81,9 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
       )}
       {found?.runs.length === 0 && (
         <Empty icon={<IconHistory size={26} stroke={1.4} aria-hidden />} title={isFiltered ? 'No run matches' : 'No past runs'}>
-          {isFiltered ? 'Use fewer words, another day, or show all.' : 'Every run that is started here is kept in the journal and listed on this page.'}
+          {isFiltered
+            ? 'Use fewer words, another day, or show all.'
+            : 'Every run that is started here is kept in the journal and listed on this page.'}
         </Empty>
       )}
       <ul className="plain-list" aria-label="Past runs">
@@ -119,23 +121,23 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
 
 function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: () => void }) {
   return (
-      <a
-        className="past-item"
-        href={href}
-        onClick={(event) => {
-          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-          event.preventDefault()
-          onOpen()
-        }}
-      >
-        <span className="past-item-name">{run.behavior}</span>
-        <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
-        <span className="quiet past-item-facts">
-          {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
-        </span>
-        <span className="quiet mono past-item-id">{run.id}</span>
-        {run.cause && <span className={`past-item-cause${run.failed ? '' : ' quiet'}`}>{run.cause}</span>}
-      </a>
+    <a
+      className="past-item"
+      href={href}
+      onClick={(event) => {
+        if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+        event.preventDefault()
+        onOpen()
+      }}
+    >
+      <span className="past-item-name">{run.behavior}</span>
+      <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
+      <span className="quiet past-item-facts">
+        {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
+      </span>
+      <span className="quiet mono past-item-id">{run.id}</span>
+      {run.cause && <span className={`past-item-cause${run.failed ? '' : ' quiet'}`}>{run.cause}</span>}
+    </a>
   )
 }
 
@@ -150,10 +152,19 @@ function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
   if (!left) return null
   return (
     <Group gap="sm" my="xs" role="group" aria-label="Selected runs">
-      <Button size="xs" leftSection={<IconGitCompare size={15} aria-hidden />} disabled={!right} onClick={() => right && onCompare(left.id, right.id)}>
+      <Button
+        size="xs"
+        leftSection={<IconGitCompare size={15} aria-hidden />}
+        disabled={!right}
+        onClick={() => right && onCompare(left.id, right.id)}
+      >
         Compare
       </Button>
-      <span className="quiet">{right ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}` : 'Select a second run.'}</span>
+      <span className="quiet">
+        {right
+          ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}`
+          : 'Select a second run.'}
+      </span>
       <Button size="xs" variant="subtle" color="gray" onClick={onNone}>
         Select none
       </Button>

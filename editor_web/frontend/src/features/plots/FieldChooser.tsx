@@ -55,7 +55,10 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
                 <span>{each.topic}</span>
                 {count > 0 && <span className="tab-count">{count}</span>}
               </button>
-              {isOpen && rowsOf(each).map((row) => <Row key={row.name} topic={each.topic} row={row} chosen={chosen} isFull={isFull} onToggle={toggle} />)}
+              {isOpen &&
+                rowsOf(each).map((row) => (
+                  <Row key={row.name} topic={each.topic} row={row} chosen={chosen} isFull={isFull} onToggle={toggle} />
+                ))}
             </li>
           )
         })}

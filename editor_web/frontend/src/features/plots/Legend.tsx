@@ -28,7 +28,11 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
         const value = row === undefined || row < 0 ? NaN : curves.value(entry.id, row)
         return (
           <li key={entry.id}>
-            <span className={`plot-color${entry.color >= 8 ? ' is-dashed' : ''}`} style={{ borderColor: `var(--curve-${entry.color % 8})` }} aria-hidden />
+            <span
+              className={`plot-color${entry.color >= 8 ? ' is-dashed' : ''}`}
+              style={{ borderColor: `var(--curve-${entry.color % 8})` }}
+              aria-hidden
+            />
             <span className="plot-label" title={`${entry.topic} ${entry.label}`}>
               {entry.label} <span className="quiet">{entry.topic}</span>
             </span>
@@ -36,7 +40,12 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
               {valueText(value)} {entry.unit}
             </span>
             {onRemove && (
-              <button type="button" className="plot-remove" aria-label={`Take away ${entry.label} of ${entry.topic}`} onClick={() => onRemove(entry.id)}>
+              <button
+                type="button"
+                className="plot-remove"
+                aria-label={`Take away ${entry.label} of ${entry.topic}`}
+                onClick={() => onRemove(entry.id)}
+              >
                 <IconX size={12} aria-hidden />
               </button>
             )}

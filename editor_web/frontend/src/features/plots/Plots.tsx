@@ -37,13 +37,22 @@ export function Plots() {
 
   function save(): void {
     const headings = Object.fromEntries(entries.map(({ id, topic, label, unit }) => [id, `${topic} ${label}${unit && ` (${unit})`}`]))
-    saveBlob(new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }), `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`)
+    saveBlob(
+      new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }),
+      `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`,
+    )
   }
 
   const isPaused = plot.pausedS !== undefined
   const tools = (
     <div className="plot-tools">
-      <Button size="compact-xs" variant={isChoosing ? 'light' : 'subtle'} aria-pressed={isChoosing} leftSection={<IconListTree size={14} aria-hidden />} onClick={() => setChoosing(!isChoosing)}>
+      <Button
+        size="compact-xs"
+        variant={isChoosing ? 'light' : 'subtle'}
+        aria-pressed={isChoosing}
+        leftSection={<IconListTree size={14} aria-hidden />}
+        onClick={() => setChoosing(!isChoosing)}
+      >
         Choose
       </Button>
       <span className="plot-time">
@@ -66,7 +75,13 @@ export function Plots() {
       >
         {isPaused ? 'Go on' : 'Hold'}
       </Button>
-      <Button size="compact-xs" variant="default" disabled={entries.length === 0} leftSection={<IconDownload size={14} aria-hidden />} onClick={save}>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={entries.length === 0}
+        leftSection={<IconDownload size={14} aria-hidden />}
+        onClick={save}
+      >
         CSV
       </Button>
     </div>

@@ -30,7 +30,8 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
   useEffect(() => {
     const frame = requestAnimationFrame(() => {
       const pen = canvas.current && sized(canvas.current, width, height)
-      if (pen && area.current) draw(pen, { width, height }, curves, shown, { endS, spanS, atS: cursorS, isRecorded: true }, lookOf(area.current))
+      if (pen && area.current)
+        draw(pen, { width, height }, curves, shown, { endS, spanS, atS: cursorS, isRecorded: true }, lookOf(area.current))
     })
     return () => cancelAnimationFrame(frame)
   }, [canvas, width, height, curves, shown, endS, spanS, cursorS])

@@ -6,7 +6,11 @@ import { Refusal } from '../../../testing/server'
 import { RecordedPlots } from './RecordedPlots'
 
 const SOURCES = [{ address: '/runs/r1', label: '', startS: 0 }]
-const FIELDS = { topics: [{ topic: 'left/gripper', type: 'GripperState', fields: [{ path: 'width_m', label: 'width_m', unit: 'm' }] }], from_s: 0, until_s: 4 }
+const FIELDS = {
+  topics: [{ topic: 'left/gripper', type: 'GripperState', fields: [{ path: 'width_m', label: 'width_m', unit: 'm' }] }],
+  from_s: 0,
+  until_s: 4,
+}
 
 beforeEach(() => localStorage.removeItem('flexcell.plots'))
 

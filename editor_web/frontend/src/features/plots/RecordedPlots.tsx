@@ -38,14 +38,23 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
   const [part, setPart] = useState<View>()
   const [width, setWidth] = useState(0)
   const view = part ?? wholeView(durationS)
-  const known = useMemo(() => chosen.filter((id) => topics?.some((topic) => topic.fields.some((field) => `${topic.topic}:${field.path}` === id))), [chosen, topics])
+  const known = useMemo(
+    () => chosen.filter((id) => topics?.some((topic) => topic.fields.some((field) => `${topic.topic}:${field.path}` === id))),
+    [chosen, topics],
+  )
   const { curves, problem: lost } = useRecordedCurves(sources, isShown ? known : [], view, Math.min(1000, Math.round(width / 2)))
   const entries = useMemo(() => {
     const colors = coloured(new Map(), known)
     return known.flatMap((field) =>
       sources.map((source, index) => {
         const { topic, label, unit } = describe(field, topics ?? [])
-        return { id: curveId(source, field), topic, label: source.label ? `${source.label} ${label}` : label, unit, color: ((colors.get(field) ?? 0) % DASHED) + (index > 0 ? DASHED : 0) }
+        return {
+          id: curveId(source, field),
+          topic,
+          label: source.label ? `${source.label} ${label}` : label,
+          unit,
+          color: ((colors.get(field) ?? 0) % DASHED) + (index > 0 ? DASHED : 0),
+        }
       }),
     )
   }, [known, sources, topics])
@@ -67,17 +76,35 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
   const isEmpty = entries.length === 0
   const tools = (
     <div className="plot-tools">
-      <Button size="compact-xs" variant={isChoosing ? 'light' : 'subtle'} aria-pressed={isChoosing} leftSection={<IconListTree size={14} aria-hidden />} onClick={() => setChoosing(!isChoosing)}>
+      <Button
+        size="compact-xs"
+        variant={isChoosing ? 'light' : 'subtle'}
+        aria-pressed={isChoosing}
+        leftSection={<IconListTree size={14} aria-hidden />}
+        onClick={() => setChoosing(!isChoosing)}
+      >
         Choose
       </Button>
       <span className="plot-time">{cursorS !== undefined && `${cursorS.toFixed(2)} s`}</span>
-      <Button size="compact-xs" variant="default" disabled={!part} leftSection={<IconArrowsMaximize size={13} aria-hidden />} onClick={() => setPart(undefined)}>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={!part}
+        leftSection={<IconArrowsMaximize size={13} aria-hidden />}
+        onClick={() => setPart(undefined)}
+      >
         Whole
       </Button>
       <Button size="compact-xs" variant="default" disabled={isEmpty} leftSection={<IconDownload size={14} aria-hidden />} onClick={saveCsv}>
         CSV
       </Button>
-      <Button size="compact-xs" variant="default" disabled={isEmpty} leftSection={<IconPhotoDown size={14} aria-hidden />} onClick={() => canvas.current && savePicture(canvas.current, 'recorded-curves.png')}>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={isEmpty}
+        leftSection={<IconPhotoDown size={14} aria-hidden />}
+        onClick={() => canvas.current && savePicture(canvas.current, 'recorded-curves.png')}
+      >
         PNG
       </Button>
     </div>
@@ -106,7 +133,13 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
               onPan={(byS) => part && setPart(panned(part, byS, durationS))}
               onWidth={setWidth}
             />
-            <Legend entries={entries} curves={curves} atS={cursorS} endS={undefined} {...(sources.length === 1 && { onRemove: (id: string) => choose(chosen.filter((each) => each !== id)) })} />
+            <Legend
+              entries={entries}
+              curves={curves}
+              atS={cursorS}
+              endS={undefined}
+              {...(sources.length === 1 && { onRemove: (id: string) => choose(chosen.filter((each) => each !== id)) })}
+            />
           </div>
         )}
       </div>

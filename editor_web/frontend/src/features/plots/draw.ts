@@ -44,7 +44,14 @@ interface Area {
 }
 
 /** Draw everything anew; sizes are in CSS pixels. */
-export function draw(pen: CanvasRenderingContext2D, size: { width: number; height: number }, curves: Curves, shown: readonly Curve[], view: View, look: Look): void {
+export function draw(
+  pen: CanvasRenderingContext2D,
+  size: { width: number; height: number },
+  curves: Curves,
+  shown: readonly Curve[],
+  view: View,
+  look: Look,
+): void {
   pen.clearRect(0, 0, size.width, size.height)
   pen.font = look.font
   const units = [...new Set(shown.map((curve) => curve.unit))]
@@ -53,14 +60,30 @@ export function draw(pen: CanvasRenderingContext2D, size: { width: number; heigh
     const height = inner / units.length
     const top = TOP_PX + index * (height + LANE_GAP_PX)
     const area = { left: LEFT_PX, right: size.width - RIGHT_PX, top, bottom: top + height }
-    lane(pen, area, curves, shown.filter((curve) => curve.unit === unit), unit, view, look)
+    lane(
+      pen,
+      area,
+      curves,
+      shown.filter((curve) => curve.unit === unit),
+      unit,
+      view,
+      look,
+    )
   })
   const all = { left: LEFT_PX, right: size.width - RIGHT_PX, top: TOP_PX, bottom: size.height - FOOT_PX }
   timeAxis(pen, all, view, look)
   if (view.atS !== undefined) cursor(pen, all, view.atS, view, look)
 }
 
-function lane(pen: CanvasRenderingContext2D, area: Area, curves: Curves, shown: readonly Curve[], unit: string, view: View, look: Look): void {
+function lane(
+  pen: CanvasRenderingContext2D,
+  area: Area,
+  curves: Curves,
+  shown: readonly Curve[],
+  unit: string,
+  view: View,
+  look: Look,
+): void {
   const first = Math.max(0, curves.rowAt(view.endS - view.spanS) - 1)
   const last = Math.min(curves.length - 1, curves.rowAt(view.endS))
   const [low, high] = rangeOf(curves, shown, first, last)
@@ -97,7 +120,15 @@ function lane(pen: CanvasRenderingContext2D, area: Area, curves: Curves, shown: 
   pen.restore()
 }
 
-function line(pen: CanvasRenderingContext2D, curves: Curves, id: string, [first, last]: readonly [number, number], gapS: number, x: (at: number) => number, y: (value: number) => number): void {
+function line(
+  pen: CanvasRenderingContext2D,
+  curves: Curves,
+  id: string,
+  [first, last]: readonly [number, number],
+  gapS: number,
+  x: (at: number) => number,
+  y: (value: number) => number,
+): void {
   pen.beginPath()
   let before: number | undefined
   for (let row = first; row <= last; row += 1) {
@@ -151,9 +182,17 @@ function timeMarks(area: Area, view: View): readonly { readonly timeS: number; r
   const width = area.right - area.left
   if (view.isRecorded) {
     const shown = { fromS: view.endS - view.spanS, untilS: view.endS }
-    return ticks(shown, width).map(({ timeS, label }) => ({ timeS, label, isLast: width - xOf(timeS, { left: 0, right: width }, view) < 20 }))
+    return ticks(shown, width).map(({ timeS, label }) => ({
+      timeS,
+      label,
+      isLast: width - xOf(timeS, { left: 0, right: width }, view) < 20,
+    }))
   }
-  return marksOf(0, view.spanS, Math.max(2, Math.floor(width / 90))).map((ago) => ({ timeS: view.endS - ago, label: agoText(ago), isLast: ago === 0 }))
+  return marksOf(0, view.spanS, Math.max(2, Math.floor(width / 90))).map((ago) => ({
+    timeS: view.endS - ago,
+    label: agoText(ago),
+    isLast: ago === 0,
+  }))
 }
 
 function cursor(pen: CanvasRenderingContext2D, area: Area, atS: number, view: View, look: Look): void {

@@ -25,7 +25,11 @@ test('a search looks at topics and fields alike', () => {
 })
 
 test('a number whose topic is gone keeps its path', () => {
-  expect(describe('left/joint_state:position_rad.1', [joints])).toEqual({ topic: 'left/joint_state', label: 'position_rad turn', unit: 'rad' })
+  expect(describe('left/joint_state:position_rad.1', [joints])).toEqual({
+    topic: 'left/joint_state',
+    label: 'position_rad turn',
+    unit: 'rad',
+  })
   expect(describe('gone/x:a.b', [joints])).toEqual({ topic: 'gone/x', label: 'a.b', unit: '' })
 })
 

@@ -41,7 +41,10 @@ export function rowsOf(topic: TopicFields): readonly FieldRow[] {
 }
 
 /** Label and unit of a chosen number, also of one whose topic is not there now. */
-export function describe(id: string, topics: readonly TopicFields[]): { readonly topic: string; readonly label: string; readonly unit: string } {
+export function describe(
+  id: string,
+  topics: readonly TopicFields[],
+): { readonly topic: string; readonly label: string; readonly unit: string } {
   const cut = id.lastIndexOf(':')
   const [topic, path] = [id.slice(0, cut), id.slice(cut + 1)]
   const field = topics.find((each) => each.topic === topic)?.fields.find((each) => each.path === path)

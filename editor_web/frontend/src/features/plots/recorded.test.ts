@@ -30,7 +30,10 @@ it('has nothing of no recording', () => {
 })
 
 it('offers the numbers that all recordings have', () => {
-  const [first, second] = [[topic('arm', 'x', 'y'), topic('tool', 'w')], [topic('arm', 'y', 'z'), topic('other', 'w')]]
+  const [first, second] = [
+    [topic('arm', 'x', 'y'), topic('tool', 'w')],
+    [topic('arm', 'y', 'z'), topic('other', 'w')],
+  ]
   expect(common([first, second])).toEqual([topic('arm', 'y')])
   expect(common([first])).toEqual(first)
   expect(common([])).toEqual([])

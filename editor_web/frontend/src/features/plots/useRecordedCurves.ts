@@ -9,8 +9,14 @@ import { common, joined, type RecordedSource } from './recorded'
 
 const PATIENCE_MS = 120
 
-export function useRecordedFields(sources: readonly RecordedSource[], isShown: boolean): { readonly topics: readonly TopicFields[] | undefined; readonly problem: string } {
-  const [state, setState] = useState<{ readonly key: string; readonly topics?: readonly TopicFields[]; readonly problem: string }>({ key: '', problem: '' })
+export function useRecordedFields(
+  sources: readonly RecordedSource[],
+  isShown: boolean,
+): { readonly topics: readonly TopicFields[] | undefined; readonly problem: string } {
+  const [state, setState] = useState<{ readonly key: string; readonly topics?: readonly TopicFields[]; readonly problem: string }>({
+    key: '',
+    problem: '',
+  })
   const key = JSON.stringify(sources.map((source) => source.address))
   useEffect(() => {
     if (!isShown) return
@@ -29,7 +35,12 @@ export function useRecordedFields(sources: readonly RecordedSource[], isShown: b
 const NONE = new Curves(1)
 
 /** Undefined fields until the first answer; what was drawn stays until the next one has come. */
-export function useRecordedCurves(sources: readonly RecordedSource[], chosen: readonly string[], view: View, cells: number): { readonly curves: Curves; readonly problem: string } {
+export function useRecordedCurves(
+  sources: readonly RecordedSource[],
+  chosen: readonly string[],
+  view: View,
+  cells: number,
+): { readonly curves: Curves; readonly problem: string } {
   const [state, setState] = useState({ curves: NONE, problem: '' })
   const key = JSON.stringify({ sources, chosen, fromS: view.fromS, untilS: view.untilS, cells })
   useEffect(() => {
@@ -37,7 +48,11 @@ export function useRecordedCurves(sources: readonly RecordedSource[], chosen: re
     if (asked.chosen.length === 0 || asked.cells < 1) return
     let isCurrent = true
     const timer = setTimeout(() => {
-      Promise.all(asked.sources.map(({ address, startS }) => recordedApi.curves(address, asked.chosen, startS + asked.fromS, startS + asked.untilS, asked.cells))).then(
+      Promise.all(
+        asked.sources.map(({ address, startS }) =>
+          recordedApi.curves(address, asked.chosen, startS + asked.fromS, startS + asked.untilS, asked.cells),
+        ),
+      ).then(
         (found) => isCurrent && setState({ curves: joined(asked.sources, found), problem: '' }),
         (error: unknown) => isCurrent && setState((before) => ({ ...before, problem: wordsOf(error) })),
       )

@@ -17,7 +17,9 @@ export function EntryFacts({ course: { row, trace } }: { readonly course: EntryT
         <div>
           <dt>Revision {row.revision}</dt>
           <dd>
-            {[row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`, row.reason].filter(Boolean).join(', ')}
+            {[row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`, row.reason]
+              .filter(Boolean)
+              .join(', ')}
           </dd>
         </div>
       )}

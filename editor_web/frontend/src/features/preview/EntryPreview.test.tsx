@@ -7,8 +7,25 @@ import type { EntryChanged } from '../../api/types'
 import type { Previewed } from '../../api/preview'
 import { EntryPreview } from './EntryPreview'
 
-const ARM = armInfo({ joint_names: ['j1'], lower_rad: [-1], upper_rad: [1], velocity_rad_s: [1], acceleration_rad_s2: [10], effort_nm: [80], jerk_rad_s3: [100] })
-const ROW: EntryChanged = { kind: 'joints', name: 'above', revision: 3, deleted: false, tags: ['station_1'], by: 'ana', reason: 'more room', changed_unix_ms: 0 }
+const ARM = armInfo({
+  joint_names: ['j1'],
+  lower_rad: [-1],
+  upper_rad: [1],
+  velocity_rad_s: [1],
+  acceleration_rad_s2: [10],
+  effort_nm: [80],
+  jerk_rad_s3: [100],
+})
+const ROW: EntryChanged = {
+  kind: 'joints',
+  name: 'above',
+  revision: 3,
+  deleted: false,
+  tags: ['station_1'],
+  by: 'ana',
+  reason: 'more room',
+  changed_unix_ms: 0,
+}
 const SHOWN: Previewed = { by: 'field', kind: 'joints', name: 'above', arm: 'left' }
 const closed = vi.fn()
 
@@ -30,7 +47,12 @@ beforeEach(() => {
   closed.mockReset()
   server()
     .on('GET /teach/entries', { entries: [ROW], total: 1 })
-    .on('GET /teach/fits', { demonstration: { times_s: [0], joint_names: ['j1'], joints: [[0.5]], poses: [], remark: '' }, primitive: null, joint_fit: null, cart_fit: null })
+    .on('GET /teach/fits', {
+      demonstration: { times_s: [0], joint_names: ['j1'], joints: [[0.5]], poses: [], remark: '' },
+      primitive: null,
+      joint_fit: null,
+      cart_fit: null,
+    })
 })
 
 it('shows the arm of the state at the entry until it is closed, with what is known of the entry', async () => {

@@ -52,7 +52,12 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
       </div>
     </>
   )
-  if (isSheet) return <Sheet label={`Preview of ${title}`} onClose={close}>{body}</Sheet>
+  if (isSheet)
+    return (
+      <Sheet label={`Preview of ${title}`} onClose={close}>
+        {body}
+      </Sheet>
+    )
   const onKeyDown = (event: KeyboardEvent) => {
     // A menu that is open over it closes first.
     if (event.key !== 'Escape' || event.defaultPrevented) return
@@ -116,7 +121,12 @@ function ArmChoice({ arms, arm, onChoose }: ArmChoiceProps) {
   const isHere = arms.some((each) => each.name === arm)
   if (arms.length === 1 && isHere) return <span className="quiet">{arm}</span>
   return (
-    <select className="preview-arm" aria-label="Arm that is shown" value={isHere ? arm : ''} onChange={(event) => onChoose(event.currentTarget.value)}>
+    <select
+      className="preview-arm"
+      aria-label="Arm that is shown"
+      value={isHere ? arm : ''}
+      onChange={(event) => onChoose(event.currentTarget.value)}
+    >
       {!isHere && <option value="">Choose an arm</option>}
       {arms.map((each) => (
         <option key={each.name}>{each.name}</option>
@@ -131,7 +141,13 @@ function Sheet({ label, onClose, children }: { readonly label: string; readonly 
   useModal(element)
   return (
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
-    <dialog ref={element} className="entry-preview is-sheet" aria-label={label} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
+    <dialog
+      ref={element}
+      className="entry-preview is-sheet"
+      aria-label={label}
+      onClose={onClose}
+      onClick={(event) => event.target === element.current && onClose()}
+    >
       {children}
     </dialog>
   )

@@ -24,11 +24,15 @@ export function useEntryTrace(kind: string, name: string, arm: string): EntryTra
   useEffect(() => {
     if (!name) return
     let isCurrent = true
-    const keep = (found: Partial<EntryTrace>) => isCurrent && setKnown((before) => ({ ...(before?.of === of ? before : WAITING), ...found, of }))
+    const keep = (found: Partial<EntryTrace>) =>
+      isCurrent && setKnown((before) => ({ ...(before?.of === of ? before : WAITING), ...found, of }))
     const fail = (error: unknown) => keep({ trace: undefined, problem: wordsOf(error) })
     const asked = setTimeout(() => {
       entries.row(kind, name).then((row) => keep({ row }), fail)
-      if (arm) teach.fits(arm, { kind, name, capture: 0 }).then((fits) => keep({ trace: fits.demonstration ?? fits.primitive ?? undefined, problem: '' }), fail)
+      if (arm)
+        teach
+          .fits(arm, { kind, name, capture: 0 })
+          .then((fits) => keep({ trace: fits.demonstration ?? fits.primitive ?? undefined, problem: '' }), fail)
     }, POINTING_MS)
     return () => {
       isCurrent = false

@@ -13,7 +13,12 @@ export function LostCell() {
   const { connected, reason } = useCellConnection()
   const isServed = useLive((s) => s.connection === 'live')
   const mayOperate = useLive((s) => s.role === 'operator')
-  const modes = useLive((s) => Object.values(s.robots).map((robot) => robot.mode).filter((mode) => LOST.has(mode)).join())
+  const modes = useLive((s) =>
+    Object.values(s.robots)
+      .map((robot) => robot.mode)
+      .filter((mode) => LOST.has(mode))
+      .join(),
+  )
   const isSuspect = isServed && (modes !== '' || !connected)
   const { isConnecting, problem, connect } = useConnect()
   useEffect(() => {
@@ -27,7 +32,8 @@ export function LostCell() {
     <div className="lost-cell" role="alert">
       <IconPlugConnectedX size={20} aria-hidden />
       <span>
-        <strong>The cell is not connected:</strong> {reason || 'no reason was given'}. Runs that need it are refused until it is connected again.
+        <strong>The cell is not connected:</strong> {reason || 'no reason was given'}. Runs that need it are refused until it is connected
+        again.
         {problem && (
           <span className="lost-cell-problem">
             <strong>Not connected:</strong> {problem}

@@ -64,8 +64,8 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
       {questions.length > 0 && (
         <div className="questions">
           <p>
-            These states had begun and nobody knows whether they had their effect. Look at the cell, then say what became of
-            each: it is either run again from its start, or taken as ended.
+            These states had begun and nobody knows whether they had their effect. Look at the cell, then say what became of each: it is
+            either run again from its start, or taken as ended.
           </p>
           {questions.map((question) => (
             <Radio.Group
@@ -93,7 +93,12 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
         <Button size="compact-sm" disabled={obstacle !== undefined || isOpen || isSent} title={obstacle} onClick={() => void resume()}>
           {questions.length > 0 ? 'Go on with these answers' : 'Resume'}
         </Button>
-        <Checkbox size="xs" label="Also if its file has changed since" checked={changed} onChange={(event) => setChanged(event.currentTarget.checked)} />
+        <Checkbox
+          size="xs"
+          label="Also if its file has changed since"
+          checked={changed}
+          onChange={(event) => setChanged(event.currentTarget.checked)}
+        />
       </div>
     </li>
   )

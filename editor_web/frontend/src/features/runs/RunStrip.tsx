@@ -8,7 +8,13 @@ import { statusOf } from '../../document/runState'
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])
-  const words = useLive((s) => progressText(cells, s.nodes, s.control?.waiting.map((each) => each.path)))
+  const words = useLive((s) =>
+    progressText(
+      cells,
+      s.nodes,
+      s.control?.waiting.map((each) => each.path),
+    ),
+  )
   return (
     <div className="run-strip">
       <div className="run-cells" role="img" aria-label={words}>

@@ -30,8 +30,7 @@ export function SearchBox({ pages, edited, onOpen }: SearchBoxProps) {
   const [asked] = useDebouncedValue(text.trim(), DELAY_MS)
   const { hits, problem } = useHits(asked)
   const choices = useMemo(
-    () =>
-      [...pageCommands(), ...pages].map((each): Choice => ({ icon: <IconCommand size={SIZE} aria-hidden />, ...each })),
+    () => [...pageCommands(), ...pages].map((each): Choice => ({ icon: <IconCommand size={SIZE} aria-hidden />, ...each })),
     [pages],
   )
   return (

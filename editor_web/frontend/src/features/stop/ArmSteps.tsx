@@ -19,7 +19,9 @@ export function RestStep({ stop }: { readonly stop: CellStop }) {
         ))}
       </ul>
       {stop.devices.some((device) => device.status === 'failed') && (
-        <Text size="sm">Press the emergency stop if it still moves. Else connect the cell again if it is lost, and stop the cell once more.</Text>
+        <Text size="sm">
+          Press the emergency stop if it still moves. Else connect the cell again if it is lost, and stop the cell once more.
+        </Text>
       )}
     </>
   )
@@ -34,7 +36,11 @@ export function PartsStep({ stop, mayOperate }: StepProps) {
       {holding.map((arm) => (
         <ArmRow key={arm.name} arm={arm} words={`holds ${partWords(arm.part)}${arm.kept ? ', and keeps it' : ''}`}>
           {!arm.kept && (
-            <Button size="xs" disabled={!canAct(stop, mayOperate, command)} onClick={() => command.send(`keep ${arm.name}`, () => recovery.keep(arm.name))}>
+            <Button
+              size="xs"
+              disabled={!canAct(stop, mayOperate, command)}
+              onClick={() => command.send(`keep ${arm.name}`, () => recovery.keep(arm.name))}
+            >
               Keep
             </Button>
           )}
@@ -45,7 +51,10 @@ export function PartsStep({ stop, mayOperate }: StepProps) {
             loading={command.busy === `release ${arm.name}`}
             onConfirm={() => command.send(`release ${arm.name}`, () => recovery.releasePart(arm.name))}
           >
-            <Text size="sm">The tool of {arm.name} opens, and the part falls from where it is now. Jog it down first if it must not fall, and keep your hands away.</Text>
+            <Text size="sm">
+              The tool of {arm.name} opens, and the part falls from where it is now. Jog it down first if it must not fall, and keep your
+              hands away.
+            </Text>
           </Confirm>
         </ArmRow>
       ))}
@@ -111,8 +120,8 @@ export function HomeStep({ stop, mayOperate }: StepProps) {
               onConfirm={() => command.send(`home ${arm.name}`, (signal) => recovery.goHome(arm.name, signal))}
             >
               <Text size="sm">
-                {arm.name} moves slowly to {arm.home}, around the obstacles that the cell knows{arm.part && `, with ${partWords(arm.part)}`}. Keep clear. It stops when you press Stop, or close this
-                guide.
+                {arm.name} moves slowly to {arm.home}, around the obstacles that the cell knows{arm.part && `, with ${partWords(arm.part)}`}
+                . Keep clear. It stops when you press Stop, or close this guide.
               </Text>
             </Confirm>
           )}
@@ -130,7 +139,13 @@ export function ResetStep({ stop, mayOperate }: StepProps) {
     <>
       <Group gap="xs" justify="space-between">
         <Text size="sm">All parts of the simulation go to their initial poses, also those that an arm holds. No arm moves.</Text>
-        <Button size="xs" variant="default" disabled={!canAct(stop, mayOperate, command)} loading={command.busy !== ''} onClick={() => command.send('reset', () => recovery.resetParts())}>
+        <Button
+          size="xs"
+          variant="default"
+          disabled={!canAct(stop, mayOperate, command)}
+          loading={command.busy !== ''}
+          onClick={() => command.send('reset', () => recovery.resetParts())}
+        >
           Reset parts
         </Button>
       </Group>

@@ -8,7 +8,16 @@ import { openGuide } from './guide'
 import { RecoveryGuide } from './RecoveryGuide'
 import { StoppedBanner } from './StoppedBanner'
 
-const ARM: ArmRecovery = { name: 'left', part: 'cube', kept: false, can_release: true, has_moved: false, home: 'left_home', home_names: ['left_home'], at_home: false }
+const ARM: ArmRecovery = {
+  name: 'left',
+  part: 'cube',
+  kept: false,
+  can_release: true,
+  has_moved: false,
+  home: 'left_home',
+  home_names: ['left_home'],
+  at_home: false,
+}
 const RUN = { id: 'r1', behavior: 'behaviors/shift.yaml', seq: 7, path: 'root/grasp' }
 const led = vi.fn<(where: string) => void>()
 
@@ -91,7 +100,10 @@ it('jogs an arm in place', async () => {
 })
 
 it('says why an arm did not go home, and what to do', async () => {
-  server().on('POST /cell/stop/arms/left/home', new Refusal(409, { message: 'the table is in between', hint: 'jog the arm clear, then try again' }))
+  server().on(
+    'POST /cell/stop/arms/left/home',
+    new Refusal(409, { message: 'the table is in between', hint: 'jog the arm clear, then try again' }),
+  )
   const { user } = guide(stopped())
   await user.click(screen.getByRole('button', { name: 'Go home' }))
   const dialog = await screen.findByRole('dialog', { name: 'Move left home?' })
@@ -130,7 +142,9 @@ it('resumes a run at the state in which it was stopped, or leaves it ended', asy
   const dialog = await screen.findByRole('dialog', { name: 'Start shift at root/grasp?' })
   await user.click(within(dialog).getByRole('button', { name: 'Resume' }))
   await waitFor(() => expect(led).toHaveBeenLastCalledWith('r2'))
-  expect(server().bodies('POST /runs')).toEqual([{ behavior: 'behaviors/shift.yaml', parameters: {}, begin: { run: 'r1', seq: 7, path: 'root/grasp' } }])
+  expect(server().bodies('POST /runs')).toEqual([
+    { behavior: 'behaviors/shift.yaml', parameters: {}, begin: { run: 'r1', seq: 7, path: 'root/grasp' } },
+  ])
   await user.click(screen.getByRole('button', { name: 'Leave it ended' }))
   await waitFor(() => expect(server().bodies('POST /cell/stop/close')).toEqual([{}]))
 })

@@ -22,7 +22,11 @@ export interface RecoveryGuideProps {
 function StateIcon({ state }: { readonly state: StepState }) {
   if (state === 'done') return <StatusIcon status="done" size={18} />
   if (state === 'problem') return <StatusIcon status="failed" size={18} />
-  return state === 'open' ? <IconCircle size={18} className={classes['openIcon']} aria-hidden /> : <IconMinus size={18} className="quiet" aria-hidden />
+  return state === 'open' ? (
+    <IconCircle size={18} className={classes['openIcon']} aria-hidden />
+  ) : (
+    <IconMinus size={18} className="quiet" aria-hidden />
+  )
 }
 
 export function RecoveryGuide(props: RecoveryGuideProps) {
@@ -43,7 +47,9 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
         <CloseButton aria-label="Close the recovery guide" onClick={() => openGuide(false)} />
       </header>
       <Text size="sm" c="dimmed">
-        {mayOperate ? 'From the stopped cell back to runs. Nothing moves unless you press it here or jog.' : 'You see the steps; somebody who is logged in as operator does them.'}
+        {mayOperate
+          ? 'From the stopped cell back to runs. Nothing moves unless you press it here or jog.'
+          : 'You see the steps; somebody who is logged in as operator does them.'}
       </Text>
       <Accordion
         multiple
@@ -51,10 +57,24 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
         variant="separated"
         transitionDuration={0}
         value={opened}
-        onChange={(now) => setToggled(Object.fromEntries(steps.filter((step) => isOpened(step) !== now.includes(step.id) || toggled[step.id] !== undefined).map((step) => [step.id, now.includes(step.id)])))}
+        onChange={(now) =>
+          setToggled(
+            Object.fromEntries(
+              steps
+                .filter((step) => isOpened(step) !== now.includes(step.id) || toggled[step.id] !== undefined)
+                .map((step) => [step.id, now.includes(step.id)]),
+            ),
+          )
+        }
       >
         {steps.map((step, at) => (
-          <Accordion.Item key={step.id} value={step.id} data-state={step.state} data-next={step.id === next || undefined} className={classes['step']}>
+          <Accordion.Item
+            key={step.id}
+            value={step.id}
+            data-state={step.state}
+            data-next={step.id === next || undefined}
+            className={classes['step']}
+          >
             <Accordion.Control icon={<StateIcon state={step.state} />}>
               <span className={classes['stepTitle']}>
                 {at + 1}. {step.title}
@@ -74,7 +94,15 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
   )
 }
 
-function StepBody({ id, stop, mayOperate, renderJog, onTeach, onRun, onBehavior }: StepProps & RecoveryGuideProps & { readonly id: StepId }) {
+function StepBody({
+  id,
+  stop,
+  mayOperate,
+  renderJog,
+  onTeach,
+  onRun,
+  onBehavior,
+}: StepProps & RecoveryGuideProps & { readonly id: StepId }) {
   switch (id) {
     case 'rest':
       return <RestStep stop={stop} />

@@ -16,7 +16,9 @@ export function ReleaseStep({ stop, mayOperate }: StepProps) {
   return (
     <>
       <Group gap="xs" justify="space-between">
-        <Text size="sm">{obstacle ? `Not possible: ${obstacle}.` : 'Nothing moves by the release itself. Runs may be started afterwards.'}</Text>
+        <Text size="sm">
+          {obstacle ? `Not possible: ${obstacle}.` : 'Nothing moves by the release itself. Runs may be started afterwards.'}
+        </Text>
         <Confirm
           label="Release the stop"
           title="Release the stop of the cell?"
@@ -28,7 +30,12 @@ export function ReleaseStep({ stop, mayOperate }: StepProps) {
           <Text size="sm">After the release:</Text>
           <List size="sm" spacing={4}>
             <List.Item>Every operator of this server, and every program with its token, may start runs again.</List.Item>
-            <List.Item>{stop.arms.length > 0 ? `Runs may move ${stop.arms.map((arm) => arm.name).join(' and ')}` : 'Runs may move everything in the cell'}. Nobody may be within reach.</List.Item>
+            <List.Item>
+              {stop.arms.length > 0
+                ? `Runs may move ${stop.arms.map((arm) => arm.name).join(' and ')}`
+                : 'Runs may move everything in the cell'}
+              . Nobody may be within reach.
+            </List.Item>
             {undecided(stop).map((arm) => (
               <List.Item key={arm.name}>
                 {arm.name} still holds {partWords(arm.part)}: nobody has decided whether it keeps it.
@@ -75,7 +82,10 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
                 loading={command.busy === run.id}
                 onConfirm={() => command.send(run.id, () => resume(run))}
               >
-                <Text size="sm">A new run starts at the state {run.path}, with the data and parameters of the stopped one. The arms are where they are now: check that this state can start from there.</Text>
+                <Text size="sm">
+                  A new run starts at the state {run.path}, with the data and parameters of the stopped one. The arms are where they are
+                  now: check that this state can start from there.
+                </Text>
               </Confirm>
             )}
             <Button size="xs" variant="default" disabled={!isReleased} onClick={() => onBehavior(run.behavior)}>
@@ -85,7 +95,12 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
         </div>
       ))}
       <Group justify="flex-end">
-        <Button size="xs" variant="default" disabled={!mayOperate || !isReleased || command.busy !== ''} onClick={() => command.send('close', () => recovery.close())}>
+        <Button
+          size="xs"
+          variant="default"
+          disabled={!mayOperate || !isReleased || command.busy !== ''}
+          onClick={() => command.send('close', () => recovery.close())}
+        >
           Leave {stop.runs.length === 1 ? 'it' : 'them'} ended
         </Button>
       </Group>

@@ -41,7 +41,10 @@ afterEach(() => vi.useRealTimers())
 it('is given to the stop process and to the engine', async () => {
   server().on(`POST ${STOP}`, answer()).on(ENGINE, {})
   await of({ stop: CHANNEL })
-  expect(screen.getByRole('button', { name: 'Stop the cell' })).toHaveAttribute('title', expect.stringContaining('This is no emergency stop'))
+  expect(screen.getByRole('button', { name: 'Stop the cell' })).toHaveAttribute(
+    'title',
+    expect.stringContaining('This is no emergency stop'),
+  )
   await press()
   expect(news()).toHaveTextContent('All arms at rest')
   expect(server().bodies(`POST ${STOP}`)).toEqual([{ token: 'stop-token', reason: REASON }])
@@ -62,7 +65,10 @@ it('puts its words away by itself, or when it is told to', async () => {
 
 it('is an alarm where an arm does not come to rest', async () => {
   const moving = answer({ atRest: false })
-  server().on(`POST ${STOP}`, moving).on(`POST ${STOP}/status`, moving).on(ENGINE, () => new Promise(() => undefined))
+  server()
+    .on(`POST ${STOP}`, moving)
+    .on(`POST ${STOP}/status`, moving)
+    .on(ENGINE, () => new Promise(() => undefined))
   await of({ stop: CHANNEL })
   await press()
   expect(news()).toHaveTextContent('Stop acknowledged')
@@ -75,7 +81,9 @@ it('is an alarm where an arm does not come to rest', async () => {
 })
 
 it('tells that the engine does not answer, though the arms rest', async () => {
-  server().on(`POST ${STOP}`, answer({ engine: 'silent' })).on(ENGINE, () => new Promise(() => undefined))
+  server()
+    .on(`POST ${STOP}`, answer({ engine: 'silent' }))
+    .on(ENGINE, () => new Promise(() => undefined))
   await of({ stop: CHANNEL })
   await press()
   expect(news()).toHaveTextContent('All arms at rest')
@@ -104,7 +112,10 @@ it('is delivered as soon as somebody answers again', async () => {
 })
 
 it('goes out while another request hangs and the live stream is down', async () => {
-  server().on('GET /behaviors', () => new Promise(() => undefined)).on(`POST ${STOP}`, answer()).on(ENGINE, () => new Promise(() => undefined))
+  server()
+    .on('GET /behaviors', () => new Promise(() => undefined))
+    .on(`POST ${STOP}`, answer())
+    .on(ENGINE, () => new Promise(() => undefined))
   await of({ stop: CHANNEL })
   void api.behaviors()
   live().cut()
@@ -119,7 +130,13 @@ it('is reached by Tab out of a dialog that keeps the keyboard, and is pressed ab
   const user = show(
     <>
       <StopCell />
-      <Modal opened onClose={() => undefined} title="A question" closeButtonProps={{ 'aria-label': 'Close' }} transitionProps={{ duration: 0 }}>
+      <Modal
+        opened
+        onClose={() => undefined}
+        title="A question"
+        closeButtonProps={{ 'aria-label': 'Close' }}
+        transitionProps={{ duration: 0 }}
+      >
         <button type="button">Yes</button>
       </Modal>
     </>,

@@ -34,7 +34,14 @@ export function StopCell() {
   return createPortal(
     <section className="stop" aria-label="Stop of the cell">
       {/* No button of the kit: it works also where the page and the kit have failed. */}
-      <button ref={button} type="button" className="stop-button" title={HINT} aria-keyshortcuts="Control+Shift+Backspace" onClick={stopCell}>
+      <button
+        ref={button}
+        type="button"
+        className="stop-button"
+        title={HINT}
+        aria-keyshortcuts="Control+Shift+Backspace"
+        onClick={stopCell}
+      >
         <IconHandStop size={24} aria-hidden />
         <span>
           Stop<span className="stop-rest"> the cell</span>

@@ -11,7 +11,11 @@ import { wallTime } from '../../document/time'
 import { openGuide, useGuide } from './guide'
 import classes from './recovery.module.css'
 
-const TITLES: Readonly<Record<CellStop['phase'], string>> = { stopping: 'The cell is stopping', stopped: 'Cell stopped', released: 'The stop is released' }
+const TITLES: Readonly<Record<CellStop['phase'], string>> = {
+  stopping: 'The cell is stopping',
+  stopped: 'Cell stopped',
+  released: 'The stop is released',
+}
 
 export function StoppedBanner() {
   const stop = useLive((s) => s.stop)
@@ -34,7 +38,10 @@ export function StoppedBanner() {
       <IconHandStop size={22} aria-hidden />
       <div className={classes['bannerWords']}>
         <p role="status">
-          <strong>{TITLES[stop.phase]}</strong> {stop.phase === 'released' ? 'Runs can start.' : `since ${wallTime(stop.since_unix_s)}: ${stop.reason}. No run starts until the stop is released.`}
+          <strong>{TITLES[stop.phase]}</strong>{' '}
+          {stop.phase === 'released'
+            ? 'Runs can start.'
+            : `since ${wallTime(stop.since_unix_s)}: ${stop.reason}. No run starts until the stop is released.`}
         </p>
         <p className={classes['devices']}>{stop.devices.map((device) => `${device.name} ${deviceWords(device)}`).join(' · ')}</p>
         {next && (
@@ -44,7 +51,13 @@ export function StoppedBanner() {
         )}
       </div>
       <div className={classes['bannerTools']}>
-        <Button size="sm" variant="default" leftSection={<IconListCheck size={16} aria-hidden />} aria-expanded={isOpen} onClick={() => openGuide(!isOpen)}>
+        <Button
+          size="sm"
+          variant="default"
+          leftSection={<IconListCheck size={16} aria-hidden />}
+          aria-expanded={isOpen}
+          onClick={() => openGuide(!isOpen)}
+        >
           {isOpen ? 'Close the guide' : 'Recovery guide'}
         </Button>
         {stop.phase === 'released' && <EndRecovery />}

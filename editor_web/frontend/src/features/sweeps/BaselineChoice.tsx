@@ -55,13 +55,20 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
     <>
       {known === undefined && (
         <>
-          <p className="quiet sweep-note">Is this version worse than one before? Both have executed the same runs; only those that ended differently count.</p>
+          <p className="quiet sweep-note">
+            Is this version worse than one before? Both have executed the same runs; only those that ended differently count.
+          </p>
           <button type="button" className="command" aria-disabled={isAsking || undefined} onClick={() => !isAsking && void ask(find)}>
             {isAsking ? 'Looking …' : 'Choose a baseline'}
           </button>
         </>
       )}
-      {known?.length === 0 && <p className="quiet sweep-note">No other version has executed these runs. After a change of the behavior, its cell or a package, execute the sweep again, and compare it with what it was.</p>}
+      {known?.length === 0 && (
+        <p className="quiet sweep-note">
+          No other version has executed these runs. After a change of the behavior, its cell or a package, execute the sweep again, and
+          compare it with what it was.
+        </p>
+      )}
       {known !== undefined && known.length > 0 && (
         <form
           className="sweep-baseline"
@@ -90,7 +97,13 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
           </label>
           <label>
             May be lower by, points
-            <input className="new-input" inputMode="decimal" placeholder="not required" value={margin} onChange={(event) => setMargin(event.currentTarget.value)} />
+            <input
+              className="new-input"
+              inputMode="decimal"
+              placeholder="not required"
+              value={margin}
+              onChange={(event) => setMargin(event.currentTarget.value)}
+            />
           </label>
           <button type="submit" className="command" aria-disabled={isAsking || undefined}>
             Compare

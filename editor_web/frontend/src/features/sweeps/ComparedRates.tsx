@@ -5,7 +5,13 @@ import { differenceScale, pointsIntervalText, pointsText, ratesOf, shareText } f
 import { verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 
-export function ComparedRates({ compared: { comparison, verdict, words }, onSelect }: { readonly compared: SweepComparison; readonly onSelect: (run: number) => void }) {
+export function ComparedRates({
+  compared: { comparison, verdict, words },
+  onSelect,
+}: {
+  readonly compared: SweepComparison
+  readonly onSelect: (run: number) => void
+}) {
   const { pair, interval, margin, broken, changed } = comparison
   const rates = ratesOf(pair)
   const runs = rates[0]?.runs ?? 0

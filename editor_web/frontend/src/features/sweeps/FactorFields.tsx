@@ -32,7 +32,14 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
 
   return (
     <div className="sweep-factor" role="group" aria-label={`Factor ${name}`}>
-      <input className="new-input mono sweep-factor-name" list={list} aria-label="What is varied" placeholder="parameters.…, displace.…, cell.…" value={factor.address} onChange={(event) => choose(event.currentTarget.value)} />
+      <input
+        className="new-input mono sweep-factor-name"
+        list={list}
+        aria-label="What is varied"
+        placeholder="parameters.…, displace.…, cell.…"
+        value={factor.address}
+        onChange={(event) => choose(event.currentTarget.value)}
+      />
       <datalist id={list}>
         {choices.map((each) => (
           <option key={each.address} value={each.address}>
@@ -40,7 +47,12 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
           </option>
         ))}
       </datalist>
-      <select className="new-input" aria-label={`Distribution of ${name}`} value={factor.kind} onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}>
+      <select
+        className="new-input"
+        aria-label={`Distribution of ${name}`}
+        value={factor.kind}
+        onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
+      >
         {KINDS.map(([value, words]) => (
           <option key={value} value={value}>
             {words}
@@ -48,11 +60,31 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
         ))}
       </select>
       {factor.kind === 'values' ? (
-        <input className="new-input sweep-factor-values" aria-label={`Values of ${name}`} placeholder="0.3, 0.5, 1" value={factor.values} onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })} />
+        <input
+          className="new-input sweep-factor-values"
+          aria-label={`Values of ${name}`}
+          placeholder="0.3, 0.5, 1"
+          value={factor.values}
+          onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })}
+        />
       ) : (
         <>
-          <input className="new-input" inputMode="decimal" aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`} placeholder={isNormal ? 'mean' : 'from'} value={factor.first} onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })} />
-          <input className="new-input" inputMode="decimal" aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`} placeholder={isNormal ? 'deviation' : 'to'} value={factor.second} onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })} />
+          <input
+            className="new-input"
+            inputMode="decimal"
+            aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
+            placeholder={isNormal ? 'mean' : 'from'}
+            value={factor.first}
+            onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
+          />
+          <input
+            className="new-input"
+            inputMode="decimal"
+            aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
+            placeholder={isNormal ? 'deviation' : 'to'}
+            value={factor.second}
+            onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })}
+          />
         </>
       )}
       <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />

@@ -14,7 +14,12 @@ export function MissedItems({ items, missing }: { readonly items: number; readon
           {missing.slice(0, FIRST).map((item) => (
             <li key={`${item.kind} ${item.path} ${item.name ?? ''} ${item.target ?? ''}`}>
               <span className="quiet">{item.kind.replace('_', ' ')}</span> <span className="mono">{item.path}</span>
-              {item.name && <span className="mono"> —{item.name}→ {item.target}</span>}
+              {item.name && (
+                <span className="mono">
+                  {' '}
+                  —{item.name}→ {item.target}
+                </span>
+              )}
             </li>
           ))}
           {missing.length > FIRST && <li className="quiet">and {missing.length - FIRST} more</li>}

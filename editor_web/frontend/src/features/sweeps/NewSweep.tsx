@@ -83,7 +83,11 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
     >
       <label>
         Behavior
-        <select className="new-input" value={draft.behavior} onChange={(event) => change({ behavior: event.currentTarget.value, factors: [] })}>
+        <select
+          className="new-input"
+          value={draft.behavior}
+          onChange={(event) => change({ behavior: event.currentTarget.value, factors: [] })}
+        >
           <option value="">Choose one</option>
           {behaviors.map((each) => (
             <option key={each.id} value={each.id} disabled={each.errors > 0}>
@@ -94,7 +98,11 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
       </label>
       <label>
         To find out
-        <select className="new-input" value={draft.search ? 'search' : 'rate'} onChange={(event) => change({ search: event.currentTarget.value === 'search' ? NEW_SEARCH : undefined })}>
+        <select
+          className="new-input"
+          value={draft.search ? 'search' : 'rate'}
+          onChange={(event) => change({ search: event.currentTarget.value === 'search' ? NEW_SEARCH : undefined })}
+        >
           <option value="rate">how often it succeeds: random runs</option>
           <option value="search">how it fails: a search for failures</option>
         </select>
@@ -102,12 +110,23 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
       <div className="sweep-form-row">
         <label>
           Runs
-          <input className="new-input" inputMode="numeric" value={draft.runs} onChange={(event) => change({ runs: event.currentTarget.value })} />
+          <input
+            className="new-input"
+            inputMode="numeric"
+            value={draft.runs}
+            onChange={(event) => change({ runs: event.currentTarget.value })}
+          />
         </label>
         {!draft.search && (
           <label>
             Required success rate, %
-            <input className="new-input" inputMode="decimal" placeholder="none" value={draft.required} onChange={(event) => change({ required: event.currentTarget.value })} />
+            <input
+              className="new-input"
+              inputMode="decimal"
+              placeholder="none"
+              value={draft.required}
+              onChange={(event) => change({ required: event.currentTarget.value })}
+            />
           </label>
         )}
       </div>
@@ -115,16 +134,32 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
       <fieldset className="sweep-factors">
         <legend>What is varied</legend>
         {draft.factors.map((factor, at) => (
-          <FactorFields key={at} factor={factor} choices={choices} onChange={(changed) => withFactor(at, changed)} onRemove={() => withFactor(at, undefined)} />
+          <FactorFields
+            key={at}
+            factor={factor}
+            choices={choices}
+            onChange={(changed) => withFactor(at, changed)}
+            onRemove={() => withFactor(at, undefined)}
+          />
         ))}
-        <button type="button" className="command" aria-disabled={!draft.behavior || undefined} onClick={() => draft.behavior && change({ factors: [...draft.factors, NO_FACTOR] })}>
+        <button
+          type="button"
+          className="command"
+          aria-disabled={!draft.behavior || undefined}
+          onClick={() => draft.behavior && change({ factors: [...draft.factors, NO_FACTOR] })}
+        >
           <IconPlus size={14} aria-hidden /> Add a factor
         </button>
         <p className="quiet sweep-note">Each run has a seed of its own, and places the parts that have jitter.</p>
       </fieldset>
       <label>
         Document in the project
-        <input className="new-input mono" placeholder={id || 'behaviors/sweeps/name.yaml'} value={draft.id} onChange={(event) => change({ id: event.currentTarget.value })} />
+        <input
+          className="new-input mono"
+          placeholder={id || 'behaviors/sweeps/name.yaml'}
+          value={draft.id}
+          onChange={(event) => change({ id: event.currentTarget.value })}
+        />
       </label>
       {problem && (
         <p className="is-failed" role="alert">

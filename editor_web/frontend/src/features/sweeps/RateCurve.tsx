@@ -32,7 +32,13 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   const end = last.interval ? `, interval ${intervalText(last.interval)}` : ''
   return (
     <div ref={ref}>
-      <svg className="sweep-plot" viewBox={`0 0 ${wide} ${HEIGHT}`} height={HEIGHT} role="img" aria-label={`Success rate after each of ${last.runs} runs; at the end ${percent(last.rate)}${end}`}>
+      <svg
+        className="sweep-plot"
+        viewBox={`0 0 ${wide} ${HEIGHT}`}
+        height={HEIGHT}
+        role="img"
+        aria-label={`Success rate after each of ${last.runs} runs; at the end ${percent(last.rate)}${end}`}
+      >
         <clipPath id={clip}>
           <rect x={LEFT} y={TOP} width={wide - LEFT - RIGHT} height={HEIGHT - TOP - BOTTOM} />
         </clipPath>

@@ -3,8 +3,24 @@ import { expect, it } from 'vitest'
 import type { JudgedRequirement } from '../../api/types'
 import { Requirements } from './Requirements'
 
-const SUCCESS: JudgedRequirement = { text: 'success >= 0.98', number: null, runs: 20, kept: 20, missing: 0, interval: [0.8, 1], verdict: 'undecided' }
-const FORCE: JudgedRequirement = { text: 'share(cell.contact_force_max_n <= 30) >= 0.95', number: 'cell.contact_force_max_n', runs: 20, kept: 12, missing: 3, interval: [0.35, 0.8], verdict: 'failed' }
+const SUCCESS: JudgedRequirement = {
+  text: 'success >= 0.98',
+  number: null,
+  runs: 20,
+  kept: 20,
+  missing: 0,
+  interval: [0.8, 1],
+  verdict: 'undecided',
+}
+const FORCE: JudgedRequirement = {
+  text: 'share(cell.contact_force_max_n <= 30) >= 0.95',
+  number: 'cell.contact_force_max_n',
+  runs: 20,
+  kept: 12,
+  missing: 3,
+  interval: [0.35, 0.8],
+  verdict: 'failed',
+}
 
 it('tells of each requirement how many runs keep it, and whether that is enough', () => {
   render(<Requirements requirements={[SUCCESS, FORCE]} />)

@@ -29,7 +29,11 @@ export function Requirements({ requirements }: { readonly requirements: readonly
               </th>
               <td>{keptText(each)}</td>
               <td className="is-interval">{each.interval !== null && intervalText(each.interval)}</td>
-              <td className="sweep-bar-cell">{each.interval !== null && each.runs > 0 && <IntervalBar interval={each.interval} rate={each.kept / each.runs} isBad={each.verdict === 'failed'} />}</td>
+              <td className="sweep-bar-cell">
+                {each.interval !== null && each.runs > 0 && (
+                  <IntervalBar interval={each.interval} rate={each.kept / each.runs} isBad={each.verdict === 'failed'} />
+                )}
+              </td>
             </tr>
           ))}
         </tbody>

@@ -24,7 +24,10 @@ export function RerunLine({ recording, href, onOpen }: RerunLineProps) {
         <PageLink href={href(sweep, number)} onOpen={() => onOpen(sweep, number)}>
           Run {number} of {sweepName(sweep)}
         </PageLink>
-        , executed again: {recorded.same ? `the same ${recorded.saved.events} events as in the sweep` : `NOT the same events as in the sweep (${recorded.result.events}, then ${recorded.saved.events})`}{' '}
+        , executed again:{' '}
+        {recorded.same
+          ? `the same ${recorded.saved.events} events as in the sweep`
+          : `NOT the same events as in the sweep (${recorded.result.events}, then ${recorded.saved.events})`}{' '}
         <span className="mono quiet">sha256 {recorded.result.events_sha256.slice(0, 12)}</span>
       </span>
     </p>

@@ -38,7 +38,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
   }, [sweep, number])
   useEffect(() => {
     // A run may be chosen far from where it is told of. What this returns is no clean-up.
-     element.current?.scrollIntoView({ block: 'nearest' })
+    element.current?.scrollIntoView({ block: 'nearest' })
   }, [run])
   return (
     <section ref={element} className="sweep-card sweep-details" aria-label={`Run ${number}`}>
@@ -62,11 +62,17 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
           {!run.success && <ShrinkRun sweep={sweep} run={run} subject={subject} mayOperate={mayOperate} onOpenSweep={onOpenSweep} />}
           <Facts run={run} />
           <p className="quiet sweep-note">
-            In a terminal: <code className="sweep-command">flexcell sweep rerun {sweep} {number}</code>
+            In a terminal:{' '}
+            <code className="sweep-command">
+              flexcell sweep rerun {sweep} {number}
+            </code>
             {!run.success && (
               <>
                 {' '}
-                and <code className="sweep-command">flexcell sweep shrink {sweep} {number}</code>
+                and{' '}
+                <code className="sweep-command">
+                  flexcell sweep shrink {sweep} {number}
+                </code>
               </>
             )}
           </p>
@@ -110,7 +116,15 @@ function Fact({ name, value }: { readonly name: string; readonly value: string }
 }
 
 /** Executes the run again with recording; the recording opens by itself where the run was the same. */
-function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: TrialResult; readonly onOpen: (recording: string) => void }) {
+function Again({
+  sweep,
+  run,
+  onOpen,
+}: {
+  readonly sweep: string
+  readonly run: TrialResult
+  readonly onOpen: (recording: string) => void
+}) {
   const [isAsking, setAsking] = useState(false)
   const [recorded, setRecorded] = useState<RecordedTrial>()
   const [problem, setProblem] = useState('')
@@ -135,11 +149,14 @@ function Again({ sweep, run, onOpen }: { readonly sweep: string; readonly run: T
         {isAsking ? 'Executing it again …' : 'Open with graph, timeline and 3D'}
       </button>
       <p className="quiet sweep-note" role="status">
-        {isAsking ? 'The run is executed again and recorded; it opens when it has ended.' : 'Executes this configuration again, and records it.'}
+        {isAsking
+          ? 'The run is executed again and recorded; it opens when it has ended.'
+          : 'Executes this configuration again, and records it.'}
       </p>
       {recorded && !recorded.same && (
         <p className="is-failed" role="alert">
-          It ended differently this time: {labelOf(recorded.result)} with {recorded.result.events} events, before {labelOf(recorded.saved)} with {recorded.saved.events}.
+          It ended differently this time: {labelOf(recorded.result)} with {recorded.result.events} events, before {labelOf(recorded.saved)}{' '}
+          with {recorded.saved.events}.
           {recorded.recording && (
             <>
               {' '}

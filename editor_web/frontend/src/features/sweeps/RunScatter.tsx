@@ -47,7 +47,17 @@ export function RunScatter({ runs, factors, selected, onSelect }: RunScatterProp
 
 const CROSS = 'M-4 -4L4 4M4 -4L-4 4'
 
-function AxisChoice({ label, axes, value, onChoose }: { readonly label: string; readonly axes: readonly string[]; readonly value: string; readonly onChoose: (axis: string) => void }) {
+function AxisChoice({
+  label,
+  axes,
+  value,
+  onChoose,
+}: {
+  readonly label: string
+  readonly axes: readonly string[]
+  readonly value: string
+  readonly onChoose: (axis: string) => void
+}) {
   return (
     <label>
       {label}

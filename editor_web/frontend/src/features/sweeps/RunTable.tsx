@@ -41,7 +41,13 @@ export function RunTable({ runs, factors, selected, onSelect }: RunTableProps) {
           </thead>
           <tbody>
             {ordered.slice(0, most).map((run) => (
-              <Row key={run.configuration.number} run={run} factors={factors} isSelected={run.configuration.number === selected} onSelect={onSelect} />
+              <Row
+                key={run.configuration.number}
+                run={run}
+                factors={factors}
+                isSelected={run.configuration.number === selected}
+                onSelect={onSelect}
+              />
             ))}
           </tbody>
         </table>
@@ -55,7 +61,17 @@ export function RunTable({ runs, factors, selected, onSelect }: RunTableProps) {
   )
 }
 
-function Head({ by, name, order, onOrder }: { readonly by: string; readonly name: string; readonly order: RunOrder; readonly onOrder: (order: RunOrder) => void }) {
+function Head({
+  by,
+  name,
+  order,
+  onOrder,
+}: {
+  readonly by: string
+  readonly name: string
+  readonly order: RunOrder
+  readonly onOrder: (order: RunOrder) => void
+}) {
   const isOwn = order.by === by
   const Arrow = order.isFalling ? IconArrowNarrowDown : IconArrowNarrowUp
   return (

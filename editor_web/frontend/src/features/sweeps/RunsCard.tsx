@@ -32,7 +32,9 @@ export function RunsCard({ runs, shown, factors, cause, onShowAll, selected, onS
           Show all runs
         </button>
       )}
-      {selected !== undefined && <RunDetails key={selected} {...of} number={selected} onOpen={onOpenRecording} onClose={() => onSelect(undefined)} />}
+      {selected !== undefined && (
+        <RunDetails key={selected} {...of} number={selected} onOpen={onOpenRecording} onClose={() => onSelect(undefined)} />
+      )}
       <RunTable key={cause} runs={shown} factors={factors} selected={selected} onSelect={onSelect} />
     </SweepCard>
   )

@@ -14,7 +14,11 @@ export function SearchFields({ search, onChange }: { readonly search: SearchDraf
       <div className="sweep-form-row">
         <label>
           Towards
-          <select className="new-input" value={search.towards} onChange={(event) => change({ towards: event.currentTarget.value as SearchDraft['towards'] })}>
+          <select
+            className="new-input"
+            value={search.towards}
+            onChange={(event) => change({ towards: event.currentTarget.value as SearchDraft['towards'] })}
+          >
             <option value="failure">failures alone</option>
             <option value="least">the least of a number</option>
             <option value="most">the most of a number</option>
@@ -23,7 +27,14 @@ export function SearchFields({ search, onChange }: { readonly search: SearchDraf
         {search.towards !== 'failure' && (
           <label>
             Number
-            <input className="new-input mono" list={list} aria-describedby={note} placeholder="left.gripper.slip_max_m" value={search.name} onChange={(event) => change({ name: event.currentTarget.value })} />
+            <input
+              className="new-input mono"
+              list={list}
+              aria-describedby={note}
+              placeholder="left.gripper.slip_max_m"
+              value={search.name}
+              onChange={(event) => change({ name: event.currentTarget.value })}
+            />
             <datalist id={list}>
               <option value="duration_s" />
             </datalist>
@@ -38,14 +49,24 @@ export function SearchFields({ search, onChange }: { readonly search: SearchDraf
       <div className="sweep-form-row">
         <label>
           Method
-          <select className="new-input" value={search.method} onChange={(event) => change({ method: event.currentTarget.value as SearchDraft['method'] })}>
+          <select
+            className="new-input"
+            value={search.method}
+            onChange={(event) => change({ method: event.currentTarget.value as SearchDraft['method'] })}
+          >
             <option value="cross_entropy">cross-entropy</option>
             <option value="optuna">optuna</option>
           </select>
         </label>
         <label>
           Stop after, failures
-          <input className="new-input" inputMode="numeric" placeholder="all runs" value={search.stopAfter} onChange={(event) => change({ stopAfter: event.currentTarget.value })} />
+          <input
+            className="new-input"
+            inputMode="numeric"
+            placeholder="all runs"
+            value={search.stopAfter}
+            onChange={(event) => change({ stopAfter: event.currentTarget.value })}
+          />
         </label>
       </div>
     </fieldset>

@@ -17,6 +17,15 @@ export function SearchFigure({ figure, selected, onSelect }: SearchFigureProps) 
   }
 
   // The keyboard reaches the same runs in their table.
-  // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- as above
-  return <div className="sweep-figure sweep-scroll" tabIndex={0} role="group" aria-label="How near to failure each run was" onClick={choose} dangerouslySetInnerHTML={{ __html: drawn }} />
+  return (
+    // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- as above
+    <div
+      className="sweep-figure sweep-scroll"
+      tabIndex={0}
+      role="group"
+      aria-label="How near to failure each run was"
+      onClick={choose}
+      dangerouslySetInnerHTML={{ __html: drawn }}
+    />
+  )
 }

@@ -19,7 +19,10 @@ export interface SearchReportProps extends Omit<RunsOf, 'sweep' | 'subject'> {
 export function SearchReport({ view, runs, ...of }: SearchReportProps) {
   const { cause, shown, factors, choose } = useRunsOfCause(runs)
   // Drawn over those that tell most of the most frequent cause.
-  const ordered = useMemo(() => [...new Set([...(view.clusters[0]?.regions ?? []).map((region) => region.address), ...factors])], [view, factors])
+  const ordered = useMemo(
+    () => [...new Set([...(view.clusters[0]?.regions ?? []).map((region) => region.address), ...factors])],
+    [view, factors],
+  )
   if (view.done === 0) return null
   return (
     <div className="sweep-cards">
@@ -56,7 +59,16 @@ export function SearchReport({ view, runs, ...of }: SearchReportProps) {
           <Batches view={view} />
         </SweepCard>
       </div>
-      <RunsCard {...of} sweep={view.line.id} subject={view.subject} runs={runs} shown={shown} factors={factors} cause={cause} onShowAll={() => choose(undefined)} />
+      <RunsCard
+        {...of}
+        sweep={view.line.id}
+        subject={view.subject}
+        runs={runs}
+        shown={shown}
+        factors={factors}
+        cause={cause}
+        onShowAll={() => choose(undefined)}
+      />
     </div>
   )
 }

@@ -28,7 +28,9 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
   return (
     <section className="sweep-shrink" aria-label="The smallest change that fails">
       <h3 className="sweep-subtitle">The smallest change that fails</h3>
-      {isRunning && <Progress shrinking={shrinking} mayOperate={mayOperate} onStop={() => void request(() => sweepsApi.stopShrinking(sweep, number))} />}
+      {isRunning && (
+        <Progress shrinking={shrinking} mayOperate={mayOperate} onStop={() => void request(() => sweepsApi.stopShrinking(sweep, number))} />
+      )}
       {!isRunning && found && shrinking && (
         <ShrunkChange
           sweep={sweep}
@@ -54,7 +56,12 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
               </select>
             </label>
           </div>
-          {!found && <p className="quiet sweep-note">Takes chance out, sets factors back to nominal, and moves the others towards it. That takes some tens of runs, in a process with a low priority.</p>}
+          {!found && (
+            <p className="quiet sweep-note">
+              Takes chance out, sets factors back to nominal, and moves the others towards it. That takes some tens of runs, in a process
+              with a low priority.
+            </p>
+          )}
         </>
       )}
       {words && (
@@ -66,7 +73,15 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
   )
 }
 
-function Progress({ shrinking: { status, progress }, mayOperate, onStop }: { readonly shrinking: Shrinking; readonly mayOperate: boolean; readonly onStop: () => void }) {
+function Progress({
+  shrinking: { status, progress },
+  mayOperate,
+  onStop,
+}: {
+  readonly shrinking: Shrinking
+  readonly mayOperate: boolean
+  readonly onStop: () => void
+}) {
   const isStopping = status === 'stopping'
   const runs = progress?.runs ?? 0
   return (
@@ -74,7 +89,12 @@ function Progress({ shrinking: { status, progress }, mayOperate, onStop }: { rea
       <div className="sweep-shrink-start">
         <progress max={progress?.most_runs ?? 1} value={runs} aria-label={`${runs} runs tried`} />
         {mayOperate && (
-          <button type="button" className="command is-danger" aria-disabled={isStopping || undefined} onClick={() => !isStopping && onStop()}>
+          <button
+            type="button"
+            className="command is-danger"
+            aria-disabled={isStopping || undefined}
+            onClick={() => !isStopping && onStop()}
+          >
             <IconPlayerStop size={15} aria-hidden />
             {isStopping ? 'Stopping …' : 'Stop with the smallest so far'}
           </button>

@@ -55,8 +55,14 @@ export function ShrunkChange({ sweep, number, found, savedAs, onSave, onOpenSwee
       )}
       <p className="sweep-note">{chanceText(found)}</p>
       {found.result.cause && <p className="sweep-chain">{found.result.cause}</p>}
-      <p className="quiet sweep-note">{found.interrupted ? `Stopped after ${found.runs} runs: a smaller change may fail too.` : `Found in ${found.runs} runs.`}</p>
-      {savedAs ? <Saved file={savedAs} onOpenSweep={onOpenSweep} /> : onSave && <SaveCase proposed={proposedCase(sweep, number)} onSave={onSave} />}
+      <p className="quiet sweep-note">
+        {found.interrupted ? `Stopped after ${found.runs} runs: a smaller change may fail too.` : `Found in ${found.runs} runs.`}
+      </p>
+      {savedAs ? (
+        <Saved file={savedAs} onOpenSweep={onOpenSweep} />
+      ) : (
+        onSave && <SaveCase proposed={proposedCase(sweep, number)} onSave={onSave} />
+      )}
     </>
   )
 }
@@ -82,7 +88,12 @@ function SaveCase({ proposed, onSave }: { readonly proposed: string; readonly on
       <button type="submit" className="command is-strong" aria-disabled={isSaving || undefined}>
         {isSaving ? 'Saving …' : 'Save as a test case'}
       </button>
-      <input className="new-input mono sweep-shrink-file" aria-label="File of the test case" value={file} onChange={(event) => setFile(event.currentTarget.value)} />
+      <input
+        className="new-input mono sweep-shrink-file"
+        aria-label="File of the test case"
+        value={file}
+        onChange={(event) => setFile(event.currentTarget.value)}
+      />
     </form>
   )
 }

@@ -2,7 +2,15 @@
 import type { ReactNode } from 'react'
 import { ViewBoundary } from '../../components/ViewBoundary'
 
-export function SweepCard({ title, isWide = false, children }: { readonly title: string; readonly isWide?: boolean; readonly children: ReactNode }) {
+export function SweepCard({
+  title,
+  isWide = false,
+  children,
+}: {
+  readonly title: string
+  readonly isWide?: boolean
+  readonly children: ReactNode
+}) {
   return (
     <section className={`sweep-card${isWide ? ' is-wide' : ''}`} aria-label={title}>
       <h2>{title}</h2>

@@ -35,7 +35,13 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
   return (
     <>
       {mayOperate && live.status === 'idle' && left > 0 && (
-        <button type="button" className="command is-strong" aria-disabled={isStarting || isOver || undefined} title={isOver ? `${over}: no run would be executed` : undefined} onClick={() => !isStarting && !isOver && void start(false)}>
+        <button
+          type="button"
+          className="command is-strong"
+          aria-disabled={isStarting || isOver || undefined}
+          title={isOver ? `${over}: no run would be executed` : undefined}
+          onClick={() => !isStarting && !isOver && void start(false)}
+        >
           <IconPlayerPlay size={15} aria-hidden />
           {isStarting ? 'Starting …' : live.done === 0 ? `Start ${left} runs` : `Go on with ${left} runs`}
         </button>

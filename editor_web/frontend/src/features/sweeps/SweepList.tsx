@@ -20,7 +20,8 @@ export function SweepList({ listed, href, onOpen }: SweepListProps) {
   if (listed.sweeps.length === 0) {
     return (
       <Empty icon={<IconChartDots size={26} stroke={1.4} aria-hidden />} title="No sweeps yet">
-        A sweep executes a behavior many times with varied parameters, parts and faults. Make one with the button above, or put a sweep document into the project.
+        A sweep executes a behavior many times with varied parameters, parts and faults. Make one with the button above, or put a sweep
+        document into the project.
       </Empty>
     )
   }
@@ -68,7 +69,14 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
           {live.status === 'running' && <span className="quiet">{speedText(live)}</span>}
         </p>
       )}
-      {!line.problem && <progress className="sweep-line-bar" max={Math.max(live.planned, 1)} value={live.done} aria-label={`${live.done} of ${live.planned} runs of ${sweepName(line.id)}`} />}
+      {!line.problem && (
+        <progress
+          className="sweep-line-bar"
+          max={Math.max(live.planned, 1)}
+          value={live.done}
+          aria-label={`${live.done} of ${live.planned} runs of ${sweepName(line.id)}`}
+        />
+      )}
     </li>
   )
 }
@@ -76,7 +84,9 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
 export function OtherResults({ others }: { readonly others: readonly UndescribedResults[] }) {
   return (
     <>
-      <p className="quiet sweep-note">Of the command line, or of versions before a change. They stay until the file of results is deleted.</p>
+      <p className="quiet sweep-note">
+        Of the command line, or of versions before a change. They stay until the file of results is deleted.
+      </p>
       <ul className="plain-list sweep-list" aria-label="Results of no sweep here">
         {others.map((each) => (
           <li key={each.subject} className="sweep-line">

@@ -23,7 +23,10 @@ export interface SweepReportProps extends Omit<RunsOf, 'sweep' | 'subject'> {
 export function SweepReport({ view, runs, ...of }: SweepReportProps) {
   const { cause, shown, factors, choose } = useRunsOfCause(runs)
   // Drawn over those that matter most.
-  const ordered = useMemo(() => [...new Set([...view.effects.map((effect) => effect.address).filter((address) => address !== 'seed'), ...factors])], [view, factors])
+  const ordered = useMemo(
+    () => [...new Set([...view.effects.map((effect) => effect.address).filter((address) => address !== 'seed'), ...factors])],
+    [view, factors],
+  )
   if (view.done === 0) return null
   return (
     <div className="sweep-cards">
@@ -61,7 +64,16 @@ export function SweepReport({ view, runs, ...of }: SweepReportProps) {
           </SweepCard>
         )}
       </div>
-      <RunsCard {...of} sweep={view.line.id} subject={view.subject} runs={runs} shown={shown} factors={factors} cause={cause} onShowAll={() => choose(undefined)} />
+      <RunsCard
+        {...of}
+        sweep={view.line.id}
+        subject={view.subject}
+        runs={runs}
+        shown={shown}
+        factors={factors}
+        cause={cause}
+        onShowAll={() => choose(undefined)}
+      />
       <SweepCard title="Coverage" isWide>
         <MissedItems items={view.items} missing={view.missing} />
         <CoveredInputs inputs={view.inputs} />

@@ -62,18 +62,54 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
       {tool && <span className="quiet teach-tool">{tool}</span>}
       <span className="spacer" />
       <div className="command-row" role="group" aria-label="Capture">
-        <CommandButton label="Joints" hint="Capture where the joints are" icon={<IconTopologyRing3 size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_save')} />
-        <CommandButton label="Pose" hint="Capture where the tool is" icon={<IconFlag size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('pose_save')} />
+        <CommandButton
+          label="Joints"
+          hint="Capture where the joints are"
+          icon={<IconTopologyRing3 size={15} aria-hidden />}
+          obstacle={obstacle}
+          onPress={() => take('joint_save')}
+        />
+        <CommandButton
+          label="Pose"
+          hint="Capture where the tool is"
+          icon={<IconFlag size={15} aria-hidden />}
+          obstacle={obstacle}
+          onPress={() => take('pose_save')}
+        />
         {arm.skills.includes('gripper/gripper_open') && (
-          <CommandButton label="Grip" hint="Capture the state of the gripper" icon={<IconHandGrab size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('gripper_save')} />
+          <CommandButton
+            label="Grip"
+            hint="Capture the state of the gripper"
+            icon={<IconHandGrab size={15} aria-hidden />}
+            obstacle={obstacle}
+            onPress={() => take('gripper_save')}
+          />
         )}
         <FrameCapture obstacle={obstacle} onCapture={(source, target) => attempt(teach.frame(arm.name, source, target))} />
         {isRecording ? (
-          <CommandButton label="End recording" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_dmp_save', false)} />
+          <CommandButton
+            label="End recording"
+            tone="danger"
+            icon={<IconPlayerStopFilled size={14} aria-hidden />}
+            obstacle={obstacle}
+            onPress={() => take('joint_dmp_save', false)}
+          />
         ) : (
           <>
-            <CommandButton label="Record" hint="Record a motion, in joints" icon={<IconPlayerRecordFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_dmp_save')} />
-            <CommandButton label="Record tool" hint="Record a motion of the tool" icon={<IconPlayerRecordFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('cart_dmp_save')} />
+            <CommandButton
+              label="Record"
+              hint="Record a motion, in joints"
+              icon={<IconPlayerRecordFilled size={14} aria-hidden />}
+              obstacle={obstacle}
+              onPress={() => take('joint_dmp_save')}
+            />
+            <CommandButton
+              label="Record tool"
+              hint="Record a motion of the tool"
+              icon={<IconPlayerRecordFilled size={14} aria-hidden />}
+              obstacle={obstacle}
+              onPress={() => take('cart_dmp_save')}
+            />
           </>
         )}
       </div>

@@ -16,7 +16,14 @@ export function ButtonPanel() {
 
   return (
     <div className="buttons">
-      <Switch size="sm" label="Keys and gamepad of this computer are buttons" description="While this page is in front, and not while something is typed" checked={isOn} disabled={off !== undefined} onChange={(event) => useButtonMap.setState({ isOn: event.currentTarget.checked })} />
+      <Switch
+        size="sm"
+        label="Keys and gamepad of this computer are buttons"
+        description="While this page is in front, and not while something is typed"
+        checked={isOn}
+        disabled={off !== undefined}
+        onChange={(event) => useButtonMap.setState({ isOn: event.currentTarget.checked })}
+      />
       <ul className="plain-list key-list" aria-label="Keys">
         {keys.map((each, at) => (
           <KeyRow
@@ -29,10 +36,22 @@ export function ButtonPanel() {
           />
         ))}
       </ul>
-      <CommandButton label="Add a key" icon={<IconPlus size={15} aria-hidden />} onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])} />
+      <CommandButton
+        label="Add a key"
+        icon={<IconPlus size={15} aria-hidden />}
+        onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])}
+      />
       <p className="pad-row" role="status" aria-label="Gamepad">
         <IconDeviceGamepad2 size={18} aria-hidden />
-        {pads.length > 0 ? pads.map((each) => <span key={each} className="tag is-on">{each}</span>) : <span className="quiet">Press a button of a gamepad: it is published on buttons/gamepad/south, east, start…</span>}
+        {pads.length > 0 ? (
+          pads.map((each) => (
+            <span key={each} className="tag is-on">
+              {each}
+            </span>
+          ))
+        ) : (
+          <span className="quiet">Press a button of a gamepad: it is published on buttons/gamepad/south, east, start…</span>
+        )}
       </p>
       {refusal && (
         <p className="teach-problem" role="alert">
@@ -72,9 +91,21 @@ function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowPro
       >
         {isAsking ? 'press a key…' : keyButton.code || 'choose a key'}
       </button>
-      <TextInput size="xs" aria-label={`Button of ${keyButton.code}`} value={keyButton.button} error={buttonFault(keyButton.button) !== ''} onChange={(event) => onChange({ ...keyButton, button: event.currentTarget.value })} />
+      <TextInput
+        size="xs"
+        aria-label={`Button of ${keyButton.code}`}
+        value={keyButton.button}
+        error={buttonFault(keyButton.button) !== ''}
+        onChange={(event) => onChange({ ...keyButton, button: event.currentTarget.value })}
+      />
       <span className="quiet key-heard">{isPressed ? 'pressed' : isHeard ? 'a trigger listens' : 'nobody listens'}</span>
-      <CommandButton label={`Remove ${keyButton.button}`} isCompact tone="quiet" icon={<IconTrash size={14} aria-hidden />} onPress={onRemove} />
+      <CommandButton
+        label={`Remove ${keyButton.button}`}
+        isCompact
+        tone="quiet"
+        icon={<IconTrash size={14} aria-hidden />}
+        onPress={onRemove}
+      />
     </li>
   )
 }

@@ -25,7 +25,9 @@ export function CaptureList({ arm }: { readonly arm: string }) {
   const beside = captures.filter((each) => compared.includes(each.id))
   if (captures.length === 0) {
     return (
-      <Empty title="Nothing is captured">Press Joints, Pose or Record above, or the button of a trigger. Captures stay here until they are saved or discarded.</Empty>
+      <Empty title="Nothing is captured">
+        Press Joints, Pose or Record above, or the button of a trigger. Captures stay here until they are saved or discarded.
+      </Empty>
     )
   }
   return (
@@ -39,7 +41,9 @@ export function CaptureList({ arm }: { readonly arm: string }) {
               title="Compare"
               checked={compared.includes(each.id)}
               disabled={each.form === 'gripper' || (beside.length >= MOST_COMPARED && !compared.includes(each.id))}
-              onChange={(event) => setCompared(event.currentTarget.checked ? [...compared, each.id] : compared.filter((id) => id !== each.id))}
+              onChange={(event) =>
+                setCompared(event.currentTarget.checked ? [...compared, each.id] : compared.filter((id) => id !== each.id))
+              }
             />
             <button type="button" className="capture-name" aria-pressed={each.id === one?.id} onClick={() => setChosen(each.id)}>
               <span>
@@ -110,7 +114,8 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           <>
             <dt>Motion</dt>
             <dd>
-              {duration(capture.duration_s)}, {capture.samples} samples, {degrees(capture.length_rad).toFixed(0)}° of joints in all, {degrees(capture.peak_rad_s).toFixed(0)}°/s at most
+              {duration(capture.duration_s)}, {capture.samples} samples, {degrees(capture.length_rad).toFixed(0)}° of joints in all,{' '}
+              {degrees(capture.peak_rad_s).toFixed(0)}°/s at most
             </dd>
             <dt>Learned</dt>
             <dd>{fitWords(fit)}</dd>
@@ -125,11 +130,7 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
       </dl>
       {capture.samples > 0 && fit && <Comparison things={[asCompared(capture, arm)]} />}
       <div className="command-row">
-        <CommandButton
-          label="Show in the cell"
-          icon={<IconEye size={15} aria-hidden />}
-          onPress={look}
-        />
+        <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />
         <CommandButton
           label="Discard"
           tone="quiet"
@@ -143,7 +144,9 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           {problem || looked?.message}
         </p>
       )}
-      {capture.form !== 'gripper' && <PlayBack arm={robot} what={{ kind: '', name: '', capture: capture.id }} words={`capture ${capture.id}`} onLook={look} />}
+      {capture.form !== 'gripper' && (
+        <PlayBack arm={robot} what={{ kind: '', name: '', capture: capture.id }} words={`capture ${capture.id}`} onLook={look} />
+      )}
       <SaveForm key={capture.id} capture={capture} fit={fit} arm={robot} />
     </section>
   )

@@ -44,7 +44,9 @@ export function Chart({ curves, unit, label }: { readonly curves: readonly Drawn
           <path
             key={curve.name}
             className={`chart-curve is-colour-${curve.colour}${curve.isDashed ? ' is-dashed' : ''}`}
-            d={curve.times_s.map((time, at) => `${at === 0 ? 'M' : 'L'}${x(time).toFixed(1)} ${y(curve.values[at] ?? 0).toFixed(1)}`).join('')}
+            d={curve.times_s
+              .map((time, at) => `${at === 0 ? 'M' : 'L'}${x(time).toFixed(1)} ${y(curve.values[at] ?? 0).toFixed(1)}`)
+              .join('')}
           />
         ))}
       </svg>

@@ -43,9 +43,16 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
             label="Show over time"
             value={channel}
             onChange={(event) => setChannel(event.currentTarget.value)}
-            data={[...TOOL.map((label, at) => ({ value: `tool ${at}`, label })), ...Array.from({ length: joints }, (_, at) => ({ value: `joint ${at}`, label: `Joint ${at + 1}` }))]}
+            data={[
+              ...TOOL.map((label, at) => ({ value: `tool ${at}`, label })),
+              ...Array.from({ length: joints }, (_, at) => ({ value: `joint ${at}`, label: `Joint ${at + 1}` })),
+            ]}
           />
-          <Chart curves={curves} unit={unit} label={`${curves.length} curves, ${isTool ? TOOL[Number(channel.at(-1))] : `joint ${Number(channel.at(-1)) + 1}`} over time`} />
+          <Chart
+            curves={curves}
+            unit={unit}
+            label={`${curves.length} curves, ${isTool ? TOOL[Number(channel.at(-1))] : `joint ${Number(channel.at(-1)) + 1}`} over time`}
+          />
         </>
       )}
       {problem && (
@@ -78,7 +85,12 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
       {things.length > 1 && <Differences things={things} fits={fits} />}
       {things.length > 1 && (
         <div className="command-row">
-          <CommandButton label="Show all in the cell" hint="Each in the colour that it has here" icon={<IconEye size={15} aria-hidden />} onPress={() => things.forEach((each, at) => previewTaught(each.arm, each.what, at))} />
+          <CommandButton
+            label="Show all in the cell"
+            hint="Each in the colour that it has here"
+            icon={<IconEye size={15} aria-hidden />}
+            onPress={() => things.forEach((each, at) => previewTaught(each.arm, each.what, at))}
+          />
         </div>
       )}
     </div>
@@ -121,8 +133,14 @@ function traceOf(fit: PrimitiveComparison | undefined): Trace | undefined {
 function drawn(thing: Compared, fit: PrimitiveComparison | undefined, channel: string, at: number): readonly Drawn[] {
   const colour = at % MOST_COMPARED
   const made: Drawn[] = []
-  if (fit?.demonstration) made.push({ ...curveOf(fit.demonstration, fit.primitive ? `${thing.label} shown` : thing.label, channel), colour, isDashed: false })
-  if (fit?.primitive) made.push({ ...curveOf(fit.primitive, fit.demonstration ? `${thing.label} learned` : thing.label, channel), colour, isDashed: fit.demonstration !== null })
+  if (fit?.demonstration)
+    made.push({ ...curveOf(fit.demonstration, fit.primitive ? `${thing.label} shown` : thing.label, channel), colour, isDashed: false })
+  if (fit?.primitive)
+    made.push({
+      ...curveOf(fit.primitive, fit.demonstration ? `${thing.label} learned` : thing.label, channel),
+      colour,
+      isDashed: fit.demonstration !== null,
+    })
   return made.filter((curve) => curve.values.length > 1)
 }
 

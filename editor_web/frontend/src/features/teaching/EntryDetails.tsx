@@ -33,8 +33,21 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
       </h3>
       <div className="command-row">
         {PLAYED.has(kind) && <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />}
-        <CommandButton label="Undo" hint="Restore the value before the last change" icon={<IconArrowBackUp size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.undo(kind, name))} />
-        <CommandButton label="Delete" hint="Undo brings it back" tone="quiet" icon={<IconTrash size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.remove(kind, name))} />
+        <CommandButton
+          label="Undo"
+          hint="Restore the value before the last change"
+          icon={<IconArrowBackUp size={15} aria-hidden />}
+          obstacle={off}
+          onPress={() => attempt(() => teach.undo(kind, name))}
+        />
+        <CommandButton
+          label="Delete"
+          hint="Undo brings it back"
+          tone="quiet"
+          icon={<IconTrash size={15} aria-hidden />}
+          obstacle={off}
+          onPress={() => attempt(() => teach.remove(kind, name))}
+        />
       </div>
       {(problem || looked) && (
         <p className="teach-problem" role="alert">
@@ -42,7 +55,12 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
         </p>
       )}
       {PLAYED.has(kind) && <PlayBack arm={arm} what={what} words={`${kind} ${name}`} onLook={look} />}
-      <Tags key={entry.revision} entry={entry} obstacle={off} onKeep={(tags) => attempt(() => teach.tag({ kind, name, tags, revision: entry.revision }))} />
+      <Tags
+        key={entry.revision}
+        entry={entry}
+        obstacle={off}
+        onKeep={(tags) => attempt(() => teach.tag({ kind, name, tags, revision: entry.revision }))}
+      />
       <EntryHistory arm={arm} entry={entry} />
     </section>
   )
@@ -69,7 +87,16 @@ function Tags({ entry, obstacle, onKeep }: TagsProps) {
         if (off === undefined) onKeep(tagsOf(typed))
       }}
     >
-      <TextInput size="xs" label="Tags" placeholder="station_1, tested" value={typed} error={fault} onChange={(event) => setTyped(event.currentTarget.value)} autoComplete="off" spellCheck={false} />
+      <TextInput
+        size="xs"
+        label="Tags"
+        placeholder="station_1, tested"
+        value={typed}
+        error={fault}
+        onChange={(event) => setTyped(event.currentTarget.value)}
+        autoComplete="off"
+        spellCheck={false}
+      />
       <CommandButton label="Save tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
     </form>
   )

@@ -29,7 +29,13 @@ export function EntryHistory({ arm, entry }: { readonly arm: string; readonly en
                   <span className="mono">{change.revision}</span> {words}
                 </span>
               ) : (
-                <button type="button" className="history-change" aria-expanded={opened === change.revision} title="Value at that time" onClick={() => setOpened(opened === change.revision ? undefined : change.revision)}>
+                <button
+                  type="button"
+                  className="history-change"
+                  aria-expanded={opened === change.revision}
+                  title="Value at that time"
+                  onClick={() => setOpened(opened === change.revision ? undefined : change.revision)}
+                >
                   <span className="mono">{change.revision}</span> {words}
                 </button>
               )}
@@ -55,7 +61,14 @@ function Was({ arm, entry, revision }: WasProps) {
   const { was, problem } = useRevision(kind, name, revision)
   const then = { kind, name, capture: 0, revision }
   const now = { ...then, revision: entry.revision }
-  const { fits, problem: unfit } = useFits(hasPlace ? [{ key: 'then', label: name, arm, what: then }, { key: 'now', label: name, arm, what: now }] : [])
+  const { fits, problem: unfit } = useFits(
+    hasPlace
+      ? [
+          { key: 'then', label: name, arm, what: then },
+          { key: 'now', label: name, arm, what: now },
+        ]
+      : [],
+  )
   const [before, after] = [fits.then, fits.now].map((fit) => fit?.demonstration ?? fit?.primitive ?? undefined)
   const joints = before?.joints.at(-1)
   const pose = before?.poses.at(-1)
@@ -99,7 +112,13 @@ function Was({ arm, entry, revision }: WasProps) {
           {problem || unfit}
         </p>
       )}
-      {hasPlace && <CommandButton label="Show this one in the cell" icon={<IconEye size={15} aria-hidden />} onPress={() => previewTaught(arm, then)} />}
+      {hasPlace && (
+        <CommandButton
+          label="Show this one in the cell"
+          icon={<IconEye size={15} aria-hidden />}
+          onPress={() => previewTaught(arm, then)}
+        />
+      )}
     </div>
   )
 }

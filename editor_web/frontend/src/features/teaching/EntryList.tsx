@@ -23,8 +23,21 @@ export function EntryList({ arm }: { readonly arm: string }) {
   return (
     <div className="entries">
       <div className="entry-search">
-        <TextInput size="xs" label="Search" placeholder="name or tag" value={text} onChange={(event) => setText(event.currentTarget.value)} autoComplete="off" />
-        <NativeSelect size="xs" label="Kind" value={kind} onChange={(event) => setKind(event.currentTarget.value)} data={[{ value: '', label: 'all' }, ...KINDS]} />
+        <TextInput
+          size="xs"
+          label="Search"
+          placeholder="name or tag"
+          value={text}
+          onChange={(event) => setText(event.currentTarget.value)}
+          autoComplete="off"
+        />
+        <NativeSelect
+          size="xs"
+          label="Kind"
+          value={kind}
+          onChange={(event) => setKind(event.currentTarget.value)}
+          data={[{ value: '', label: 'all' }, ...KINDS]}
+        />
       </div>
       {problem && (
         <p className="teach-problem" role="alert">
@@ -32,7 +45,9 @@ export function EntryList({ arm }: { readonly arm: string }) {
         </p>
       )}
       {page && page.entries.length === 0 ? (
-        <Empty title={text || kind ? 'Nothing is found' : 'No entries yet'}>{text || kind ? 'Search for the beginning of a word of the name or of a tag.' : 'Capture something and save it under a name.'}</Empty>
+        <Empty title={text || kind ? 'Nothing is found' : 'No entries yet'}>
+          {text || kind ? 'Search for the beginning of a word of the name or of a tag.' : 'Capture something and save it under a name.'}
+        </Empty>
       ) : (
         <ul className="plain-list entry-list" aria-label="Entries">
           {page?.entries.map((each) => (
@@ -43,7 +58,9 @@ export function EntryList({ arm }: { readonly arm: string }) {
                 title="Compare"
                 checked={compared.includes(keyOf(each))}
                 disabled={!PLAYED.has(each.kind) || (beside.length >= MOST_COMPARED && !compared.includes(keyOf(each)))}
-                onChange={(event) => setCompared(event.currentTarget.checked ? [...compared, keyOf(each)] : compared.filter((key) => key !== keyOf(each)))}
+                onChange={(event) =>
+                  setCompared(event.currentTarget.checked ? [...compared, keyOf(each)] : compared.filter((key) => key !== keyOf(each)))
+                }
               />
               <button type="button" className="entry" aria-pressed={keyOf(each) === chosen} onClick={() => setChosen(keyOf(each))}>
                 <span className="entry-kind">{each.kind}</span>

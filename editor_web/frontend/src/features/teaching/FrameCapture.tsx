@@ -34,8 +34,20 @@ export function FrameCapture({ obstacle, onCapture }: FrameCaptureProps) {
         </button>
       </Popover.Target>
       <Popover.Dropdown className="frame-capture">
-        <NativeSelect size="xs" label="Where is" value={from} onChange={(event) => setSource(event.currentTarget.value)} data={[...frames]} />
-        <NativeSelect size="xs" label="Seen from" value={target} onChange={(event) => setTarget(event.currentTarget.value)} data={[WORLD, ...frames.filter((each) => each !== WORLD)]} />
+        <NativeSelect
+          size="xs"
+          label="Where is"
+          value={from}
+          onChange={(event) => setSource(event.currentTarget.value)}
+          data={[...frames]}
+        />
+        <NativeSelect
+          size="xs"
+          label="Seen from"
+          value={target}
+          onChange={(event) => setTarget(event.currentTarget.value)}
+          data={[WORLD, ...frames.filter((each) => each !== WORLD)]}
+        />
         <CommandButton
           label="Capture the frame"
           tone="strong"

@@ -5,7 +5,17 @@ import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import { useDisabledReason, useTeach } from '../../api/teaching'
 import type { ArmInfo, ArmLive } from '../../api/types'
-import { degrees, heldWords, jogVelocity, rollPitchYaw, shareOfRange, TOOL_AXES, toolStep, type Frame, type Space } from '../../document/teaching'
+import {
+  degrees,
+  heldWords,
+  jogVelocity,
+  rollPitchYaw,
+  shareOfRange,
+  TOOL_AXES,
+  toolStep,
+  type Frame,
+  type Space,
+} from '../../document/teaching'
 import { HoldButton } from './HoldButton'
 import { jogKey } from './jogKeys'
 import { ToolRow } from './ToolRow'
@@ -66,21 +76,71 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   return (
     <div className="jog">
       <div className="jog-choices">
-        <SegmentedControl size="xs" aria-label="Jog target" value={space} onChange={(value) => setSpace(value)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
-        <SegmentedControl size="xs" aria-label="Jog mode" value={isStepping ? 'step' : 'hold'} onChange={(value) => setStepping(value === 'step')} data={[{ value: 'hold', label: 'Hold to run' }, { value: 'step', label: 'Step' }]} />
+        <SegmentedControl
+          size="xs"
+          aria-label="Jog target"
+          value={space}
+          onChange={(value) => setSpace(value)}
+          data={[
+            { value: 'tool', label: 'Tool' },
+            { value: 'joints', label: 'Joints' },
+          ]}
+        />
+        <SegmentedControl
+          size="xs"
+          aria-label="Jog mode"
+          value={isStepping ? 'step' : 'hold'}
+          onChange={(value) => setStepping(value === 'step')}
+          data={[
+            { value: 'hold', label: 'Hold to run' },
+            { value: 'step', label: 'Step' },
+          ]}
+        />
         {space === 'tool' && (
-          <SegmentedControl size="xs" aria-label="Along the axes of" value={frame} onChange={(value) => setFrame(value)} data={[{ value: 'world', label: 'World' }, { value: 'base', label: 'Base' }, { value: 'tool', label: 'Tool axes' }]} />
+          <SegmentedControl
+            size="xs"
+            aria-label="Along the axes of"
+            value={frame}
+            onChange={(value) => setFrame(value)}
+            data={[
+              { value: 'world', label: 'World' },
+              { value: 'base', label: 'Base' },
+              { value: 'tool', label: 'Tool axes' },
+            ]}
+          />
         )}
       </div>
       <div className="jog-speed">
         <span id={`${hint}-speed`}>Speed</span>
-        <Slider size="sm" min={1} max={100} value={share} onChange={setShare} label={(value) => `${value} %`} thumbProps={{ 'aria-labelledby': `${hint}-speed` }} />
+        <Slider
+          size="sm"
+          min={1}
+          max={100}
+          value={share}
+          onChange={setShare}
+          label={(value) => `${value} %`}
+          thumbProps={{ 'aria-labelledby': `${hint}-speed` }}
+        />
         <output>{space === 'tool' ? `${((0.25 * share * 1000) / 100).toFixed(0)} mm/s` : `${degrees(share / 100).toFixed(0)}°/s`}</output>
       </div>
       {isStepping && (
         <div className="jog-choices">
-          {space === 'tool' && <SegmentedControl size="xs" aria-label="Size of a step" value={stepMm} onChange={setStepMm} data={STEPS_MM.map((value) => ({ value, label: `${value} mm` }))} />}
-          <SegmentedControl size="xs" aria-label="Angle of a step" value={stepDeg} onChange={setStepDeg} data={STEPS_DEG.map((value) => ({ value, label: `${value}°` }))} />
+          {space === 'tool' && (
+            <SegmentedControl
+              size="xs"
+              aria-label="Size of a step"
+              value={stepMm}
+              onChange={setStepMm}
+              data={STEPS_MM.map((value) => ({ value, label: `${value} mm` }))}
+            />
+          )}
+          <SegmentedControl
+            size="xs"
+            aria-label="Angle of a step"
+            value={stepDeg}
+            onChange={setStepDeg}
+            data={STEPS_DEG.map((value) => ({ value, label: `${value}°` }))}
+          />
         </div>
       )}
       <ul className={`plain-list jog-rows is-${space}`} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
@@ -110,7 +170,9 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         <IconKeyboard size={16} aria-hidden />
         <span>Jog with the keyboard</span>
         <span id={hint} className="quiet">
-          {space === 'tool' ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.' : 'Digits move that joint, with Shift in the other direction.'}
+          {space === 'tool'
+            ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.'
+            : 'Digits move that joint, with Shift in the other direction.'}
         </span>
       </button>
       <Switch
@@ -122,7 +184,9 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
       <p className="teach-message" role="status" aria-label="State of jogging">
-        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : '')}
+        {refusal
+          ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
+          : heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : '')}
       </p>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (
@@ -171,7 +235,12 @@ function jointRows(arm: ArmInfo, now: ArmLive | undefined): readonly Row[] {
 function LimitBar({ share, words }: { readonly share: number; readonly words: string | undefined }) {
   const isNear = share < 0.05 || share > 0.95
   return (
-    <span className={`limit-bar${isNear ? ' is-near' : ''}`} role="img" aria-label={`${words}${isNear ? ', near a limit' : ''}`} title={words}>
+    <span
+      className={`limit-bar${isNear ? ' is-near' : ''}`}
+      role="img"
+      aria-label={`${words}${isNear ? ', near a limit' : ''}`}
+      title={words}
+    >
       <span style={{ left: `${share * 100}%` }} />
     </span>
   )

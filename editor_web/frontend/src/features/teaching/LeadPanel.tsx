@@ -1,6 +1,14 @@
 /** Leading an arm by hand: let it float, record what it does, and push it where there is nobody to do so. */
 import { lookup } from '../../document/dict'
-import { IconArrowDown, IconArrowLeft, IconArrowRight, IconArrowUp, IconChevronsDown, IconChevronsUp, IconFeather } from '@tabler/icons-react'
+import {
+  IconArrowDown,
+  IconArrowLeft,
+  IconArrowRight,
+  IconArrowUp,
+  IconChevronsDown,
+  IconChevronsUp,
+  IconFeather,
+} from '@tabler/icons-react'
 import { Slider } from '@mantine/core'
 import { useEffect, useId, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -57,7 +65,15 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
   )
 }
 
-function PushPad({ arm, obstacle, onProblem }: { readonly arm: string; readonly obstacle: string | undefined; readonly onProblem: (words: string) => void }) {
+function PushPad({
+  arm,
+  obstacle,
+  onProblem,
+}: {
+  readonly arm: string
+  readonly obstacle: string | undefined
+  readonly onProblem: (words: string) => void
+}) {
   const [force_n, setForce] = useState(12)
   const [held, setHeld] = useState('')
   const timer = useRef<ReturnType<typeof setInterval>>(undefined)

@@ -68,16 +68,25 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
       {stage === 'asks' && (
         <div className="play-asks" role="group" aria-label="Play back">
           <p>
-            <strong>{arm} will move</strong> to the beginning of {words} and along it, whatever stands there. Look at the blue ghost first, and keep people out of reach.
+            <strong>{arm} will move</strong> to the beginning of {words} and along it, whatever stands there. Look at the blue ghost first,
+            and keep people out of reach.
           </p>
           <div className="command-row">
-            <NativeSelect size="xs" aria-label="Speed of the play-back" value={String(percent)} onChange={(event) => setPercent(Number(event.currentTarget.value))} data={SPEEDS.map((each) => ({ value: String(each), label: `${each} % of its speed` }))} />
+            <NativeSelect
+              size="xs"
+              aria-label="Speed of the play-back"
+              value={String(percent)}
+              onChange={(event) => setPercent(Number(event.currentTarget.value))}
+              data={SPEEDS.map((each) => ({ value: String(each), label: `${each} % of its speed` }))}
+            />
             <CommandButton label="Move the arm" tone="strong" obstacle={off} onPress={move} />
             <CommandButton label="Cancel" tone="quiet" onPress={() => setStage('idle')} />
           </div>
         </div>
       )}
-      {stage === 'moves' && <CommandButton label="Stop (Escape)" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} onPress={stop} />}
+      {stage === 'moves' && (
+        <CommandButton label="Stop (Escape)" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} onPress={stop} />
+      )}
       <span className="quiet" role="status" aria-label="Play-back">
         {message}
       </span>

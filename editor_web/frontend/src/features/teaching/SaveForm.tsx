@@ -33,16 +33,14 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
 
   function save(): void {
     setMessage('')
-    teach
-      .save({ id: capture.id, name, form, tags: tagsOf(tags), replace: present.exists, by: 'the dashboard', reason })
-      .then(
-        () => {
-          setProblem('')
-          setMessage(`Saved as ${form} ${name}.`)
-          setName('')
-        },
-        (error: unknown) => setProblem(wordsOf(error)),
-      )
+    teach.save({ id: capture.id, name, form, tags: tagsOf(tags), replace: present.exists, by: 'the dashboard', reason }).then(
+      () => {
+        setProblem('')
+        setMessage(`Saved as ${form} ${name}.`)
+        setName('')
+      },
+      (error: unknown) => setProblem(wordsOf(error)),
+    )
   }
 
   return (
@@ -55,10 +53,42 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
       }}
     >
       <div className="save-fields">
-        <TextInput size="xs" label="Name" placeholder="above_tray" value={name} onChange={(event) => setName(event.currentTarget.value)} error={name !== '' && fault} autoComplete="off" spellCheck={false} />
-        <NativeSelect size="xs" label="As" value={form} onChange={(event) => setForm(event.currentTarget.value as Form)} data={formsOf(capture).map((value) => ({ value, label: FORM_WORDS[value] }))} />
-        <TextInput size="xs" label="Tags" placeholder="station_1, tested" value={tags} onChange={(event) => setTags(event.currentTarget.value)} error={wrongTags} autoComplete="off" spellCheck={false} />
-        <TextInput size="xs" label="Why" placeholder="more room" value={reason} maxLength={1000} onChange={(event) => setReason(event.currentTarget.value)} autoComplete="off" />
+        <TextInput
+          size="xs"
+          label="Name"
+          placeholder="above_tray"
+          value={name}
+          onChange={(event) => setName(event.currentTarget.value)}
+          error={name !== '' && fault}
+          autoComplete="off"
+          spellCheck={false}
+        />
+        <NativeSelect
+          size="xs"
+          label="As"
+          value={form}
+          onChange={(event) => setForm(event.currentTarget.value as Form)}
+          data={formsOf(capture).map((value) => ({ value, label: FORM_WORDS[value] }))}
+        />
+        <TextInput
+          size="xs"
+          label="Tags"
+          placeholder="station_1, tested"
+          value={tags}
+          onChange={(event) => setTags(event.currentTarget.value)}
+          error={wrongTags}
+          autoComplete="off"
+          spellCheck={false}
+        />
+        <TextInput
+          size="xs"
+          label="Why"
+          placeholder="more room"
+          value={reason}
+          maxLength={1000}
+          onChange={(event) => setReason(event.currentTarget.value)}
+          autoComplete="off"
+        />
       </div>
       {present.exists && (
         <div className="overwrites" role="status" aria-label="Effect of overwriting">
@@ -76,7 +106,13 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
         </div>
       )}
       <div className="command-row">
-        <CommandButton label={present.exists ? 'Overwrite' : 'Save'} tone={present.exists ? 'danger' : 'strong'} icon={<IconDeviceFloppy size={15} aria-hidden />} obstacle={obstacle} onPress={save} />
+        <CommandButton
+          label={present.exists ? 'Overwrite' : 'Save'}
+          tone={present.exists ? 'danger' : 'strong'}
+          icon={<IconDeviceFloppy size={15} aria-hidden />}
+          obstacle={obstacle}
+          onPress={save}
+        />
         <span className="quiet" role="status" aria-label="Saving">
           {message}
         </span>
@@ -101,7 +137,12 @@ const EMPTY: Trace = { times_s: [], joint_names: [], joints: [], poses: [], rema
 /** Whether there is an entry of this name, and where the arm is along it. */
 function usePresent(arm: string, form: Form, name: string): { readonly exists: boolean; readonly trace: Trace | undefined } {
   const changed = useTeach((s) => s.entries)
-  const [found, setFound] = useState<{ readonly name: string; readonly form: Form; readonly exists: boolean; readonly trace: Trace | undefined }>()
+  const [found, setFound] = useState<{
+    readonly name: string
+    readonly form: Form
+    readonly exists: boolean
+    readonly trace: Trace | undefined
+  }>()
   useEffect(() => {
     if (!name) return
     let current = true

@@ -7,7 +7,17 @@ import type { Steps } from './useSteps'
 /** Closes on whatever is there: held is what stops the fingers. */
 const GRASP = { width_m: 0.0, force_n: 20, tolerance_inner_m: 0.5, tolerance_outer_m: 0.5 }
 
-export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmInfo; readonly now: ArmLive | undefined; readonly steps: Steps; readonly obstacle: string | undefined }) {
+export function ToolRow({
+  arm,
+  now,
+  steps,
+  obstacle,
+}: {
+  readonly arm: ArmInfo
+  readonly now: ArmLive | undefined
+  readonly steps: Steps
+  readonly obstacle: string | undefined
+}) {
   const isGripper = arm.skills.includes('gripper/gripper_open')
   const isHand = arm.skills.includes('hand/hand_open')
   if (!isGripper && !isHand) return null
@@ -27,7 +37,9 @@ export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmInfo; 
         label="Close"
         icon={<IconHandGrab size={15} aria-hidden />}
         obstacle={off}
-        onPress={() => (isGripper ? steps.send(`${arm.name}/gripper/gripper_grasp`, GRASP) : steps.send(`${arm.name}/hand/hand_close`, { percent: 100 }))}
+        onPress={() =>
+          isGripper ? steps.send(`${arm.name}/gripper/gripper_grasp`, GRASP) : steps.send(`${arm.name}/hand/hand_close`, { percent: 100 })
+        }
       />
     </div>
   )
@@ -37,6 +49,11 @@ export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmInfo; 
 export function toolWords(now: ArmLive | undefined): string {
   const tool = now?.tool
   if (!tool) return ''
-  const opening = tool.width_m !== null ? `${(tool.width_m * 1000).toFixed(0)} mm open` : tool.closed_percent !== null ? `${tool.closed_percent.toFixed(0)} % closed` : ''
+  const opening =
+    tool.width_m !== null
+      ? `${(tool.width_m * 1000).toFixed(0)} mm open`
+      : tool.closed_percent !== null
+        ? `${tool.closed_percent.toFixed(0)} % closed`
+        : ''
   return [opening, tool.held ? 'holds something' : ''].filter(Boolean).join(', ')
 }

@@ -190,7 +190,16 @@ it.each([
 })
 
 it('keeps tags that are written as tags are, and only where they have changed', async () => {
-  const entry: EntryChanged = { kind: 'joints', name: 'aside', revision: 3, deleted: false, tags: ['station_1'], by: 'ana', reason: '', changed_unix_ms: 0 }
+  const entry: EntryChanged = {
+    kind: 'joints',
+    name: 'aside',
+    revision: 3,
+    deleted: false,
+    tags: ['station_1'],
+    by: 'ana',
+    reason: '',
+    changed_unix_ms: 0,
+  }
   answers['store/read_history'] = () => ({ changes: [] })
   server().on('POST /teach/tags', undefined).on('GET /teach/fits', {})
   taught()

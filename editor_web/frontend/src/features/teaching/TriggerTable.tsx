@@ -29,7 +29,16 @@ export function TriggerTable({ arms }: { readonly arms: readonly string[] }) {
   if (hand === null) return <Empty title="No Helping Hand">This server was started without one.</Empty>
   return (
     <div className="triggers">
-      <SegmentedControl size="xs" aria-label="How the triggers are shown" value={isText ? 'yaml' : 'table'} onChange={(value) => setText(value === 'yaml')} data={[{ value: 'table', label: 'Table' }, { value: 'yaml', label: 'YAML' }]} />
+      <SegmentedControl
+        size="xs"
+        aria-label="How the triggers are shown"
+        value={isText ? 'yaml' : 'table'}
+        onChange={(value) => setText(value === 'yaml')}
+        data={[
+          { value: 'table', label: 'Table' },
+          { value: 'yaml', label: 'YAML' },
+        ]}
+      />
       {isText ? <TriggerText /> : <Rows arms={arms} triggers={hand?.triggers ?? []} />}
     </div>
   )
@@ -77,7 +86,11 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
               {triggers.map(({ trigger, pressed, fault }, at) => (
                 <tr key={trigger.trig_name} className={pressed ? 'is-pressed' : ''}>
                   <th scope="row">
-                    <span className={`trigger-light${pressed ? ' is-on' : ''}`} role="img" aria-label={pressed ? 'pressed' : 'not pressed'} />
+                    <span
+                      className={`trigger-light${pressed ? ' is-on' : ''}`}
+                      role="img"
+                      aria-label={pressed ? 'pressed' : 'not pressed'}
+                    />
                     {trigger.trig_name}
                     {fault && <span className="trigger-fault">{fault}</span>}
                   </th>
@@ -87,8 +100,22 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
                   <td className="mono">{JSON.stringify(trigger.trig_value)}</td>
                   <td>{CALLBACK_WORDS[trigger.trig_callback]}</td>
                   <td className="trigger-commands">
-                    <CommandButton label={`Edit ${trigger.trig_name}`} isCompact icon={<IconPencil size={14} aria-hidden />} tone="quiet" obstacle={off} onPress={() => setEdited({ at, trigger })} />
-                    <CommandButton label={`Remove ${trigger.trig_name}`} isCompact icon={<IconTrash size={14} aria-hidden />} tone="quiet" obstacle={off} onPress={() => void keep(all.filter((_, index) => index !== at))} />
+                    <CommandButton
+                      label={`Edit ${trigger.trig_name}`}
+                      isCompact
+                      icon={<IconPencil size={14} aria-hidden />}
+                      tone="quiet"
+                      obstacle={off}
+                      onPress={() => setEdited({ at, trigger })}
+                    />
+                    <CommandButton
+                      label={`Remove ${trigger.trig_name}`}
+                      isCompact
+                      icon={<IconTrash size={14} aria-hidden />}
+                      tone="quiet"
+                      obstacle={off}
+                      onPress={() => void keep(all.filter((_, index) => index !== at))}
+                    />
                   </td>
                 </tr>
               ))}
@@ -103,10 +130,17 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
           trigger={edited.trigger}
           taken={all.filter((_, index) => index !== edited.at).map((each) => each.trig_name)}
           onCancel={() => setEdited(undefined)}
-          onKeep={(trigger) => void keep(edited.at < all.length ? all.map((each, index) => (index === edited.at ? trigger : each)) : [...all, trigger])}
+          onKeep={(trigger) =>
+            void keep(edited.at < all.length ? all.map((each, index) => (index === edited.at ? trigger : each)) : [...all, trigger])
+          }
         />
       ) : (
-        <CommandButton label="Add a trigger" icon={<IconPlus size={15} aria-hidden />} obstacle={off} onPress={() => setEdited({ at: all.length, trigger: { ...NEW, robot_ns: arms[0] ?? '' } })} />
+        <CommandButton
+          label="Add a trigger"
+          icon={<IconPlus size={15} aria-hidden />}
+          obstacle={off}
+          onPress={() => setEdited({ at: all.length, trigger: { ...NEW, robot_ns: arms[0] ?? '' } })}
+        />
       )}
       {problem && (
         <p className="teach-problem" role="alert">
@@ -150,9 +184,23 @@ function TriggerText() {
 
   return (
     <div className="trigger-text">
-      <Textarea label={kept?.file ? `Triggers in ${kept.file}` : 'Triggers'} value={text} onChange={(event) => setText(event.currentTarget.value)} autosize minRows={10} maxRows={24} spellCheck={false} classNames={{ input: 'mono' }} />
+      <Textarea
+        label={kept?.file ? `Triggers in ${kept.file}` : 'Triggers'}
+        value={text}
+        onChange={(event) => setText(event.currentTarget.value)}
+        autosize
+        minRows={10}
+        maxRows={24}
+        spellCheck={false}
+        classNames={{ input: 'mono' }}
+      />
       <div className="command-row">
-        <CommandButton label="Save the YAML" tone="strong" obstacle={off ?? (text === kept?.text ? 'nothing is changed' : undefined)} onPress={save} />
+        <CommandButton
+          label="Save the YAML"
+          tone="strong"
+          obstacle={off ?? (text === kept?.text ? 'nothing is changed' : undefined)}
+          onPress={save}
+        />
         <span className="quiet" role="status" aria-label="Saving the triggers">
           {message}
         </span>

@@ -19,8 +19,23 @@ const FIRST_KEYS: readonly KeyButton[] = [
 
 /** The buttons of the standard gamepad by their numbers. */
 const GAMEPAD_BUTTONS = [
-  'south', 'east', 'west', 'north', 'left_1', 'right_1', 'left_2', 'right_2', 'select', 'start', 'left_stick', 'right_stick', 'up', 'down', 'left',
-  'right', 'home',
+  'south',
+  'east',
+  'west',
+  'north',
+  'left_1',
+  'right_1',
+  'left_2',
+  'right_2',
+  'select',
+  'start',
+  'left_stick',
+  'right_stick',
+  'up',
+  'down',
+  'left',
+  'right',
+  'home',
 ] as const
 
 /** The buttons that are down on any of these gamepads. */

@@ -44,7 +44,8 @@ export function useButtons(): void {
 
     function onKey(event: KeyboardEvent): void {
       const found = keys.find((each) => each.code === event.code)
-      if (!found || (event.type === 'keydown' && isMeant(event.target, event.code)) || event.ctrlKey || event.metaKey || event.altKey) return
+      if (!found || (event.type === 'keydown' && isMeant(event.target, event.code)) || event.ctrlKey || event.metaKey || event.altKey)
+        return
       event.preventDefault()
       // What the key does elsewhere, such as going to another tab, it does not while it is a button.
       event.stopPropagation()

@@ -59,12 +59,24 @@ export function FailureActions(props: FailureActionsProps) {
         </Button>
       )}
       {mayOperate && hasView && (
-        <Button {...LOOK} leftSection={<IconRestore size={15} aria-hidden />} disabled={isBusy} title={isOff} onClick={() => attempt('Parts are back', api.resetParts)}>
+        <Button
+          {...LOOK}
+          leftSection={<IconRestore size={15} aria-hidden />}
+          disabled={isBusy}
+          title={isOff}
+          onClick={() => attempt('Parts are back', api.resetParts)}
+        >
           Reset parts
         </Button>
       )}
       {mayOperate && onStarted && failure.entered_seq > 0 && (
-        <Button {...LOOK} leftSection={<IconRepeat size={15} aria-hidden />} disabled={isBusy} title={isOff ?? `Start a new run at ${failure.path}, with the values it had there`} onClick={() => attempt('Started', retry)}>
+        <Button
+          {...LOOK}
+          leftSection={<IconRepeat size={15} aria-hidden />}
+          disabled={isBusy}
+          title={isOff ?? `Start a new run at ${failure.path}, with the values it had there`}
+          onClick={() => attempt('Started', retry)}
+        >
           Retry from here
         </Button>
       )}

@@ -65,7 +65,11 @@ export function Steps({ failure: { steps, path }, onShow }: StepsProps) {
   return (
     <ol className="failure-steps">
       {steps.map((step, index) => (
-        <li key={step.path} className={step.path === path ? 'is-origin' : undefined} style={{ marginInlineStart: Math.max(0, index - 1) * 14 }}>
+        <li
+          key={step.path}
+          className={step.path === path ? 'is-origin' : undefined}
+          style={{ marginInlineStart: Math.max(0, index - 1) * 14 }}
+        >
           <button type="button" className="link-row" onClick={() => onShow(step)}>
             {step.path.split('/').pop()}
           </button>{' '}

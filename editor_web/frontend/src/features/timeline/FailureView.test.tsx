@@ -16,7 +16,12 @@ const FAILURE: RunFailure = {
   text: 'root/grasp failed: no contact',
   hint: 'look at the gripper',
   links: [
-    { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed', compared: [{ quantity: 'opening', measured: 1.2, unit: 'mm', least: 20, most: 40 }] },
+    {
+      message: 'no contact on either pad',
+      where: 'left',
+      kind: 'GraspFailed',
+      compared: [{ quantity: 'opening', measured: 1.2, unit: 'mm', least: 20, most: 40 }],
+    },
     { message: 'the grasp failed', where: '', kind: 'StateError', compared: [] },
   ],
   steps: [
@@ -38,9 +43,7 @@ afterEach(() => {
 
 /** The server of a run that failed, and of no run before it that succeeded. */
 function failing() {
-  return server()
-    .on('GET /runs/r1/failure', FAILURE)
-    .on('GET /runs/r1/last-good-run', null)
+  return server().on('GET /runs/r1/failure', FAILURE).on('GET /runs/r1/last-good-run', null)
 }
 
 function sections(): Record<string, string[]> {
@@ -49,7 +52,14 @@ function sections(): Record<string, string[]> {
   const titles = region.getAllByRole('heading', { level: 4 })
   // Without a good run there is no list of what differs from it.
   const told = titles.filter((title) => title.textContent !== 'Against the last good run')
-  return Object.fromEntries(told.map((title, at) => [title.textContent ?? '', within(lists[at] ?? document.body).getAllByRole('listitem').map((each) => each.textContent ?? '')]))
+  return Object.fromEntries(
+    told.map((title, at) => [
+      title.textContent ?? '',
+      within(lists[at] ?? document.body)
+        .getAllByRole('listitem')
+        .map((each) => each.textContent ?? ''),
+    ]),
+  )
 }
 
 it('tells where it began, why, and what happened there', async () => {
@@ -71,7 +81,11 @@ it('tells what was measured against what was expected', async () => {
   live({ runs: [FAILED] })
   show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   const table = await screen.findByRole('table', { name: 'Expected against measured' })
-  expect(within(table).getAllByRole('cell').map((each) => each.textContent)).toEqual(['opening', '20 to 40 mm', '1.2 mm', '18.8 mm too small'])
+  expect(
+    within(table)
+      .getAllByRole('cell')
+      .map((each) => each.textContent),
+  ).toEqual(['opening', '20 to 40 mm', '1.2 mm', '18.8 mm too small'])
 })
 
 it('tells what differs from the last good run', async () => {
@@ -79,7 +93,14 @@ it('tells what differs from the last good run', async () => {
   const comparison: RunComparison = {
     left: { ...past, id: 'r0', success: true },
     right: past,
-    divergence: { kind: 'outcome', path: 'root/grasp', index: 1, left_s: 1, right_s: 1.5, text: 'root/grasp ended with missed, with held before' },
+    divergence: {
+      kind: 'outcome',
+      path: 'root/grasp',
+      index: 1,
+      left_s: 1,
+      right_s: 1.5,
+      text: 'root/grasp ended with missed, with held before',
+    },
     visits: [],
     left_out: 0,
     nodes: [],
@@ -98,13 +119,20 @@ it('tells what differs from the last good run', async () => {
 it('starts again where it failed, with what the run had there', async () => {
   started.mockReset()
   failing()
-    .on('GET /runs/r1/events', { events: [{ event: 'run_started', seq: 1, time_s: 0, behavior: 'shift', document: 'd', parameters: {}, seed: 5, clock: 'real', inputs: {} }], last: 1 })
+    .on('GET /runs/r1/events', {
+      events: [
+        { event: 'run_started', seq: 1, time_s: 0, behavior: 'shift', document: 'd', parameters: {}, seed: 5, clock: 'real', inputs: {} },
+      ],
+      last: 1,
+    })
     .on('POST /runs', { run: 'r2' })
   live({ runs: [FAILED] })
   const user = show(<FailureView run={FAILED} page={PAGE} onShow={chosen} />)
   await user.click(await screen.findByRole('button', { name: 'Retry from here' }))
   await waitFor(() => expect(started.mock.calls).toEqual([['r2']]))
-  expect(server().bodies('POST /runs')).toEqual([{ behavior: 'behaviors/shift.yaml', seed: 5, begin: { run: 'r1', seq: 7, path: 'root/grasp' } }])
+  expect(server().bodies('POST /runs')).toEqual([
+    { behavior: 'behaviors/shift.yaml', seed: 5, begin: { run: 'r1', seq: 7, path: 'root/grasp' } },
+  ])
 })
 
 it('turns the camera to what it names, opens the state, and leads to the parameters', async () => {

@@ -85,7 +85,15 @@ export function Lanes(props: LanesProps) {
     setTip(lines && { x, y: isHead ? y : y + HEAD, lines })
   }
 
-  const gestures = useGestures({ view, width, onGo: props.onGo, onZoom: props.onZoom, onPan: props.onPan, onHover, onLeave: () => setTip(undefined) })
+  const gestures = useGestures({
+    view,
+    width,
+    onGo: props.onGo,
+    onZoom: props.onZoom,
+    onPan: props.onPan,
+    onHover,
+    onLeave: () => setTip(undefined),
+  })
 
   function onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey || !props.onKey(event.key, event.shiftKey)) return
@@ -115,7 +123,16 @@ export function Lanes(props: LanesProps) {
       </div>
       <div className="tl-rows" ref={scroller} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
         <div className="tl-space" style={{ height: rows.length * ROW }}>
-          <Names rows={rows} spans={spans} selected={selected} cursorS={cursorS} topPx={topPx} heightPx={height} onShow={props.onShow} onToggle={props.onToggle} />
+          <Names
+            rows={rows}
+            spans={spans}
+            selected={selected}
+            cursorS={cursorS}
+            topPx={topPx}
+            heightPx={height}
+            onShow={props.onShow}
+            onToggle={props.onToggle}
+          />
         </div>
       </div>
       <div className="tl-bars" ref={area} {...gestures.bars(scroller)}>
@@ -124,7 +141,10 @@ export function Lanes(props: LanesProps) {
       <div className="tl-over" aria-hidden>
         {cursorX >= 0 && cursorX <= width && <div className="tl-cursor" style={{ transform: `translateX(${cursorX}px)` }} />}
         {tip && (
-          <div className={`tl-tip${tip.x > width / 2 ? ' is-left' : ''}${tip.y < HEAD + 40 ? ' is-below' : ''}`} style={{ left: tip.x, top: tip.y }}>
+          <div
+            className={`tl-tip${tip.x > width / 2 ? ' is-left' : ''}${tip.y < HEAD + 40 ? ' is-below' : ''}`}
+            style={{ left: tip.x, top: tip.y }}
+          >
             {tip.lines.map((line, index) => (
               <div key={index}>{line}</div>
             ))}

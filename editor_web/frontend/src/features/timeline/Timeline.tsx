@@ -10,7 +10,19 @@ import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
 import { isActive } from '../../document/runState'
-import { afterKey, MARK_KINDS, neighbor, panned, placeWords, revealing, rowsOf, wholeView, zoomed, type MarkKind, type View } from '../../document/timeline'
+import {
+  afterKey,
+  MARK_KINDS,
+  neighbor,
+  panned,
+  placeWords,
+  revealing,
+  rowsOf,
+  wholeView,
+  zoomed,
+  type MarkKind,
+  type View,
+} from '../../document/timeline'
 import { flatten } from '../../document/tree'
 import { Lanes } from './Lanes'
 import { Tools } from './Tools'
@@ -61,7 +73,10 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
     return (
       <Panel title="Timeline">
         <div ref={place} className="tl-empty">
-          <Empty icon={<IconTimeline size={26} stroke={1.4} aria-hidden />} title={problem ? 'The timeline cannot be shown' : run ? 'Reading…' : 'No run yet'}>
+          <Empty
+            icon={<IconTimeline size={26} stroke={1.4} aria-hidden />}
+            title={problem ? 'The timeline cannot be shown' : run ? 'Reading…' : 'No run yet'}
+          >
             {problem || (run ? '' : 'Start the behavior; then see here when each of its nodes was active, and go back to any moment.')}
           </Empty>
         </div>

@@ -53,7 +53,12 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
         onChange={(event) => useTimeline.setState({ speed: Number(event.currentTarget.value) })}
       />
       {hasFailures && (
-        <button type="button" className="command tl-failure" title="Go to the failure before this moment, from the present to the last one" onClick={() => onJump(-1, true)}>
+        <button
+          type="button"
+          className="command tl-failure"
+          title="Go to the failure before this moment, from the present to the last one"
+          onClick={() => onJump(-1, true)}
+        >
           <IconAlertTriangle size={14} aria-hidden />
           <span className={width > 560 ? 'command-label' : 'visually-hidden'}>Last failure</span>
         </button>
@@ -89,13 +94,27 @@ function MarkMenu({ kinds, onKinds }: Pick<ToolsProps, 'kinds' | 'onKinds'>) {
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={220} shadow="md" trapFocus returnFocus>
       <Popover.Target>
-        <ActionIcon variant="subtle" color="gray" size="md" aria-label="Choose marks" aria-expanded={isOpen} title="Choose marks" onClick={() => setOpen(!isOpen)}>
+        <ActionIcon
+          variant="subtle"
+          color="gray"
+          size="md"
+          aria-label="Choose marks"
+          aria-expanded={isOpen}
+          title="Choose marks"
+          onClick={() => setOpen(!isOpen)}
+        >
           <IconFilter size={16} />
         </ActionIcon>
       </Popover.Target>
       <Popover.Dropdown className="show-menu">
         {MARK_KINDS.map((kind) => (
-          <Checkbox key={kind} size="sm" label={MARK_WORDS[kind]} checked={kinds.has(kind)} onChange={(event) => toggle(kind, event.currentTarget.checked)} />
+          <Checkbox
+            key={kind}
+            size="sm"
+            label={MARK_WORDS[kind]}
+            checked={kinds.has(kind)}
+            onChange={(event) => toggle(kind, event.currentTarget.checked)}
+          />
         ))}
       </Popover.Dropdown>
     </Popover>

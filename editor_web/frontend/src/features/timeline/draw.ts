@@ -57,7 +57,14 @@ export function cleared(canvas: HTMLCanvasElement, width: number, height: number
 }
 
 /** The times, and below them the marks. */
-export function drawHead(on: CanvasRenderingContext2D, view: View, width: number, marks: readonly TimelineMarker[], colors: Colors, font: string): void {
+export function drawHead(
+  on: CanvasRenderingContext2D,
+  view: View,
+  width: number,
+  marks: readonly TimelineMarker[],
+  colors: Colors,
+  font: string,
+): void {
   on.font = `11px ${font}`
   on.textBaseline = 'middle'
   for (const tick of ticks(view, width)) {
@@ -135,7 +142,15 @@ export interface Bars {
   readonly topPx: number
 }
 
-export function drawBars(on: CanvasRenderingContext2D, view: View, width: number, height: number, bars: Bars, colors: Colors, font: string): void {
+export function drawBars(
+  on: CanvasRenderingContext2D,
+  view: View,
+  width: number,
+  height: number,
+  bars: Bars,
+  colors: Colors,
+  font: string,
+): void {
   const first = Math.max(0, Math.floor(bars.topPx / ROW))
   const last = Math.min(bars.rows.length, Math.ceil((bars.topPx + height) / ROW))
   on.fillStyle = colors.line
@@ -156,7 +171,16 @@ export function drawBars(on: CanvasRenderingContext2D, view: View, width: number
   }
 }
 
-function drawRow(on: CanvasRenderingContext2D, view: View, width: number, spans: readonly ActivationInterval[], y: number, nowS: number, colors: Colors, isContainer: boolean): void {
+function drawRow(
+  on: CanvasRenderingContext2D,
+  view: View,
+  width: number,
+  spans: readonly ActivationInterval[],
+  y: number,
+  nowS: number,
+  colors: Colors,
+  isContainer: boolean,
+): void {
   let endX = -Infinity
   for (let index = firstVisible(spans, view); index < spans.length; index += 1) {
     const span = spans[index]

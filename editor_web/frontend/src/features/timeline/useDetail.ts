@@ -11,7 +11,12 @@ interface Detail extends View {
   readonly rows: ReadonlyMap<string, readonly ActivationInterval[]>
 }
 
-export function useDetail(subject: Subject | undefined, course: LoadedTimeline | undefined, view: View, isPart: boolean): ReadonlyMap<string, readonly ActivationInterval[]> {
+export function useDetail(
+  subject: Subject | undefined,
+  course: LoadedTimeline | undefined,
+  view: View,
+  isPart: boolean,
+): ReadonlyMap<string, readonly ActivationInterval[]> {
   const [detail, setDetail] = useState<Detail>()
   const isNeeded = isPart && course?.merged === true && subject !== undefined
   const { fromS, untilS } = view
@@ -25,7 +30,12 @@ export function useDetail(subject: Subject | undefined, course: LoadedTimeline |
       pastApi.timeline(subject, 0, wideFromS, wideUntilS).then(
         (loaded) => {
           if (isOver) return
-          setDetail({ fromS: wideFromS, untilS: wideUntilS, seq: loaded.seq, rows: new Map(loaded.rows.map((row) => [row.path, row.spans])) })
+          setDetail({
+            fromS: wideFromS,
+            untilS: wideUntilS,
+            seq: loaded.seq,
+            rows: new Map(loaded.rows.map((row) => [row.path, row.spans])),
+          })
         },
         // What is there already is good enough to go on with.
         () => undefined,

@@ -53,7 +53,12 @@ function Card({ page, id, onEdit, onBehavior, seen, at }: TourProps & { readonly
     <section ref={card} className="tour-card" style={place} aria-label="Tour" tabIndex={-1}>
       <header>
         <span className="tour-count">{step ? `Step ${at + 1} of ${STEPS.length}` : 'Done'}</span>
-        <CloseButton size="sm" aria-label="Leave the tour" title="Leave the tour; it can be gone on with from the first page" onClick={leaveTour} />
+        <CloseButton
+          size="sm"
+          aria-label="Leave the tour"
+          title="Leave the tour; it can be gone on with from the first page"
+          onClick={leaveTour}
+        />
       </header>
       <div aria-live="polite" aria-atomic>
         <h2>{title}</h2>

@@ -9,8 +9,7 @@ export function TourInvitation() {
   return (
     <section className="tour-invitation" aria-label="First steps">
       <div>
-        <strong>New here?</strong> Build a behavior of two states and run it. It takes two minutes, and you do every step
-        yourself.
+        <strong>New here?</strong> Build a behavior of two states and run it. It takes two minutes, and you do every step yourself.
       </div>
       <div className="command-row">
         <TourButton />

@@ -54,7 +54,8 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Say how long it waits',
-    words: 'The parameters of a state are on the right. Fill in duration_s, for example 2, and press Enter. The problems above disappear as you fix them.',
+    words:
+      'The parameters of a state are on the right. Fill in duration_s, for example 2, and press Enter. The problems above disappear as you fix them.',
     keys: 'With the state selected, Enter goes to its first field.',
     page: 'edit',
     targets: [FIELD('duration_s'), TABS('form'), NODE('flow.Wait')],
@@ -62,7 +63,8 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: 'Add a second state',
-    words: 'Click Log in the library: it writes a line into the log of the run. While Wait is selected, its outcome done is led to the new state by itself.',
+    words:
+      'Click Log in the library: it writes a line into the log of the run. While Wait is selected, its outcome done is led to the new state by itself.',
     keys: 'Select the state, press A, write flow.log, press Enter.',
     page: 'edit',
     targets: ['.library-add[aria-label="Add flow.Log"]', TABS('library'), '.edit-canvas'],
@@ -84,7 +86,8 @@ export const STEPS: readonly Step[] = [
     page: 'edit',
     targets: ['.edit-canvas .transition-row.is-loose', TABS('canvas'), '.problem-count'],
     clear: '.edit-canvas',
-    isDone: () => isSettled() && countOf('.edit-canvas .transition-row') > 1 && !isThere('.edit-canvas .transition-row.is-loose') && errors() === 0,
+    isDone: () =>
+      isSettled() && countOf('.edit-canvas .transition-row') > 1 && !isThere('.edit-canvas .transition-row.is-loose') && errors() === 0,
   },
   {
     title: 'Check, save, and go to the run page',
@@ -115,7 +118,8 @@ export const STEPS: readonly Step[] = [
 
 export const END = {
   title: 'You have built a behavior and run it',
-  words: 'It is a file of your project, yours to change: press Edit, or look at it as text there. Keys lists every key, on this page and in the editor.',
+  words:
+    'It is a file of your project, yours to change: press Edit, or look at it as text there. Keys lists every key, on this page and in the editor.',
 }
 
 /** The element at which a step is done, if it is in sight. */

@@ -44,7 +44,10 @@ function Row({ name, spread }: { readonly name: string; readonly spread: Duratio
       </td>
       <td className={styles.number}>{duration(least_s)}</td>
       <td className={styles.number}>{duration(most_s)}</td>
-      <td className={`${styles.number} ${isOutside ? styles.outside : ''}`} title={isOutside ? 'Outside of what the runs that succeeded took' : undefined}>
+      <td
+        className={`${styles.number} ${isOutside ? styles.outside : ''}`}
+        title={isOutside ? 'Outside of what the runs that succeeded took' : undefined}
+      >
         {last_s === null ? '–' : duration(last_s)}
       </td>
     </tr>

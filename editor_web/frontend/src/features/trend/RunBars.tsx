@@ -20,7 +20,12 @@ export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) 
     <ul className={`plain-list ${styles.runs}`} aria-label="Last runs">
       {runs.map((run) => (
         <li key={run.id} className={styles.run}>
-          <Checkbox size="xs" aria-label={`Compare the run of ${wallTime(run.started_at_s)}`} checked={chosen.includes(run.id)} onChange={(event) => onChoose(run.id, event.currentTarget.checked)} />
+          <Checkbox
+            size="xs"
+            aria-label={`Compare the run of ${wallTime(run.started_at_s)}`}
+            checked={chosen.includes(run.id)}
+            onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
+          />
           <PageLink href={href(run.id)} title={run.cause} onOpen={() => onOpen(run.id)}>
             {wallTime(run.started_at_s)}
           </PageLink>

@@ -8,6 +8,9 @@ export function countText({ runs, succeeded, failed, stopped, not_ended, known }
     [stopped, 'stopped'],
     [not_ended, 'not ended'],
   ] as const
-  const counts = [`${succeeded} of ${runs.length} runs succeeded`, ...others.flatMap(([count, word]) => (count > 0 ? [`${count} ${word}`] : []))]
+  const counts = [
+    `${succeeded} of ${runs.length} runs succeeded`,
+    ...others.flatMap(([count, word]) => (count > 0 ? [`${count} ${word}`] : [])),
+  ]
   return counts.join(', ') + (known > runs.length ? `; the latest of ${known}` : '')
 }
