@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import msgspec
 
 from editor_web.past.state_history import RunStateHistory
-from engine.cause_chain import links_from_root
+from engine.cause_chain import Cause, CauseLink, links_from_root
 from engine.errors import FlexcellError
-from engine.event import Cause, CauseLink, Event
+from engine.event import Event
 from engine.runtime.history import LogLine, NodeStep, log_line
 
 AROUND = 20

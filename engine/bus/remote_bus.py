@@ -11,8 +11,8 @@ import httpx
 import msgspec
 
 from engine.bus.bus import BusEntry
+from engine.cause_chain import Cause
 from engine.errors import BusError
-from engine.event import Cause
 from engine.host.state_folder_names import SERVER_FILE
 from engine.skills.goal_end import GoalEnd, GoalStatus
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from engine.cause_chain import Cause
 from engine.errors import RecordingError
 from engine.event import (
     AnyEvent,
     BehaviorChanged,
-    Cause,
     Event,
     FaultInjected,
     LoopBlocked,

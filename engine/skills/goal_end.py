@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Generic, TypeVar
 
-from engine.event import Cause
+from engine.cause_chain import Cause
 
 R = TypeVar("R")
 

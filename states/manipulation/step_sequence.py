@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from engine.cause_chain import wrap_cause
-from engine.event import Cause
+from engine.cause_chain import Cause, wrap_cause
 from engine.state import Context, Outcome, State
 from states.motion.planned_motion_result import inner_cause_text
 

@@ -7,8 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import wrap_cause
-from engine.event import Cause
+from engine.cause_chain import Cause, wrap_cause
 from engine.messages import Vector3
 from engine.skills import contact
 from engine.skills.axes import Axes

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import links_from_root
-from engine.event import Cause
+from engine.cause_chain import Cause, links_from_root
 from engine.skills.goal_end import GoalEnd
 from engine.skills.planning import FreeMotionResult
 

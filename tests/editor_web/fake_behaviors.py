@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.event import Cause
+from engine.cause_chain import Cause
 from engine.library.behavior_graph import GraphNode, GraphTransition
 from engine.library.behavior_library import BehaviorView, FindingView, ParameterView
 

@@ -7,9 +7,9 @@ from typing import Any, TypeVar, cast
 
 import msgspec
 
+from engine.cause_chain import Cause
 from engine.clock import LoopClock
 from engine.errors import NoSuchSkill
-from engine.event import Cause
 from engine.skill import Action, Service
 from engine.skills.goal_end import GoalEnd, GoalStatus
 

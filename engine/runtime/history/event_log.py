@@ -6,8 +6,8 @@ from typing import get_args
 
 import msgspec
 
-from engine.cause_chain import links_from_root
-from engine.event import AnyEvent, CauseLink, Event
+from engine.cause_chain import CauseLink, links_from_root
+from engine.event import AnyEvent, Event
 from engine.runtime.history.event_texts import event_text
 
 _KINDS = {kind: str(kind.__struct_config__.tag) for kind in get_args(AnyEvent)}

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import msgspec
 
+from engine.cause_chain import Cause
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,
-    Cause,
     Event,
     FaultInjected,
     GatePassed,

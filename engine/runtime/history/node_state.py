@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import msgspec
 
-from engine.event import Cause, NodeExited
+from engine.cause_chain import Cause
+from engine.event import NodeExited
 from engine.runtime.nodes.diagnosis import Diagnosis
 from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.record.tree_event import TreeEvent

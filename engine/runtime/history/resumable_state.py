@@ -9,12 +9,12 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
+from engine.cause_chain import Cause
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES
 from engine.errors import DocumentError
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,
-    Cause,
     Event,
     GatePassed,
     NodeDiverted,

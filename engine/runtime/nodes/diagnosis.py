@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from engine.cause_chain import wrap_cause
-from engine.event import Cause
+from engine.cause_chain import Cause, wrap_cause
 from engine.runtime.nodes.node import Node
 from engine.runtime.record.node_exit import ContainerOutcome, NodeExit
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.event import Cause, NodeDiverted, NodeEntered, NodeExited
+from engine.cause_chain import Cause
+from engine.event import NodeDiverted, NodeEntered, NodeExited
 from engine.runtime.nodes.execution import Execution
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from engine.event import Cause
+from engine.cause_chain import Cause
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,7 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from engine.cause_chain import wrap_cause
-from engine.event import Cause
+from engine.cause_chain import Cause, wrap_cause
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.tree.branching import IfThenElse
 from engine.runtime.tree.entry_guard import EntryGuard

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
+from engine.cause_chain import Cause
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,
-    Cause,
     Event,
     GatePassed,
     GoalFinished,
@@ -45,19 +45,27 @@ STEPS = st.lists(
 
 
 def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
-    """Return a run that begins, does that, and perhaps ends."""
+    """Return a run that begins, does that, and perhaps ends.
+
+    Only what was entered is left or preempted, and not what was inside a node that has been tried again since.
+    """
     events: list[Event] = [
         RunStarted(seq=1, time_s=0.0, behavior="b", document="d", parameters={}, seed=1, clock="virtual")
     ]
     visits: dict[str, int] = {}
+    there: set[str] = set()
     time_s = 0.0
     for what, path, pause_s in steps:
         time_s += pause_s
         seq = len(events) + 1
         visit = visits.get(path, 1)
+        left = path if what != "preempt" else f"root/{path[5:] or 'a'}"
         match what:
+            case "exit" | "fail" | "preempt" if left not in there:
+                continue
             case "enter":
                 visits[path] = visits.get(path, 0) + 1
+                there.add(path)
                 events.append(
                     NodeEntered(seq=seq, time_s=time_s, path=path, visit=visits[path], kind="state", inputs={})
                 )
@@ -89,6 +97,7 @@ def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
             case "command":
                 events.append(OperatorCommanded(seq=seq, time_s=time_s, command="pause", path="", arguments={}))
             case "retry":
+                there = {each for each in there if not each.startswith(f"{path}/")}
                 events.append(NodeRetried(seq=seq, time_s=time_s, path=path, attempt=2, wait_s=0.5))
             case "lock":
                 events.append(OperatorCommanded(seq=seq, time_s=time_s, command="lock", path=path, arguments={}))

@@ -38,6 +38,10 @@ PLAN = plan_of(
 @settings(deadline=None, max_examples=100)
 @example(steps=[("enter", "root", 0.0), ("resume", "root", 0.5), ("exit", "root", 0.0)], ended=False)
 @example(steps=[("enter", "root/b", 0.0), ("follow", "root/b", 0.0)], ended=False)
+@example(
+    steps=[("enter", "root/a", 0.0), ("exit", "root/a", 0.0), ("retry", "root", 0.0), ("preempt", "root", 0.0)],
+    ended=False,
+)
 @given(steps=STEPS, ended=st.booleans())
 def test_live_past_and_resume_see_the_same_run(steps: list[tuple[str, str, float]], ended: bool) -> None:
     """Nodes, what is active, which exits wait for their container, and what the operator has set."""

@@ -7,7 +7,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from engine.event import Cause, Event, NodeEntered, NodeExited, RunEnded, RunStarted
+from engine.cause_chain import Cause
+from engine.event import Event, NodeEntered, NodeExited, RunEnded, RunStarted
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import msgspec
 import pytest
 
 from engine import messages
-from engine.event import AnyEvent, Cause, MessageReceived, NodeExited, RunEnded
+from engine.cause_chain import Cause
+from engine.event import AnyEvent, MessageReceived, NodeExited, RunEnded
 from engine.journal import encode_event
 from engine.recording.channel_schema import channel_schema
 from engine.recording.foxglove_scene import FoxgloveSceneUpdate

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from engine.cause_chain import Cause
 from engine.errors import NoSuchSkill, SkillFailed
-from engine.event import Cause
 from engine.skills import people
 from engine.skills.people import ReachResult
 from engine.state import Outcome

@@ -7,8 +7,8 @@ import math
 import msgspec
 import pytest
 
+from engine.cause_chain import Cause
 from engine.errors import SkillFailed
-from engine.event import Cause
 from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import JointDmp

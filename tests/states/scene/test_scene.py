@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 import pytest
 
+from engine.cause_chain import Cause
 from engine.document.placement import Placement
 from engine.errors import SkillFailed
-from engine.event import Cause
 from engine.messages import Pose
 from engine.messages.shapes import Box, Capsule, Cylinder, Obstacle, Shape, Sphere
 from engine.skills import planning_scene

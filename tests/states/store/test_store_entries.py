@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from engine.cause_chain import Cause
 from engine.errors import EntryConflict, EntryNotFound, StoreError
-from engine.event import Cause
 from engine.skills import entries
 from engine.skills.entries import EntryRecord
 from engine.state import Outcome

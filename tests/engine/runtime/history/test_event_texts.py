@@ -9,10 +9,10 @@ import msgspec
 import pytest
 from rich.console import Console
 
+from engine.cause_chain import Cause
 from engine.cli.output.progress_printer import ProgressPrinter
 from engine.event import (
     AnyEvent,
-    Cause,
     Event,
     FaultInjected,
     MessageLogged,

@@ -7,9 +7,9 @@ from typing import get_args
 import msgspec
 import pytest
 
+from engine.cause_chain import Cause
 from engine.event import (
     AnyEvent,
-    Cause,
     Event,
     GoalFinished,
     MessageLogged,
