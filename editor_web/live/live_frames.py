@@ -115,7 +115,7 @@ class ScrubPath(msgspec.Struct, frozen=True, kw_only=True, tag="scrub", tag_fiel
 
     page: str
     robot: str
-    share: Annotated[float, msgspec.Meta(ge=0, le=1)] | None
+    share: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] | None
 
 
 class LookAt(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):

@@ -46,7 +46,11 @@ def get_run(run_id: str, services: ServicesOf) -> RunView:
         raise HTTPException(404, error.message) from error
 
 
-@router.post("", status_code=201, responses={200: {"model": StartResultBody}, 422: {"model": ErrorBody}})
+@router.post(
+    "",
+    status_code=201,
+    responses={200: {"model": StartResultBody}, 409: {"model": ErrorBody}, 422: {"model": ErrorBody}},
+)
 async def start_run(
     body: StartBody,
     services: ServicesOf,

@@ -130,7 +130,7 @@ async def compare_sweep(
     results: Annotated[str, Query(max_length=1000)],
     version: Annotated[str, Query(max_length=100)],
     services: ServicesOf,
-    margin: Annotated[float | None, Query(ge=0, le=1)] = None,
+    margin: Annotated[float | None, Query(ge=0.0, le=1.0)] = None,
 ) -> Response:
     """Compare a sweep with a baseline: whether its success rate is lower, and by no more than the margin."""
     request = CompareSweep(sweep=sweep_id, results=results, version=version, margin=margin)

@@ -15,7 +15,7 @@ class JointState(Message, frozen=True, kw_only=True):
     effort_nm: tuple[float, ...]
 
 
-class GripperState(Message, frozen=True, kw_only=True):
+class GripperState(Message, frozen=True, kw_only=True, omit_defaults=True):
     """Measured state of a two-finger gripper: opening between the pads and force on the pads."""
 
     time_s: float

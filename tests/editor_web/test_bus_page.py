@@ -16,7 +16,7 @@ from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_
 from tests.editor_web.fake_plant import FakePlant
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
-LAPTOP: Size = (1280, 800)
+WIDE: Size = (1920, 1080)
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def at_bus(
     shop: Workshop,
     *,
     kind: str = "Topics",
-    size: Size = LAPTOP,
+    size: Size = WIDE,
     scheme: Scheme = "light",
 ) -> Generator[Page]:
     """The page of a behavior with its bus in front."""
@@ -87,7 +87,7 @@ def test_a_goal_is_cancelled_when_its_page_is_left(browser: Browser, shop: Works
     with at_bus(browser, shop, kind="Actions") as page:
         entry(page, "travel").click()
         page.get_by_role("button", name="Send goal").click()
-        expect(page.get_by_role("status", name="Course of the request")).to_contain_text("Under way")
+        expect(page.get_by_role("status", name="Course of the request")).to_contain_text("Active")
     shop.call(ended(shop.session.cell.bus))
     assert [goal.cancel_requested for goal in plant.goals] == [True]
 

@@ -45,7 +45,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
             until(first, tmp_path, entered("root/only"))
             first.kill()
             expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
-            for name in ("Stop", "Start"):
+            for name in ("Stop this run", "Start"):
                 expect(page.get_by_role("button", name=name, exact=True)).to_be_disabled()
             expect(page.get_by_role("button", name="Stop the cell")).to_be_enabled()
             for name in ("Pause", "Take control"):

@@ -11,6 +11,7 @@ from py_trees.common import Status
 from engine.cause_chain import Cause, wrap_cause
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.tree.branching import IfThenElse
+from engine.runtime.tree.disabled_part import DisabledPart
 from engine.runtime.tree.entry_guard import EntryGuard
 from engine.runtime.tree.parallel import ThresholdParallel
 from engine.runtime.tree.tree_decorator import TreeDecorator
@@ -35,14 +36,11 @@ def explain_tree_failure(
         return Cause(message=f"{part.name} failed{feedback}", where=part.path)
     below = _failed_child(behaviour)
     because = explain_tree_failure(below, parts, guards) if below is not None else None
-    if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
-        return wrap_cause(
-            f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path
-        )
+    count = sum(not child.disabled for child in part.children)
+    if isinstance(behaviour, composites.Selector) and count > 1:
+        return wrap_cause(f"none of {count} alternatives succeeded; the last one", because, where=part.path)
     if isinstance(behaviour, ThresholdParallel):
-        message = (
-            f"{behaviour.failed} of {len(part.children)} failed, and {behaviour.success_count} must succeed; the first"
-        )
+        message = f"{behaviour.failed} of {count} failed, and {behaviour.success_count} must succeed; the first"
         return wrap_cause(message, because, where=part.path)
     if isinstance(behaviour, TreeDecorator):
         because = behaviour.explain(part, because)
@@ -58,4 +56,6 @@ def _failed_child(behaviour: Behaviour) -> Behaviour | None:
         candidates = behaviour.children[::-1]
     else:
         candidates = behaviour.children
-    return next((child for child in candidates if child.status is Status.FAILURE), None)
+    return next(
+        (child for child in candidates if child.status is Status.FAILURE and not isinstance(child, DisabledPart)), None
+    )

@@ -98,6 +98,20 @@ def test_a_disabled_branch_has_ended_with_its_outcome() -> None:
     assert (run.result.outcome, run.events[-1].time_s) == ("good", 2.0)
 
 
+def test_a_disabled_alternative_is_not_counted_in_the_cause() -> None:
+    """One that is left is no list of alternatives."""
+    run = run_document("""
+        root:
+          tree:
+            selector:
+            - {state: test.Give, disabled: true}
+            - {state: test.Give, with: {outcome: c}}
+    """)
+    cause = run.result.cause
+    assert cause is not None
+    assert [link.message for link in cause.chain() if "alternatives" in link.message] == []
+
+
 def test_a_disabled_child_of_a_foreach_passes_every_round() -> None:
     """Nothing but the rounds happens."""
     run = run_document("""
