@@ -4,47 +4,20 @@ from __future__ import annotations
 
 import traceback
 
-import msgspec
+from engine.errors import Cause, CauseLink, FlexcellError, MeasuredValue
 
-from engine.errors import FlexcellError
-
-
-class MeasuredValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, gc=False):
-    """A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit."""
-
-    quantity: str
-    measured: float
-    unit: str
-    least: float | None = None
-    most: float | None = None
-
-
-class CauseLink(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of the cause chain of a failure; those of a whole chain are in order, root cause first."""
-
-    message: str
-    where: str = ""
-    kind: str = ""
-    compared: tuple[MeasuredValue, ...] = ()
-
-
-class Cause(CauseLink, frozen=True, kw_only=True, omit_defaults=True):
-    """One link with the rest of its chain; `because` is the next link towards the root cause.
-
-    `nodes` are the nodes that an error passed through, `path at file:line:column`, innermost first.
-    """
-
-    because: Cause | None = None
-    nodes: tuple[str, ...] = ()
-
-    def chain(self) -> tuple[Cause, ...]:
-        """Return the links from the outermost to the root cause."""
-        links: list[Cause] = []
-        link: Cause | None = self
-        while link is not None:
-            links.append(link)
-            link = link.because
-        return tuple(links)
+__all__ = [
+    "Cause",
+    "CauseLink",
+    "MeasuredValue",
+    "cause_of",
+    "describe_cause",
+    "escape_surrogates",
+    "link_text",
+    "links_from_root",
+    "storable_cause",
+    "wrap_cause",
+]
 
 
 def cause_of(error: BaseException) -> Cause:

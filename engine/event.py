@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import msgspec
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 
 
 # Events cannot be part of a reference cycle, and a server keeps hundreds of thousands: the collector can skip them.
