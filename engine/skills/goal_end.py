@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Generic, TypeVar
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 
 R = TypeVar("R")
 
