@@ -143,6 +143,8 @@ def test_the_whole_tour_by_keyboard(browser: Browser, shop: Workshop) -> None:
         keys.press("Control+Enter")
         at_step(page, "Start it")
         require_two_states(shop)
+        # It is disabled until the page knows the file as it was saved, and takes no focus before.
+        expect(page.get_by_role("button", name="Start", exact=True)).to_be_enabled()
         show.press("Enter")
         expect(page.get_by_role("button", name="Start", exact=True)).to_be_focused()
         keys.press("Enter")

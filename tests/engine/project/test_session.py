@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from engine.cell.open_cell import OpenCell
+from engine.document.cell import load_cell
 from engine.document.loader import BehaviorSurvey, survey_behavior
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.journal import Journal, list_runs
@@ -197,3 +198,24 @@ async def test_a_behavior_whose_module_is_not_allowed_or_broken_hurts_no_list_an
                 with pytest.raises(DocumentError):
                     await session.start(f"behaviors/{name}.yaml", parameters={}, seed=0)
     assert not is_imported("this")
+
+
+async def test_a_behavior_of_another_cell_is_refused_with_the_reason(project: Path) -> None:
+    """One that names a robot which is not here; it is listed all the same, with the cell that it is written for."""
+    folder = project / "behaviors"
+    robots = "world: {kind: mujoco}\nrobots: {left: {model: panda}}\n"
+    (folder / "home.yaml").write_text(f"flexcell: 1\ncell: home\n{robots}", encoding="utf-8")
+    state = "motion.MoveJoints, with: {robot: left, target: [0, 0, 0, -1, 0, 1, 0]}"
+    text = BEHAVIOR.format(name="move", state=state, outcome="reached: good, failed").replace(
+        "name: move", "name: move\ncell: home.yaml"
+    )
+    (folder / "move.yaml").write_text(text, encoding="utf-8")
+    with Journal.open(project / ".flexcell") as journal:
+        async with (
+            OpenCell(load_cell(folder / "cell.yaml")) as cell,
+            Session(cell, project=project, catalogue=load_states(), journal=journal) as session,
+        ):
+            with pytest.raises(ControlError, match=r"written for the cell home, and c is connected: .*left"):
+                await session.start("behaviors/move.yaml", parameters={}, seed=0)
+            listed = {each.id: each.fit.cell for each in session.behaviors()}
+    assert listed["behaviors/move.yaml"] == "home"
