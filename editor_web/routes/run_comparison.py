@@ -13,19 +13,12 @@ from editor_web.routes.wire_router import WireRouter, json_response
 from engine.archive import Archive, ArchivedRun, PastRun, RunComparison, RunTrend, RunTrends, compare_runs
 from engine.errors import JournalError, RecordingError
 
-_PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
-
-
-def _found(kind: object) -> dict[int | str, dict[str, object]]:
-    return {**_PROBLEMS, 200: {"model": kind}}
-
-
-router = WireRouter(prefix="/api/v1", tags=["past"])
+router = WireRouter(prefix="/api/v1", tags=["past"], responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}})
 
 RunName = Annotated[str, Query(max_length=1000)]
 
 
-@router.get("/past-runs/comparison", responses=_found(RunComparison))
+@router.get("/past-runs/comparison", responses={200: {"model": RunComparison}})
 async def compare(services: ServicesOf, right: RunName, left: RunName = "") -> Response:
     """Compare two runs, by id or by the path of a recording.
 
@@ -34,7 +27,7 @@ async def compare(services: ServicesOf, right: RunName, left: RunName = "") -> R
     return await asyncio.to_thread(lambda: json_response(_compared(services.backend.archive, left, right)))
 
 
-@router.get("/runs/{run_id}/last-good-run", responses=_found(PastRun | None))
+@router.get("/runs/{run_id}/last-good-run", responses={200: {"model": PastRun | None}})
 async def last_good_run(run_id: str, services: ServicesOf) -> Response:
     """Return the last run of the same behavior that succeeded before this one; null if there is none."""
     archive = services.backend.archive
@@ -46,7 +39,7 @@ async def last_good_run(run_id: str, services: ServicesOf) -> Response:
     return await asyncio.to_thread(lambda: json_response(found()))
 
 
-@router.get("/past-runs/trend", responses=_found(RunTrend))
+@router.get("/past-runs/trend", responses={200: {"model": RunTrend}})
 async def trend(
     request: Request,
     behavior: Annotated[str, Query(max_length=200)],

@@ -14,14 +14,7 @@ from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.errors import RecordingError
 
-_PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
-
-
-def _found(kind: object) -> dict[int | str, dict[str, object]]:
-    return {**_PROBLEMS, 200: {"model": kind}}
-
-
-router = WireRouter(prefix="/api/v1", tags=["past"])
+router = WireRouter(prefix="/api/v1", tags=["past"], responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}})
 _LONGEST_S = 1e9
 
 TimeS = Annotated[float, Query(ge=-_LONGEST_S, le=_LONGEST_S, allow_inf_nan=False)]
@@ -29,13 +22,13 @@ FieldIds = Annotated[list[str], Query(alias="field", min_length=1, max_length=MA
 Cells = Annotated[int, Query(ge=1, le=MAX_CELLS)]
 
 
-@router.get("/runs/{run_id}/fields", responses=_found(RecordedFields))
+@router.get("/runs/{run_id}/fields", responses={200: {"model": RecordedFields}})
 async def run_fields(run_id: str, services: ServicesOf) -> Response:
     """List the topics in the recording of a run with their numeric fields."""
     return await _read(services, run_id, RecordedPieces.fields)
 
 
-@router.get("/runs/{run_id}/curves", responses=_found(RecordedCurves))
+@router.get("/runs/{run_id}/curves", responses={200: {"model": RecordedCurves}})
 async def run_curves(
     run_id: str, services: ServicesOf, fields: FieldIds, from_s: TimeS, until_s: TimeS, cells: Cells = 500
 ) -> Response:
@@ -43,13 +36,13 @@ async def run_curves(
     return await _read(services, run_id, _curves(fields, from_s, until_s, cells))
 
 
-@router.get("/recordings/{path:path}/fields", responses=_found(RecordedFields))
+@router.get("/recordings/{path:path}/fields", responses={200: {"model": RecordedFields}})
 async def recording_fields(path: str, services: ServicesOf) -> Response:
     """List the topics of a recording with their numeric fields."""
     return await _read(services, path, RecordedPieces.fields)
 
 
-@router.get("/recordings/{path:path}/curves", responses=_found(RecordedCurves))
+@router.get("/recordings/{path:path}/curves", responses={200: {"model": RecordedCurves}})
 async def recording_curves(
     path: str, services: ServicesOf, fields: FieldIds, from_s: TimeS, until_s: TimeS, cells: Cells = 500
 ) -> Response:

@@ -8,7 +8,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior
 from engine.check.finding import Finding
 from engine.document.nodes.concurrency_condition import deciding
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, NodeSpec
-from engine.document.signature import read_signature
+from engine.document.signature import StateSignature, read_signature
 from engine.document.state_catalogue import find_state
 from engine.errors import RegistryError, StateError
 from engine.suggestions import did_you_mean
@@ -34,8 +34,9 @@ def disabled_writer(subject: AnalyzedBehavior, key: str) -> str | None:
     """Return the path of a disabled node that would write a key; None if there is none."""
     for path, node in subject.disabled.items():
         for inside, each in ((path, node), *((f"{path}/{below}", each) for below, each in _below(node))):
-            signature = _signature_outputs(subject, each)
-            if key in each.outputs.values() or key in signature - each.outputs.keys():
+            signature = _signature(subject, each.state) if each.state is not None else None
+            own = signature.outputs.keys() - each.outputs.keys() if signature is not None else ()
+            if key in each.outputs.values() or key in own:
                 return inside
     return None
 
@@ -49,10 +50,8 @@ def _below(node: NodeSpec) -> Iterator[tuple[str, NodeSpec]]:
 def _outcomes(subject: AnalyzedBehavior, node: NodeSpec) -> tuple[str, ...] | None:
     """Return the outcomes that a disabled node would have; None where they are unknown."""
     if node.state is not None:
-        try:
-            return read_signature(find_state(subject.catalogue, node.state, subject.behavior.classes)).outcomes
-        except (RegistryError, StateError):
-            return None
+        signature = _signature(subject, node.state)
+        return signature.outcomes if signature is not None else None
     if node.behavior is not None:
         referred = subject.behavior.references.get(node.behavior)
         return referred.outcomes if referred is not None else None
@@ -68,10 +67,9 @@ def _outcomes(subject: AnalyzedBehavior, node: NodeSpec) -> tuple[str, ...] | No
     return tuple(dict.fromkeys(each for each in (*led_to, *node.transitions) if each not in node.children))
 
 
-def _signature_outputs(subject: AnalyzedBehavior, node: NodeSpec) -> frozenset[str]:
-    if node.state is None:
-        return frozenset()
+def _signature(subject: AnalyzedBehavior, state: str) -> StateSignature | None:
+    """Return the signature of a state that the run of a behavior does not need; None if there is none."""
     try:
-        return frozenset(read_signature(find_state(subject.catalogue, node.state, subject.behavior.classes)).outputs)
+        return read_signature(find_state(subject.catalogue, state, subject.behavior.classes))
     except (RegistryError, StateError):
-        return frozenset()
+        return None

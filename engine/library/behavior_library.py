@@ -10,7 +10,7 @@ import msgspec
 
 from engine.check import CellFit, Finding, cell_fit, check_survey, invalid_document_finding, read_beside
 from engine.document import Behavior, Cell, ParameterSpec, load_source, survey_behavior
-from engine.errors import DocumentError, Position
+from engine.errors import ControlError, DocumentError, Position
 from engine.library.behavior_graph import GraphNode, new_graph
 from engine.runtime.plan import Catalogue
 from engine.suggestions import did_you_mean
@@ -113,6 +113,17 @@ class Library:
         if read.behavior is None:
             raise DocumentError("this behavior cannot be read", where=behavior_id)
         return read.behavior
+
+    def require_fit(self, behavior_id: str) -> None:
+        """Reject a behavior that is written for another cell and cannot be executed in the connected one.
+
+        Raises:
+            ControlError: it cannot; the message says why.
+            DocumentError: there is no such behavior.
+        """
+        if obstacle := self.view(behavior_id).fit.obstacle:
+            hint = "serve its cell (`flexcell serve --cell`), or write it for this one"
+            raise ControlError(obstacle, where=behavior_id, hint=hint)
 
     def file_of(self, behavior_id: str) -> Path:
         """Return the file of a behavior; raises DocumentError when there is no behavior with this id."""

@@ -90,6 +90,7 @@ class Session:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Stop every run and wait until its robots are at rest."""
         self._stops.end()
         for started in self._runs.values():
             started.run.stop("the session was closed")
@@ -162,7 +163,7 @@ class Session:
             FlexcellError: the behavior has errors, a parameter is invalid, or the cell is stopped (ControlError).
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
-        await asyncio.to_thread(self._require_fit, behavior_id)
+        await asyncio.to_thread(self._library.require_fit, behavior_id)
         watched = supervision or RunOptions()
         if breakpoints:
             watched = msgspec.structs.replace(watched, breakpoints=load_breakpoints(behavior.file))
@@ -267,7 +268,12 @@ class Session:
         return started.run.change(plan, preempt=preempt, kept=kept)
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
-        """Undo the last step of a paused run; see `engine.runtime.run.Run.step_back`, also for its errors."""
+        """Undo the last step of a paused run; see `engine.runtime.run.Run.step_back`.
+
+        Raises:
+            ControlError: the run has ended, is not paused, or a step cannot be undone; nothing has moved.
+            JournalError: its journal cannot be read.
+        """
         self.control(run_id)
         return await self._known(run_id).run.step_back(path)
 
@@ -275,11 +281,6 @@ class Session:
         """Read, check and plan a behavior, on a thread because it may be large."""
         behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)
         return behavior, new_plan(behavior, self._library.catalogue)
-
-    def _require_fit(self, behavior_id: str) -> None:
-        if obstacle := self._library.view(behavior_id).fit.obstacle:
-            hint = "serve its cell (`flexcell serve --cell`), or write it for this one"
-            raise ControlError(obstacle, where=behavior_id, hint=hint)
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Request a run to stop and return immediately; has no effect on a run that has ended."""

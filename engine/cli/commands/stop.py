@@ -28,13 +28,10 @@ def stop_cell(state: Path, reason: str) -> int:
 
     0: all devices are at rest. 2: no server runs there. 3: no answer, or a device does not come to rest.
     """
-    file = state / SERVER_FILE
-    try:
-        record: dict[str, Any] = json.loads(file.read_bytes())
-        url, token = str(record["stop_url"]), str(record["stop_token"])
-    except (OSError, ValueError, KeyError) as error:
-        sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); give --state, or use the emergency stop\n")
+    record = _server(state, "stop_url", "stop_token", hint="give --state, or use the emergency stop")
+    if record is None:
         return 2
+    url, token = str(record["stop_url"]), str(record["stop_token"])
     try:
         status = _post(url, token, {"reason": reason})
         acknowledged = f"STOP acknowledged after {status['after_s'] * 1000:.0f} ms{_engine(status)}\n"
@@ -50,20 +47,29 @@ def release_stop(state: Path) -> int:
 
     0: released. 2: no server runs there. 3: it refuses, for example because a device has not confirmed rest.
     """
-    file = state / SERVER_FILE
-    try:
-        record: dict[str, Any] = json.loads(file.read_bytes())
-        url, token = str(record["url"]), str(record["token"])
-    except (OSError, ValueError, KeyError) as error:
-        sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); give --state\n")
+    record = _server(state, "url", "token", hint="give --state")
+    if record is None:
         return 2
     try:
-        _post(f"{url}api/v1/cell/stop/release", token, {}, timeout_s=_REST_S)
+        _post(f"{record['url']}api/v1/cell/stop/release", str(record["token"]), {}, timeout_s=_REST_S)
     except (OSError, ValueError) as error:
         sys.stderr.write(f"flexcell: the stop is not released: {error}\n")
         return 3
     sys.stdout.write("The stop is released: runs may start.\n")
     return 0
+
+
+def _server(state: Path, *keys: str, hint: str) -> dict[str, Any] | None:
+    """Return the record of the server that keeps its state in `state`, with these keys; None if none runs there."""
+    file = state / SERVER_FILE
+    try:
+        record: dict[str, Any] = json.loads(file.read_bytes())
+        for key in keys:
+            _ = record[key]
+    except (OSError, ValueError, KeyError) as error:
+        sys.stderr.write(f"flexcell: {file}: no server runs here ({error}); {hint}\n")
+        return None
+    return record
 
 
 def _wait_for_rest(url: str, token: str, status: dict[str, Any]) -> int:

@@ -1,6 +1,7 @@
 /** The canvas of the curves: drawn when something has come, zoomed by wheel or keys, panned by dragging. */
 import { useElementSize, useMergedRef } from '@mantine/hooks'
 import { useEffect, useRef, type KeyboardEvent, type PointerEvent } from 'react'
+import { actOn, useWheelZoom } from './canvasInput'
 import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve, type Look } from './draw'
 import type { Plot } from './usePlot'
 
@@ -29,20 +30,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
     return () => cancelAnimationFrame(frame)
   }, [width, height, samples, curves, endS, spanS, atS, plot.revision])
 
-  // React's own wheel listener cannot keep the page from scrolling.
-  const zoom = useRef(plot.zoom)
-  useEffect(() => {
-    zoom.current = (factor) => plot.zoom(spanS * factor)
-  })
-  useEffect(() => {
-    const element = area.current
-    const turn = (event: WheelEvent) => {
-      event.preventDefault()
-      zoom.current(event.deltaY > 0 ? 1.25 : 0.8)
-    }
-    element?.addEventListener('wheel', turn, { passive: false })
-    return () => element?.removeEventListener('wheel', turn)
-  }, [])
+  useWheelZoom(area, (factor) => plot.zoom(spanS * factor))
 
   function move(event: PointerEvent<HTMLDivElement>): void {
     const x = event.clientX - event.currentTarget.getBoundingClientRect().left
@@ -55,7 +43,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
 
   function press(event: KeyboardEvent): void {
     const step = spanS / 40
-    const actions: Readonly<Record<string, () => void>> = {
+    actOn(event, {
       ArrowLeft: () => onPoint((atS ?? endS) - step),
       ArrowRight: () => onPoint(Math.min(endS, (atS ?? endS) + step)),
       '+': () => plot.zoom(spanS * 0.8),
@@ -64,12 +52,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
       PageUp: () => plot.panTo(endS - spanS / 2),
       PageDown: () => plot.panTo(endS + spanS / 2),
       Escape: () => onPoint(undefined),
-    }
-    const act = actions[event.key]
-    if (!act) return
-    event.preventDefault()
-    event.stopPropagation()
-    act()
+    })
   }
 
   return (

@@ -3,6 +3,7 @@ import { useElementSize, useMergedRef } from '@mantine/hooks'
 import { useEffect, useRef, type KeyboardEvent, type PointerEvent, type RefObject } from 'react'
 import type { Curves } from '../../document/curves'
 import type { View } from '../../document/timeline'
+import { actOn, useWheelZoom } from './canvasInput'
 import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve } from './draw'
 import { lookOf, sized } from './PlotCanvas'
 
@@ -36,20 +37,7 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
     return () => cancelAnimationFrame(frame)
   }, [canvas, width, height, curves, shown, endS, spanS, cursorS])
 
-  const zoom = useRef(onZoom)
-  useEffect(() => {
-    zoom.current = (factor, x) => onZoom(factor, timeAt(x, width, seen))
-  })
-  useEffect(() => {
-    const element = area.current
-    // React's own wheel listener cannot keep the page from scrolling.
-    const turn = (event: WheelEvent) => {
-      event.preventDefault()
-      zoom.current(event.deltaY > 0 ? 1.25 : 0.8, event.offsetX)
-    }
-    element?.addEventListener('wheel', turn, { passive: false })
-    return () => element?.removeEventListener('wheel', turn)
-  }, [])
+  useWheelZoom(area, (factor, x) => onZoom(factor, timeAt(x, width, seen)))
 
   function at(event: PointerEvent<HTMLDivElement>): number {
     return event.clientX - event.currentTarget.getBoundingClientRect().left
@@ -71,7 +59,7 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
 
   function key(event: KeyboardEvent): void {
     const here = cursorS ?? endS
-    const actions: Readonly<Record<string, () => void>> = {
+    actOn(event, {
       ArrowLeft: () => onGo(here - spanS / 100),
       ArrowRight: () => onGo(here + spanS / 100),
       PageUp: () => onPan(-spanS / 2),
@@ -79,12 +67,7 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
       '+': () => onZoom(0.8, here),
       '-': () => onZoom(1.25, here),
       '0': () => onZoom(Infinity, here),
-    }
-    const act = actions[event.key]
-    if (!act) return
-    event.preventDefault()
-    event.stopPropagation()
-    act()
+    })
   }
 
   return (
