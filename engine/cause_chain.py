@@ -1,23 +1,10 @@
-"""The chain of causes of a failure in events, and how an exception and its causes become one."""
+"""Converts an exception and its causes to the chain of causes in events."""
 
 from __future__ import annotations
 
 import traceback
 
-from engine.errors import Cause, CauseLink, FlexcellError, MeasuredValue
-
-__all__ = [
-    "Cause",
-    "CauseLink",
-    "MeasuredValue",
-    "cause_of",
-    "describe_cause",
-    "escape_surrogates",
-    "link_text",
-    "links_from_root",
-    "storable_cause",
-    "wrap_cause",
-]
+from engine.errors import Cause, FlexcellError
 
 
 def cause_of(error: BaseException) -> Cause:

@@ -1,4 +1,4 @@
-"""The errors of the project: each states what failed, where, and what to do."""
+"""The errors of the project, each with what failed, where, and what to do; and the causes that events have of them."""
 
 from __future__ import annotations
 

@@ -24,9 +24,9 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
 from engine.clock import Clock
-from engine.errors import PathBlocked
+from engine.errors import Cause, PathBlocked
 from engine.skill import Action, Service
 from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
 from engine.skills.goal_end import GoalEnd

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import Cause
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.messages import FramePoses, PartPoses, Pose
 from engine.state import Context
 from engine.suggestions import did_you_mean

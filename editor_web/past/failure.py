@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import msgspec
 
 from editor_web.past.state_history import RunStateHistory
-from engine.cause_chain import Cause, CauseLink, links_from_root
-from engine.errors import FlexcellError
+from engine.cause_chain import links_from_root
+from engine.errors import Cause, CauseLink, FlexcellError
 from engine.event import Event
 from engine.runtime.history import LogLine, NodeStep, log_line
 

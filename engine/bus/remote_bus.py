@@ -11,8 +11,7 @@ import httpx
 import msgspec
 
 from engine.bus.bus import BusEntry
-from engine.cause_chain import Cause
-from engine.errors import BusError
+from engine.errors import BusError, Cause
 from engine.host.state_folder_names import SERVER_FILE
 from engine.skills.goal_end import GoalEnd, GoalStatus
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from engine.bus import GoalStatus, Holder
-from engine.cause_chain import Cause
-from engine.errors import FlexcellError, SkillFailed
+from engine.errors import Cause, FlexcellError, SkillFailed
 from engine.faults import goal_faults as plays
 from engine.faults.fault_context import FaultContext
 from engine.faults.fault_rule import FaultRule

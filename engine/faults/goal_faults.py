@@ -6,8 +6,8 @@ import asyncio
 from collections.abc import Callable
 
 from engine.bus import GoalEnd, GoalStatus
-from engine.cause_chain import Cause
 from engine.clock import Clock
+from engine.errors import Cause
 from engine.faults.faulty_goal import AnyGoalEnd, FaultyGoal, GoalScript
 from engine.runtime.record.skill_port import Goal
 

@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from engine.cause_chain import Cause
-from engine.errors import RecordingError
+from engine.errors import Cause, RecordingError
 from engine.event import (
     AnyEvent,
     BehaviorChanged,

@@ -7,8 +7,7 @@ from typing import Any
 
 import msgspec
 
-from engine.cause_chain import Cause
-from engine.errors import FlexcellError, RecordingError
+from engine.errors import Cause, FlexcellError, RecordingError
 from engine.event import BehaviorChanged, OperatorChanged, OperatorCommanded, StopRequested
 from engine.replay.expected_events import Intervention, OutsideEvent
 from engine.replay.recorded_errors import error_from_cause

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from engine import errors
-from engine.cause_chain import Cause
-from engine.errors import FlexcellError, SkillFailed
+from engine.errors import Cause, FlexcellError, SkillFailed
 
 
 def error_from_cause(cause: Cause) -> FlexcellError:

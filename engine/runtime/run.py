@@ -9,8 +9,8 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 import msgspec
 
 from engine.bus import SkillBus
-from engine.cause_chain import Cause, cause_of, describe_cause, wrap_cause
-from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.cause_chain import cause_of, describe_cause, wrap_cause
+from engine.errors import Cause, FlexcellError, JournalError, NotStopped
 from engine.event import RunEnded
 from engine.journal import NullRunJournal, RunJournal
 from engine.preemption import preempt_finally

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 
 
 @dataclass(frozen=True, kw_only=True)

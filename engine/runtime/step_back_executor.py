@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 
-from engine.cause_chain import Cause, cause_of, describe_cause
-from engine.errors import ControlError, FlexcellError, JournalError
+from engine.cause_chain import cause_of, describe_cause
+from engine.errors import Cause, ControlError, FlexcellError, JournalError
 from engine.event import Event, FormerValue, RunSteppedBack, UndoEnded, UndoStarted
 from engine.journal import RunJournal
 from engine.preemption import being_cancelled

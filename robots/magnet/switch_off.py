@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.skills.part_label import PartLabel
 from engine.state import Context, Outcome, State, goal_cause
 from robots.magnet.magnet_parameter_types import MagnetName, magnet_address

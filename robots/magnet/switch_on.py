@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.skills.part_label import PartLabel, part_label
 from engine.state import Context, Outcome, State, goal_cause
 from robots.magnet.magnet_parameter_types import MagnetName, magnet_address

@@ -8,8 +8,8 @@ from typing import Annotated, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause_chain import Cause, MeasuredValue, wrap_cause
-from engine.errors import StateError
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause, MeasuredValue, StateError
 from engine.messages import FramePoses, Vector3
 from engine.state import Context, Outcome, State, nothing_to_undo
 from engine.suggestions import did_you_mean

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.state import Context, Outcome, State, nothing_to_undo
 
 

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause, MeasuredValue, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause, MeasuredValue
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
 from engine.skills.part_label import PartLabel, part_label
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from engine.cause_chain import Cause, cause_of
-from engine.errors import SkillFailed
+from engine.cause_chain import cause_of
+from engine.errors import Cause, SkillFailed
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import translate_pose
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, Speed

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import angle_between_rad, compose_poses, translate_pose
 from engine.skills.arm_control import Mass

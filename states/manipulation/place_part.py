@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import compose_poses, invert_pose
 from engine.skills.motion import ForwardKinematics, Speed

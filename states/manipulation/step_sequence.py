@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.state import Context, Outcome, State
 from states.motion.planned_motion_result import inner_cause_text
 

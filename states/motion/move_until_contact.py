@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.messages import Vector3
 from engine.skills import contact
 from engine.skills.axes import Axes

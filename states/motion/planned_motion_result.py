@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import Cause, links_from_root
+from engine.cause_chain import links_from_root
+from engine.errors import Cause
 from engine.skills.goal_end import GoalEnd
 from engine.skills.planning import FreeMotionResult
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause_chain import Cause, cause_of, wrap_cause
-from engine.errors import SkillFailed
+from engine.cause_chain import cause_of, wrap_cause
+from engine.errors import Cause, SkillFailed
 from engine.skills.planning import Margin
 from engine.skills.planning_scene import CheckCollision, CollisionReport
 from engine.state import Context, Outcome, State, nothing_to_undo

@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause_chain import Cause, cause_of, wrap_cause
-from engine.errors import SkillFailed
+from engine.cause_chain import cause_of, wrap_cause
+from engine.errors import Cause, SkillFailed
 from engine.messages import Pose
 from engine.skills.vision import Detection, Detections, DetectObjects, Score
 from engine.state import Context, Outcome, State, nothing_to_undo

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.library.behavior_graph import GraphNode, GraphTransition
 from engine.library.behavior_library import BehaviorView, FindingView, ParameterView
 

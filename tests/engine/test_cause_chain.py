@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import Cause, describe_cause, links_from_root
+from engine.cause_chain import describe_cause, links_from_root
+from engine.errors import Cause
 
 MEASURED = Cause(message="fingers 0.0 mm apart, 30.0 mm expected", where="right/gripper/grasp")
 STATE = Cause(message="right did not grasp the part", where="root/pick/grasp", because=MEASURED)

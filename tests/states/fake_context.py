@@ -7,9 +7,8 @@ from typing import Any, TypeVar, cast
 
 import msgspec
 
-from engine.cause_chain import Cause
 from engine.clock import LoopClock
-from engine.errors import NoSuchSkill
+from engine.errors import Cause, NoSuchSkill
 from engine.skill import Action, Service
 from engine.skills.goal_end import GoalEnd, GoalStatus
 

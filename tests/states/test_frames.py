@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.cause_chain import Cause
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.messages import FramePoses, PartPoses, Pose, Quaternion, Vector3
 from engine.messages.pose_algebra import (
     angle_between_rad,

@@ -14,11 +14,11 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from engine.archive import Archive, ArchivedRun, RunTrends, compare_runs
-from engine.cause_chain import Cause, describe_cause
+from engine.cause_chain import describe_cause
 from engine.cli.output.comparison_output import print_comparison, print_trend
 from engine.cli.output.run_report import cause_links, print_cause
 from engine.document import load_behavior
-from engine.errors import DocumentError, JournalError
+from engine.errors import Cause, DocumentError, JournalError
 from engine.event import Event, OperatorChanged, OperatorCommanded, RunEnded, StopRequested
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import RunRecord, encode_event, list_runs

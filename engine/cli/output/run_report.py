@@ -10,8 +10,9 @@ from pathlib import Path
 import msgspec
 from rich.console import Console
 
-from engine.cause_chain import Cause, link_text, links_from_root
+from engine.cause_chain import link_text, links_from_root
 from engine.cli.output.output_file import write
+from engine.errors import Cause
 from engine.event import Event
 from engine.journal import encode_event_log
 from engine.runtime.run_result import RunResult

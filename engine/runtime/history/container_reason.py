@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.runtime.history.node_state import ActiveNodeState, PendingExit, exit_of
 from engine.runtime.nodes.behavior_reference import BehaviorReference
 from engine.runtime.nodes.concurrency import Concurrency, finished_with

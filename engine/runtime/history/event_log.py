@@ -6,7 +6,8 @@ from typing import get_args
 
 import msgspec
 
-from engine.cause_chain import CauseLink, links_from_root
+from engine.cause_chain import links_from_root
+from engine.errors import CauseLink
 from engine.event import AnyEvent, Event
 from engine.runtime.history.event_texts import event_text
 

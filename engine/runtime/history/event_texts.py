@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,

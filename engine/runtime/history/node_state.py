@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import msgspec
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import NodeExited
 from engine.runtime.nodes.diagnosis import Diagnosis
 from engine.runtime.record.node_exit import NodeExit

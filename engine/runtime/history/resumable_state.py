@@ -9,9 +9,8 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 
-from engine.cause_chain import Cause
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES
-from engine.errors import DocumentError
+from engine.errors import Cause, DocumentError
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from engine.cause_chain import Cause
-from engine.errors import ControlError, DocumentError
+from engine.errors import Cause, ControlError, DocumentError
 from engine.event import Event, NodeEntered
 from engine.node_path import is_inside
 from engine.runtime.history.checkpoint import Checkpoint

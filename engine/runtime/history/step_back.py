@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from engine.cause_chain import Cause
-from engine.errors import ControlError
+from engine.errors import Cause, ControlError
 from engine.event import Event
 from engine.node_path import is_inside
 from engine.runtime.control.gate import GateWait

@@ -7,9 +7,9 @@ from collections.abc import Callable, Collection, Coroutine, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
 from engine.document.nodes.concurrency_condition import ConcurrencyCondition, deciding, preempting
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.event import BranchesPreempted
 from engine.preemption import BackgroundPreemptions, preempt, raise_failure
 from engine.runtime.nodes.diagnosis import explain_exit, is_failure

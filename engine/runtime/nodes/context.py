@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 import msgspec
 
 from engine.bus import Holder
-from engine.cause_chain import Cause, cause_of
+from engine.cause_chain import cause_of
 from engine.clock import Clock, OneTurn
-from engine.errors import FlexcellError
+from engine.errors import Cause, FlexcellError
 from engine.event import GoalFinished, GoalHeld, GoalResumed, GoalSent, MessageReceived, ServiceAnswered, ServiceCalled
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.record.nonfinite import encode_nonfinite

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.runtime.nodes.node import Node
 from engine.runtime.record.node_exit import ContainerOutcome, NodeExit
 

@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
-from engine.cause_chain import Cause
 from engine.document.count import whole_number
 from engine.document.expression.expression import Template
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES
-from engine.errors import StateError, UserdataError
+from engine.errors import Cause, StateError, UserdataError
 from engine.event import TransitionTaken
 from engine.runtime.nodes.diagnosis import Diagnosis, explain_exit
 from engine.runtime.nodes.execution import Execution

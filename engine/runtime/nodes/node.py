@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
-from engine.cause_chain import Cause, cause_of, describe_cause, wrap_cause
+from engine.cause_chain import cause_of, describe_cause, wrap_cause
 from engine.document.duration import LONGEST_S
 from engine.document.expression.expression_cost import MAX_STEPS
-from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
+from engine.errors import Cause, ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import NodeRetried, NodeSkipped
 from engine.preemption import being_cancelled, preempt, raise_failure, take_order_preemption
 from engine.runtime.control.gate import OperatorOrder

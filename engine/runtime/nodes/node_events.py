@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import NodeDiverted, NodeEntered, NodeExited
 from engine.runtime.nodes.execution import Execution
 

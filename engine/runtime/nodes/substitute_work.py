@@ -6,12 +6,11 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
-from engine.cause_chain import Cause
 from engine.document.expression.expression import compile_template
 from engine.document.signature import read_signature
 from engine.document.state_catalogue import Catalogue, find_state
 from engine.document.substitutes import Substitute, SubstituteEnding, Substitutes
-from engine.errors import DocumentError, ExpressionError, Position, RegistryError, StateError
+from engine.errors import Cause, DocumentError, ExpressionError, Position, RegistryError, StateError
 from engine.runtime.nodes.behavior_reference import BehaviorReference
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.nodes.leaf import Leaf

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.state import Outcome
 
 

@@ -7,9 +7,9 @@ import logging
 from collections.abc import Callable
 from typing import Concatenate, ParamSpec
 
-from engine.cause_chain import Cause, escape_surrogates
+from engine.cause_chain import escape_surrogates
 from engine.clock import Clock
-from engine.errors import JournalError
+from engine.errors import Cause, JournalError
 from engine.event import Event, MessageLogged, RunEnded
 from engine.journal import NullRunJournal, RunJournal
 

@@ -9,10 +9,9 @@ from py_trees import decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, Status
 
-from engine.cause_chain import Cause
 from engine.document.duration import seconds
 from engine.document.nodes import node_spec as nodes
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.runtime.tree.guard_decorator import Guard, guard_condition, holds_in
 from engine.runtime.tree.retry_decorator import Retry
 from engine.runtime.tree.scope_access import ScopeAccess

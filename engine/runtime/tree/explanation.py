@@ -8,7 +8,8 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from engine.cause_chain import Cause, wrap_cause
+from engine.cause_chain import wrap_cause
+from engine.errors import Cause
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.tree.branching import IfThenElse
 from engine.runtime.tree.disabled_part import DisabledPart

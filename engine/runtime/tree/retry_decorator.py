@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from engine.cause_chain import Cause, cause_of, wrap_cause
+from engine.cause_chain import cause_of, wrap_cause
 from engine.document.nodes.node_spec import RetrySpec
-from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.errors import Cause, FlexcellError, JournalError, NotStopped
 from engine.runtime.tree.timers import TreeTimers
 from engine.runtime.tree.tree_decorator import TreeDecorator
 from engine.runtime.tree.tree_history import TreeNodeState

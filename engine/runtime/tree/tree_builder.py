@@ -10,10 +10,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 
-from engine.cause_chain import Cause
 from engine.document.nodes import node_spec as nodes
 from engine.document.nodes.node_kind import SLOTS
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.event import NodeRetried
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.tree.active_leaves import ActiveLeaves

@@ -8,7 +8,7 @@ from typing import ClassVar
 from py_trees.common import Status
 from py_trees.decorators import Decorator
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.runtime.tree.tree_history import TreeNodeState
 from engine.runtime.tree.tree_node import TreeNode
 

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import msgspec
 
-from engine.cause_chain import Cause, cause_of, describe_cause, links_from_root
+from engine.cause_chain import cause_of, describe_cause, links_from_root
 from engine.coverage import CoverageRuns
 from engine.document.duration import seconds
 from engine.document.sweep import NO_FILE
-from engine.errors import FlexcellError
+from engine.errors import Cause, FlexcellError
 from engine.journal import encode_event_log
 from engine.project.cell_runner import CellSetup
 from engine.project.headless_run import CompletedRun, run_headless

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import (
     BehaviorChanged,
     BranchesPreempted,

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import Event, NodeEntered, NodeExited, RunEnded, RunStarted
 
 

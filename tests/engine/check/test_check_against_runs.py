@@ -8,9 +8,9 @@ from collections.abc import Iterable
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from engine.cause_chain import Cause
 from engine.check import Finding, check_behavior
 from engine.document import parse_behavior
+from engine.errors import Cause
 from engine.event import Event, NodeEntered, NodeExited, RunEnded
 from tests.engine.check.data_runs import events_of
 from tests.engine.check.data_states import CATALOGUE

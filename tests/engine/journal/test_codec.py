@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.cause_chain import Cause
-from engine.errors import JournalError
+from engine.errors import Cause, JournalError
 from engine.event import AnyEvent, GoalSent, MessageLogged, NodeEntered, NodeExited, RunEnded, UserdataWritten
 from engine.journal import decode_event, encode_event, encode_event_log
 from engine.messages import Pose

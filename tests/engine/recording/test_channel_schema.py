@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from engine import messages
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import AnyEvent, MessageReceived, NodeExited, RunEnded
 from engine.journal import encode_event
 from engine.recording.channel_schema import channel_schema

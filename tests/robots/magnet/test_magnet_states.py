@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.state import Outcome, State
 from robots.magnet.check_magnet import CheckHeld

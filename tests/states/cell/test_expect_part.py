@@ -5,8 +5,7 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.messages import FramePoses, PartPoses, Pose, Vector3
 from engine.state import Outcome
 from states.cell.expect_part import ExpectPart, Region

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import NoSuchSkill, SkillFailed
+from engine.errors import Cause, NoSuchSkill, SkillFailed
 from engine.skills import people
 from engine.skills.people import ReachResult
 from engine.state import Outcome

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.state import Outcome
 from states.flow.decide import Decide
 from states.flow.log import Log

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import HandState
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.hand import HandClose, HandOpen, HandResult

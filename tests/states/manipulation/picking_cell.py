@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import GripperState, HandState, PartPoses, Pose
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult

@@ -7,8 +7,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import EntryNotFound, SkillFailed
+from engine.errors import Cause, EntryNotFound, SkillFailed
 from engine.messages import Pose
 from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
 from engine.skills.dmp import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import Pose
 from engine.skills import planning
 from engine.skills.entries import EntryRecord

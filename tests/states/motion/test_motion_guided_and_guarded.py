@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.messages import Pose, Wrench
 from engine.skills import contact
 from engine.skills.contact import ContactResult

@@ -7,8 +7,7 @@ import math
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import EntryNotFound, StateError
+from engine.errors import Cause, EntryNotFound, StateError
 from engine.messages import Pose
 from engine.skills.entries import EntryRecord, ReadEntry
 from engine.skills.goal_end import GoalEnd, GoalStatus

@@ -7,8 +7,7 @@ import math
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import SkillFailed
+from engine.errors import Cause, SkillFailed
 from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import JointDmp

@@ -7,8 +7,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import StateError
+from engine.errors import Cause, StateError
 from engine.messages import Pose
 from engine.skill import Action
 from engine.skills.goal_end import GoalEnd, GoalStatus

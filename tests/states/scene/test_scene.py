@@ -5,9 +5,8 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
 from engine.document.placement import Placement
-from engine.errors import SkillFailed
+from engine.errors import Cause, SkillFailed
 from engine.messages import Pose
 from engine.messages.shapes import Box, Capsule, Cylinder, Obstacle, Shape, Sphere
 from engine.skills import planning_scene

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import EntryConflict, EntryNotFound, StoreError
+from engine.errors import Cause, EntryConflict, EntryNotFound, StoreError
 from engine.skills import entries
 from engine.skills.entries import EntryRecord
 from engine.state import Outcome

@@ -7,8 +7,7 @@ from typing import cast
 
 import pytest
 
-from engine.cause_chain import Cause
-from engine.errors import NoSuchSkill, SkillFailed
+from engine.errors import Cause, NoSuchSkill, SkillFailed
 from engine.messages import Pose
 from engine.skills.vision import Detection, Detections, DetectObjects
 from engine.state import Outcome

@@ -9,8 +9,8 @@ import msgspec
 import pytest
 from rich.console import Console
 
-from engine.cause_chain import Cause
 from engine.cli.output.progress_printer import ProgressPrinter
+from engine.errors import Cause
 from engine.event import (
     AnyEvent,
     Event,

@@ -7,7 +7,7 @@ from typing import get_args
 import msgspec
 import pytest
 
-from engine.cause_chain import Cause
+from engine.errors import Cause
 from engine.event import (
     AnyEvent,
     Event,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from engine.bus import SkillBus
-from engine.cause_chain import Cause, describe_cause
+from engine.cause_chain import describe_cause
 from engine.clock import new_clock, run_virtual
+from engine.errors import Cause
 from engine.event import Event
 from engine.runtime.history.resume import read_history, resume_checkpoint
 from engine.runtime.plan import Plan

@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 
 import pytest
 
-from engine.cause_chain import Cause, describe_cause
+from engine.cause_chain import describe_cause
+from engine.errors import Cause
 from engine.event import MessageLogged
 from engine.journal import decode_event, encode_event
 from engine.state import Context, Outcome, State
