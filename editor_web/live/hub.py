@@ -228,7 +228,7 @@ class LiveHub:
         if live is None or not live.state.real_time or live.state.ended:
             return False
         control = self.control_of(live)
-        return control is None or not control.paused or control.stepping
+        return control is None or not control.time_stands
 
     def control_of(self, live: LiveRun | None) -> ControlView | None:
         """Return the current control state of a run; None if it has ended or is unknown."""

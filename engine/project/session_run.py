@@ -63,9 +63,8 @@ class SessionRun:
         """Return the status of the run at this time of the cell's clock."""
         result = self.result
         control = self.run.control.view() if result is None and not self.run.ended else None
-        # The time of a paused run stands.
-        is_held = control is not None and control.paused and not control.stepping
-        run_s = self.live.state.time_s if is_held else now_s - self.started_s
+        stands = control is not None and control.time_stands
+        run_s = self.live.state.time_s if stands else now_s - self.started_s
         return RunView(
             id=self.run.id,
             behavior=self.behavior_id,

@@ -49,6 +49,11 @@ class ControlView(msgspec.Struct, frozen=True, kw_only=True):
     loss_timeout_s: float = 0.0
 
     @property
+    def time_stands(self) -> bool:
+        """Whether the displayed time of the run stands: it is paused, and no step is in progress."""
+        return self.paused and not self.stepping
+
+    @property
     def waits(self) -> str:
         """Why the run waits for a person: `asks` for an outcome, `paused` or `locked`; empty if it does not."""
         if any("autonomy" in each.reasons for each in self.waiting):
