@@ -44,6 +44,7 @@ from editor_web.routes import (
     sweeps,
 )
 from editor_web.routes import cell_connection as connection
+from editor_web.routes import cell_items as items
 from editor_web.routes import cell_stop as halt
 from editor_web.routes import past_runs as past
 from editor_web.routes import references as relations
@@ -95,6 +96,7 @@ _ROUTERS = (
     halt.router,
     halt.recovery,
     connection.router,
+    items.router,
     bus.router,
     data.router,
     live.router,

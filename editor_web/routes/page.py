@@ -51,6 +51,8 @@ def notices(services: ServicesOf) -> Response:
 @router.get("/recordings/{rest:path}")
 @router.get("/edit/{rest:path}")
 @router.get("/teach")
+@router.get("/workcell")
+@router.get("/workcell/{rest:path}")
 @router.get("/sweeps")
 @router.get("/sweeps/{rest:path}")
 def index(services: ServicesOf, rest: str = "") -> Response:

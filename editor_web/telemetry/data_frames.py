@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from engine.messages import Pose
 from engine.project import GoalInfo
 from engine.runtime.history import ScopeView
 
@@ -15,7 +16,7 @@ class DataSubscription(msgspec.Struct, frozen=True, kw_only=True, tag="look", ta
 
     `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates,
     leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals
-    of a run.
+    of a run, `cell` where the items of the cell are and what its tools hold.
     """
 
     number: int = 0
@@ -24,6 +25,7 @@ class DataSubscription(msgspec.Struct, frozen=True, kw_only=True, tag="look", ta
     fields: tuple[str, ...] = ()
     run: str = ""
     goals: str = ""
+    cell: bool = False
 
 
 class TopicMetrics(msgspec.Struct, frozen=True, kw_only=True):
@@ -106,8 +108,27 @@ class GoalsFrame(msgspec.Struct, frozen=True, kw_only=True, tag="goals", tag_fie
     goals: dict[str, GoalProgress]
 
 
+class ToolHolds(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether a tool holds something, and the name of the part: `?` when unknown, empty for none."""
+
+    held: bool
+    part: str
+
+
+class CellStateFrame(msgspec.Struct, frozen=True, kw_only=True, tag="cell", tag_field="k"):
+    """Where the items of the cell are now; at most five per second, and only after a change.
+
+    `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those
+    of the optical frames of cameras. `tools` are by the name of their arm.
+    """
+
+    poses: dict[str, Pose]
+    cameras: dict[str, Pose]
+    tools: dict[str, ToolHolds]
+
+
 class IdleFrame(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
     """Keep-alive without data."""
 
 
-DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | IdleFrame
+DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame

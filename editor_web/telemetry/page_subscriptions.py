@@ -14,8 +14,10 @@ from collections.abc import Callable
 from msgspec.structs import replace
 
 from editor_web.telemetry.bus_metrics import BusMetrics
+from editor_web.telemetry.cell_state import cell_state
 from editor_web.telemetry.data_frames import (
     MAX_CURVES,
+    CellStateFrame,
     DataFrame,
     DataSubscription,
     GoalProgress,
@@ -35,6 +37,7 @@ SAMPLE_S = 0.05
 MESSAGE_S = 0.2
 USERDATA_S = 0.2
 GOALS_S = 0.2
+CELL_S = 0.2
 TRAFFIC_S = 1.0
 KEPT_ROWS = 100
 """Maximum number of samples kept for a slow page: five seconds."""
@@ -63,6 +66,7 @@ class PageSubscriptions:
         self._seen: dict[str, tuple[str, int]] = {}
         self._history: UserdataHistory | None = None
         self._goals: dict[str, GoalProgress] | None = None
+        self._cell: CellStateFrame | None = None
         self.begun = asyncio.Event()
         """Set while the page subscribes to anything."""
 
@@ -82,7 +86,8 @@ class PageSubscriptions:
         self._seen = {}
         self._history = None
         self._goals = None
-        if look.traffic or look.topic or look.fields or look.run or look.goals:
+        self._cell = None
+        if look.traffic or look.topic or look.fields or look.run or look.goals or look.cell:
             self.begun.set()
         else:
             self.begun.clear()
@@ -109,6 +114,8 @@ class PageSubscriptions:
             frames += self._userdata(self._look.run)
         if self._look.goals and self._is_time("goals", GOALS_S):
             frames += self._goals_of(self._look.goals)
+        if self._look.cell and self._is_time("cell", CELL_S):
+            frames += self._cell_state()
         if self._look.traffic and self._is_time("traffic", TRAFFIC_S):
             frames.append(self._meter.frame())
         return frames
@@ -166,6 +173,10 @@ class PageSubscriptions:
     def _goals_of(self, run: str) -> list[DataFrame]:
         before, self._goals = self._goals, progress_by_node(self._inspector.goals(run))
         return [] if self._goals == before else [GoalsFrame(run=run, goals=self._goals)]
+
+    def _cell_state(self) -> list[DataFrame]:
+        before, self._cell = self._cell, cell_state(self._inspector)
+        return [] if self._cell == before else [self._cell]
 
 
 def _curve(field: str) -> tuple[str, Path]:

@@ -7,6 +7,9 @@ from engine.lazy_face import lazy_face
 
 _HOMES = {
     "CellConnection": "engine.cell.cell_connection",
+    "CellItem": "engine.cell.cell_items",
+    "CellItems": "engine.cell.cell_items",
+    "items_of_cell": "engine.cell.cell_items",
     "OpenCell": "engine.cell.open_cell",
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",

@@ -375,6 +375,35 @@ export interface CellFit {
   readonly obstacle: string
 }
 
+/** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1. */
+export interface CellItem {
+  readonly path: string
+  readonly kind: "camera" | "fixture" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
+  readonly name: string
+  readonly model: string
+  readonly owner: string
+  readonly topics: readonly string[]
+  readonly text: string
+  readonly line: number
+}
+
+/** The items of a cell in the order of its document, which is `file`. `changed` says that the document has changed since the cell was opened: the items are those of the open cell, and their lines those of the document now. */
+export interface CellItems {
+  readonly cell: string
+  readonly description: string
+  readonly file: string
+  readonly changed: boolean
+  readonly items: readonly CellItem[]
+}
+
+/** Where the items of the cell are now; at most five per second, and only after a change. `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those of the optical frames of cameras. `tools` are by the name of their arm. */
+export interface CellStateFrame {
+  readonly k: "cell"
+  readonly poses: Dict<Pose>
+  readonly cameras: Dict<Pose>
+  readonly tools: Dict<ToolHolds>
+}
+
 /** The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`. While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are arms and world, in the order of the cell. */
 export interface CellStop {
   readonly number: number
@@ -520,7 +549,7 @@ export interface DataDifference {
   readonly kind: "read" | "wrote"
 }
 
-/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run. */
+/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold. */
 export interface DataSubscription {
   readonly k: "look"
   readonly number?: number
@@ -529,6 +558,7 @@ export interface DataSubscription {
   readonly fields?: readonly string[]
   readonly run?: string
   readonly goals?: string
+  readonly cell?: boolean
 }
 
 /** A deleted document that can be restored; `saved_at` is when its last text was first seen. */
@@ -2594,6 +2624,12 @@ export interface TimelineRow {
   readonly spans: readonly ActivationInterval[]
 }
 
+/** Whether a tool holds something, and the name of the part: `?` when unknown, empty for none. */
+export interface ToolHolds {
+  readonly held: boolean
+  readonly part: string
+}
+
 /** Measured tool state: opening of a gripper (m) or closing of a hand (0 to 100), and whether it holds a part. */
 export interface ToolLive {
   readonly width_m: number | null
@@ -2836,7 +2872,7 @@ export interface WatchRun {
   readonly run?: string
 }
 
-export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | IdleFrame
+export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame
 
 export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 

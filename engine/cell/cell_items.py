@@ -1,0 +1,153 @@
+"""What a cell consists of, for a person who reads it: each item with its place in the document and on the bus.
+
+Items are addressed as in the document: `robots/left`, `robots/left/gripper`, `parts/hca_north`, `world`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Literal
+
+import msgspec
+
+from engine.cell.robot_models import tool_kinds
+from engine.document.cell import Cell, CellDocument
+from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
+from engine.errors import DocumentError
+
+ItemKind = Literal["robot", "tool", "fixture", "part", "camera", "person", "occupancy", "world", "store"]
+
+
+class CellItem(msgspec.Struct, frozen=True, kw_only=True):
+    """One item of a cell.
+
+    `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item
+    that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are
+    its lines of the document, the first of which has the number `line`, from 1.
+    """
+
+    path: str
+    kind: ItemKind
+    name: str
+    model: str
+    owner: str = ""
+    topics: tuple[str, ...] = ()
+    text: str = ""
+    line: int = 0
+
+
+class CellItems(msgspec.Struct, frozen=True, kw_only=True):
+    """The items of a cell in the order of its document, which is `file`.
+
+    `changed` says that the document has changed since the cell was opened: the items are those of the open cell, and
+    their lines those of the document now.
+    """
+
+    cell: str
+    description: str
+    file: str
+    changed: bool
+    items: tuple[CellItem, ...]
+
+
+def items_of_cell(cell: Cell, *, topics: Iterable[str] = ()) -> CellItems:
+    """Return the items of an open cell.
+
+    Args:
+        cell: The cell as it was opened.
+        topics: The names of all topics on its bus.
+    """
+    now, lines = _read(cell)
+    known = tuple(sorted(topics))
+    items = tuple(
+        msgspec.structs.replace(item, topics=_topics(item, known), **_excerpt(item.path, now, lines))
+        for item in _items(cell.document)
+    )
+    return CellItems(
+        cell=cell.name,
+        description=cell.document.description,
+        file=cell.file.name,
+        changed=now is None or now.data != cell.source.data,
+        items=items,
+    )
+
+
+def _read(cell: Cell) -> tuple[DocumentSource | None, list[str]]:
+    """Return the document as it is now and its lines; None while it cannot be read."""
+    try:
+        content = load_text(cell.file)
+        return parse_source(content, file=str(cell.file)), content.decode().splitlines()
+    except DocumentError:
+        return None, []
+
+
+def _items(document: CellDocument) -> Iterator[CellItem]:
+    for name, robot in document.robots.items():
+        path = f"robots/{name}"
+        yield CellItem(path=path, kind="robot", name=name, model=robot.model)
+        if robot.gripper is not None:
+            yield CellItem(path=f"{path}/gripper", kind="tool", name=name, model=robot.gripper.model, owner=path)
+    for name, fixture in document.fixtures.items():
+        yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape)
+    for name, part in document.parts.items():
+        yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape)
+    for name, camera in document.cameras.items():
+        yield CellItem(path=f"cameras/{name}", kind="camera", name=name, model=camera.driver)
+    for name in document.people:
+        yield CellItem(path=f"people/{name}", kind="person", name=name, model="arm")
+    if document.occupancy is not None:
+        yield CellItem(path="occupancy", kind="occupancy", name="occupancy", model="voxels")
+    if document.world is not None:
+        yield CellItem(path="world", kind="world", name="world", model="mujoco")
+    if document.store is not None:
+        tag = type(document.store).__struct_config__.tag
+        yield CellItem(path="store", kind="store", name="store", model=str(tag))
+
+
+def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the topics below the name of an item; those of a tool are below its robot: `left/gripper/state`."""
+    tools = tuple(f"{item.name}/{kind}/" for kind in tool_kinds())
+    match item.kind:
+        case "robot":
+            return tuple(each for each in known if each.startswith(f"{item.name}/") and not each.startswith(tools))
+        case "tool":
+            return tuple(each for each in known if each.startswith(tools))
+        case "camera":
+            return tuple(each for each in known if each.startswith(f"{item.name}/"))
+        case "part":
+            return tuple(each for each in known if each == "cell/parts")
+        case "occupancy":
+            return tuple(each for each in known if each.startswith("cell/occupancy"))
+        case "world":
+            return tuple(each for each in known if each in ("cell/frames", "cell/planning_scene"))
+        case "fixture" | "person" | "store":
+            return ()
+
+
+def _excerpt(path: str, source: DocumentSource | None, lines: list[str]) -> dict[str, object]:
+    """Return the lines of an item, up to the next key of it or of what contains it; none where it is no more."""
+    place, later = (source.place, []) if source is not None else (None, list[int]())
+    for step in path.split("/"):
+        children = place.children if place is not None else None
+        place = children.get(step) if children is not None else None
+        if place is None or children is None:
+            return {}
+        later += [each.key_line for each in children.values()]
+    if place is None or place.file is not None:
+        return {}
+    end = min((line for line in later if line > place.key_line), default=len(lines))
+    return {"text": "\n".join(_own(lines[place.key_line : end], place)), "line": place.key_line + 1}
+
+
+def _own(lines: list[str], place: PositionTree) -> list[str]:
+    """Return lines without the blank ones and the comments at their end, which belong to what follows."""
+    end = len(lines)
+    while end > 1 and (not lines[end - 1].strip() or _is_comment(lines[end - 1], place.key_column)):
+        end -= 1
+    margin = " " * (len(lines[0]) - len(lines[0].lstrip()))
+    return [line.removeprefix(margin) for line in lines[:end]]
+
+
+def _is_comment(line: str, column: int) -> bool:
+    stripped = line.lstrip()
+    return stripped.startswith("#") and len(line) - len(stripped) <= column
