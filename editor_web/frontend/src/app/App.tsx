@@ -23,7 +23,19 @@ import { StoppedBanner } from '../features/stop/StoppedBanner'
 import { Header } from './Header'
 import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
-import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, SWEEPS_HREF, TEACH_HREF, useRoute, type Route } from './route'
+import {
+  behaviorHref,
+  CELL_HREF,
+  editHref,
+  goTo,
+  PAST_HREF,
+  runHref,
+  RUNS_HREF,
+  SWEEPS_HREF,
+  TEACH_HREF,
+  useRoute,
+  type Route,
+} from './route'
 import { RoutedPage } from './RoutedPage'
 import { useFetched } from './useFetched'
 
@@ -42,6 +54,7 @@ export function App() {
   const shown = shownRun(route, runs)
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
+  const isCell = route.page === 'cell'
   const isOfRuns = route.page === 'runs' || route.page === 'beside'
   const isOfPast = route.page === 'past' || route.page === 'compare' || route.page === 'trend'
   const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
@@ -67,7 +80,11 @@ export function App() {
   return (
     <AppShell
       header={{ height: 52 }}
-      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen, desktop: isEditing || isTeaching } }}
+      navbar={{
+        width: { base: 220, xl: 290 },
+        breakpoint: 'md',
+        collapsed: { mobile: !menuOpen, desktop: isEditing || isTeaching || isCell },
+      }}
       aside={{ width: { base: 380, xl: 460 }, breakpoint: 'md', collapsed: { mobile: !isGuided, desktop: !isGuided } }}
     >
       <a className="skip-link" href="#main">
@@ -88,6 +105,8 @@ export function App() {
             shown={shown}
             active={runs.filter(isActive)}
             onHome={() => open('/')}
+            isCell={isCell}
+            onCell={() => open(CELL_HREF)}
             isTeaching={isTeaching}
             onTeach={() => open(TEACH_HREF)}
             onRun={(id) => open(runHref(id))}
@@ -168,6 +187,7 @@ const PAGES: readonly PageCommand[] = [
   ['Active runs', RUNS_HREF],
   ['Past runs and recordings', PAST_HREF],
   ['Sweeps', SWEEPS_HREF],
+  ['Cell', CELL_HREF],
   ['Teach and jog', TEACH_HREF],
 ].map(([title = '', href = '']) => ({ id: `page:${href}`, title, group: 'Pages', run: () => goTo(href) }))
 

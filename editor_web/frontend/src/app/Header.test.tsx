@@ -17,6 +17,8 @@ function Bar(told: Partial<HeaderProps>) {
       shown={undefined}
       active={[]}
       onHome={() => led('home')}
+      isCell={false}
+      onCell={vi.fn()}
       isTeaching={false}
       onTeach={() => led('teach')}
       onRun={led}

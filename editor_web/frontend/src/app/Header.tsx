@@ -9,7 +9,7 @@ import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { runStateOf, runWords } from '../document/runState'
 import { nameOf, RunTime } from '../features/runs/RunList'
-import { RUNS_HREF, TEACH_HREF } from './route'
+import { CELL_HREF, RUNS_HREF, TEACH_HREF } from './route'
 
 export interface HeaderProps {
   readonly cellName: string
@@ -19,13 +19,15 @@ export interface HeaderProps {
   /** The runs under way. */
   readonly active: readonly RunView[]
   readonly onHome: () => void
+  readonly isCell: boolean
+  readonly onCell: () => void
   readonly isTeaching: boolean
   readonly onTeach: () => void
   readonly onRun: (id: string) => void
   readonly onRuns: () => void
 }
 
-export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching, onTeach, onRun, onRuns }: HeaderProps) {
+export function Header({ cellName, mayOperate, shown, active, onHome, isCell, onCell, isTeaching, onTeach, onRun, onRuns }: HeaderProps) {
   // Of several it is the one of the page, or none: nobody is to stop a run that was not meant.
   const named = active.find((run) => run.id === shown?.id) ?? (active.length === 1 ? active[0] : undefined)
   const others = active.length - 1
@@ -42,7 +44,11 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
         <img src="/favicon.svg" alt="" width={24} height={24} />
         <span className="brand-name">flexcell</span>
       </a>
-      {cellName && <span className="cell-name">{cellName}</span>}
+      {cellName && (
+        <PageLink href={CELL_HREF} className="cell-name" title="What the cell consists of" isCurrent={isCell} onOpen={onCell}>
+          {cellName}
+        </PageLink>
+      )}
       <PageLink href={TEACH_HREF} className="header-link" isCurrent={isTeaching} onOpen={onTeach}>
         <IconHandFinger size={16} aria-hidden />
         <span className="header-link-words">Teach</span>

@@ -13,6 +13,7 @@ import { behaviorHref, editHref, PAST_HREF, runHref, type Route } from './route'
 /** Brings the canvas with it, which the first page does not need. */
 const BehaviorPage = lazyView(async () => (await import('./BehaviorPage')).BehaviorPage)
 const TeachPage = lazyView(async () => (await import('./TeachPage')).TeachPage)
+const CellPage = lazyView(async () => (await import('./CellPage')).CellPage)
 const PastPage = lazyView(async () => (await import('./PastPage')).PastPage)
 const PastRunsPage = lazyView(async () => (await import('./PastRunsPage')).PastRunsPage)
 const RunsPage = lazyView(async () => (await import('./RunsPage')).RunsPage)
@@ -43,6 +44,8 @@ export function RoutedPage(props: RoutedPageProps) {
       return <Edit {...props} id={route.id} />
     case 'teach':
       return <TeachPage session={session} isNarrow={isNarrow} />
+    case 'cell':
+      return <CellPage item={route.item} session={session} isNarrow={isNarrow} onOpen={onOpen} />
     case 'past':
       return <PastRunsPage onOpen={onOpen} />
     case 'runs':

@@ -14,6 +14,7 @@ export type Route =
   | { readonly page: 'past' }
   | { readonly page: 'teach' }
   | { readonly page: 'recording'; readonly id: string }
+  | { readonly page: 'cell'; readonly item: string }
   | { readonly page: 'sweeps' }
   | { readonly page: 'sweep'; readonly id: string }
 
@@ -30,6 +31,8 @@ export function routeOf(pathname: string): Route {
   if (page === 'past') return { page: 'past' }
   if (page === 'teach') return { page: 'teach' }
   if (page === 'recordings' && id) return { page: 'recording', id }
+  // Not `/cell`, below which the server has the 3D view.
+  if (page === 'workcell') return { page: 'cell', item: id }
   if (page === 'sweeps') return id ? { page: 'sweep', id } : { page: 'sweeps' }
   return { page: 'home' }
 }
@@ -44,6 +47,13 @@ function decoded(part: string): string {
 
 export function behaviorHref(id: string): string {
   return `/behaviors/${id.split('/').map(encodeURIComponent).join('/')}`
+}
+
+export const CELL_HREF = '/workcell'
+
+/** The cell, at one of its items where one is given: `robots/left`. */
+export function cellHref(item = ''): string {
+  return item ? `${CELL_HREF}/${item.split('/').map(encodeURIComponent).join('/')}` : CELL_HREF
 }
 
 export const TEACH_HREF = '/teach'

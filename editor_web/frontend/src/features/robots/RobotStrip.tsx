@@ -8,24 +8,7 @@ import type { RobotLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { StatusIcon } from '../../components/StatusIcon'
-import type { Status } from '../../document/runState'
-
-const LOOKS: Record<string, Status> = {
-  moving: 'active',
-  jogging: 'active',
-  guiding: 'active',
-  direct: 'warning',
-  reflex: 'failed',
-  fault: 'failed',
-  disconnected: 'stopped',
-}
-// A goal that is held is still carried out: `moving` would be wrong of an arm that a paused run keeps at rest.
-const WORDS: Record<string, string> = {
-  moving: 'carries out',
-  reflex: 'stopped by a reflex',
-  guiding: 'led by hand',
-  direct: 'under direct control',
-}
+import { modeWords, robotLook } from '../../document/robotMode'
 
 export function RobotStrip() {
   const robots = useLive((s) => s.robots)
@@ -46,7 +29,7 @@ function Robot({ robot }: { robot: RobotLive }) {
   const role = useLive((s) => s.role)
   const [problem, setProblem] = useState('')
   const { name, mode, activity, error, speed_override: share } = robot
-  const look = LOOKS[mode] ?? 'idle'
+  const look = robotLook(mode)
   const obstacle = !isConnected ? 'the server does not answer' : role === 'operator' ? undefined : 'you may look only'
 
   async function attempt(request: () => Promise<unknown>): Promise<boolean> {
@@ -68,7 +51,7 @@ function Robot({ robot }: { robot: RobotLive }) {
       </span>
       <span className="robot-mode" role="status" aria-label={`State of ${name}`}>
         <StatusIcon status={look} size={14} />
-        {(mode !== 'moving' || activity) && WORDS[mode] ? WORDS[mode] : mode}
+        {modeWords(robot)}
         {activity && <span className="quiet">{activity}</span>}
       </span>
       <CommitSlider

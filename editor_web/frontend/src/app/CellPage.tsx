@@ -1,0 +1,111 @@
+/** The page of the cell, for reading: what it consists of, where that is, and what it does now. */
+import { useMemo, useState } from 'react'
+import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { cellItems } from '../api/cellItems'
+import { useData } from '../api/data'
+import { useLive } from '../api/live'
+import { hasCellView } from '../api/session'
+import type { CellStateFrame, SessionBody } from '../api/types'
+import { Empty } from '../components/Empty'
+import { OpenedTabs } from '../components/OpenedTabs'
+import { Panel } from '../components/Panel'
+import { cellTree, nodeAt } from '../document/cellTree'
+import { CellFrame } from '../features/cell/CellFrame'
+import { ShowMenu } from '../features/cell/ShowMenu'
+import { CellItemTree } from '../features/cellItems/CellItemTree'
+import { ItemDetails } from '../features/cellItems/ItemDetails'
+import { RobotStrip } from '../features/robots/RobotStrip'
+import { cellHref, TEACH_HREF } from './route'
+import { useFetched } from './useFetched'
+
+interface CellPageProps {
+  /** The address of the selected item, empty for none. */
+  readonly item: string
+  readonly session: SessionBody | undefined
+  readonly isNarrow: boolean
+  readonly onOpen: (href: string) => void
+}
+
+export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
+  const { value: cell, problem } = useFetched('cell items', cellItems)
+  const [state, setState] = useState<CellStateFrame>()
+  useData({ number: 0, traffic: false, topic: '', fields: [], run: '', goals: '', cell: true }, (frame) => {
+    if (frame.k === 'cell') setState(frame)
+  })
+  const robots = useLive((s) => s.robots)
+  // The names of the frames and not their poses: the tree stays the same while an arm moves.
+  const frames = Object.keys(state?.poses ?? {}).join('\n')
+  const tree = useMemo(() => cellTree(cell?.items ?? [], frames ? frames.split('\n') : []), [cell, frames])
+  // What is selected comes to the front, each time that something is.
+  const asked = useMemo(() => (item ? { tab: 'Details' } : undefined), [item])
+  if (problem) return <Empty title="The cell cannot be read">{problem}</Empty>
+  if (!cell) return <div className="page-wait" role="status" aria-label="Loading" />
+  const now = { robots, state }
+  const node = nodeAt(tree, item)
+  const select = (address: string) => onOpen(cellHref(address))
+  const items = (
+    <Panel title="Items">
+      <CellItemTree tree={tree} now={now} selected={item} onSelect={select} />
+    </Panel>
+  )
+  const details = node ? (
+    <ItemDetails
+      node={node}
+      cell={cell}
+      now={now}
+      hasCellView={hasCellView(session)}
+      onSelect={select}
+      onTeach={session?.role === 'operator' ? () => onOpen(TEACH_HREF) : undefined}
+    />
+  ) : (
+    <Panel title="Details">
+      {item ? (
+        <Empty title="This cell has no such item">{item}</Empty>
+      ) : (
+        <Empty title="Nothing is selected">Select an item of the tree.</Empty>
+      )}
+    </Panel>
+  )
+  const view = (
+    <Panel
+      title="Cell"
+      className="cell-panel"
+      tools={
+        <>
+          <span className="spacer" />
+          {hasCellView(session) && <ShowMenu />}
+        </>
+      }
+      foot={<RobotStrip />}
+    >
+      <CellFrame />
+    </Panel>
+  )
+  return (
+    <>
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>{cell.cell}</h1>
+          {cell.description && <p className="quiet">{cell.description}</p>}
+        </div>
+      </header>
+      {isNarrow ? (
+        <OpenedTabs label="Cell" bodies={{ Items: items, Details: details, '3D view': view }} asked={asked} />
+      ) : (
+        <Group orientation="horizontal" className="work-space">
+          <Pane id="cell-items" defaultSize="30%" minSize="18%">
+            {items}
+          </Pane>
+          <Separator className="splitter" aria-label="Width of the items" />
+          <Pane id="cell-view" defaultSize="42%" minSize="20%">
+            {view}
+          </Pane>
+          <Separator className="splitter" aria-label="Width of the cell" />
+          <Pane id="cell-details" defaultSize="28%" minSize="18%">
+            {details}
+          </Pane>
+        </Group>
+      )}
+    </>
+  )
+}

@@ -1,0 +1,169 @@
+/** The tree of a cell: its items by kind, a tool below its robot, and the frames by what they belong to. Pure. */
+import type { CellItem, CellStateFrame, Pose, RobotLive } from '../api/types'
+import { lookup, type Dict } from './dict'
+import { modeWords, robotLook } from './robotMode'
+import type { Status } from './runState'
+import { degrees, rollPitchYaw } from './teaching'
+
+export type NodeKind = CellItem['kind'] | 'frame' | 'group'
+
+/** One line of the tree; `address` is unique in it, and that of the item where it is one. */
+export interface CellNode {
+  readonly address: string
+  readonly kind: NodeKind
+  readonly name: string
+  /** Said with the name: the model of a robot, the shape of a part. */
+  readonly detail: string
+  readonly item: CellItem | undefined
+  readonly children: readonly CellNode[]
+}
+
+/** What is known of a cell at this moment. */
+export interface CellNow {
+  readonly robots: Dict<RobotLive>
+  readonly state: CellStateFrame | undefined
+}
+
+const GROUPS: readonly (readonly [string, readonly CellItem['kind'][]])[] = [
+  ['Robots', ['robot']],
+  ['Fixtures', ['fixture']],
+  ['Parts', ['part']],
+  ['Cameras', ['camera']],
+  ['People', ['person']],
+  ['World and store', ['world', 'occupancy', 'store']],
+]
+const FRAMES = 'frames'
+
+/** The tree; what is empty has no group. `frames` are all frames of the cell by name, parts among them. */
+export function cellTree(items: readonly CellItem[], frames: readonly string[]): readonly CellNode[] {
+  const groups = GROUPS.map(([name, kinds]) => {
+    const own = items.filter((item) => kinds.includes(item.kind) && !item.owner)
+    return group(
+      `group:${name}`,
+      name,
+      own.map((item) => nodeOf(item, items)),
+    )
+  })
+  return [...groups, framesOf(items, frames)].filter((each) => each.children.length > 0)
+}
+
+function nodeOf(item: CellItem, items: readonly CellItem[]): CellNode {
+  const children = items.filter((other) => other.owner === item.path).map((other) => nodeOf(other, items))
+  // A tool has no name of its own in a cell: it is the gripper of its robot.
+  const name = item.kind === 'tool' ? (item.path.split('/').at(-1) ?? item.name) : item.name
+  return { address: item.path, kind: item.kind, name, detail: item.model === name ? '' : item.model, item, children }
+}
+
+/** Frames below their robot: `left/flange` below `left`; a part is a frame too, but it is among the parts already. */
+function framesOf(items: readonly CellItem[], frames: readonly string[]): CellNode {
+  const parts = new Set(items.filter((item) => item.kind === 'part').map((item) => item.name))
+  const byOwner = new Map<string, CellNode[]>()
+  for (const frame of frames.filter((each) => !parts.has(each)).toSorted()) {
+    const [owner = '', ...rest] = frame.split('/')
+    const node = {
+      address: `${FRAMES}/${frame}`,
+      kind: 'frame',
+      name: rest.join('/') || owner,
+      detail: '',
+      item: undefined,
+      children: [],
+    } as const
+    const own = rest.length > 0 ? owner : ''
+    byOwner.set(own, [...(byOwner.get(own) ?? []), node])
+  }
+  const single = byOwner.get('') ?? []
+  const owners = [...byOwner].filter(([owner]) => owner)
+  return group(`group:${FRAMES}`, 'Frames', [...owners.map(([owner, nodes]) => group(`group:${FRAMES}/${owner}`, owner, nodes)), ...single])
+}
+
+function group(address: string, name: string, children: readonly CellNode[]): CellNode {
+  return { address, kind: 'group', name, detail: '', item: undefined, children }
+}
+
+/** The line of the tree with an address. */
+export function nodeAt(tree: readonly CellNode[], address: string): CellNode | undefined {
+  for (const node of tree) {
+    const found = node.address === address ? node : nodeAt(node.children, address)
+    if (found) return found
+  }
+  return undefined
+}
+
+/** The addresses on the way to a line of the tree, without its own. */
+export function ancestorsOf(tree: readonly CellNode[], address: string): readonly string[] {
+  for (const node of tree) {
+    if (node.children.some((child) => child.address === address)) return [node.address]
+    const below = ancestorsOf(node.children, address)
+    if (below.length > 0) return [node.address, ...below]
+  }
+  return []
+}
+
+/** The arm or frame whose place the 3D view can turn to. */
+export function placeOf(node: CellNode): string | undefined {
+  switch (node.kind) {
+    case 'robot':
+    case 'tool':
+    case 'part':
+      return node.item?.name
+    case 'frame':
+      return node.address.slice(FRAMES.length + 1)
+    default:
+      return undefined
+  }
+}
+
+/** The pose of an item in the world now, where a message tells it. */
+export function poseOf(node: CellNode, state: CellStateFrame | undefined): Pose | undefined {
+  if (node.kind === 'camera') return state && lookup(state.cameras, node.name)
+  if (node.kind !== 'part' && node.kind !== 'frame') return undefined
+  return state && lookup(state.poses, placeOf(node) ?? '')
+}
+
+/** The arm whose tool holds a part. */
+export function holderOf(part: string, state: CellStateFrame | undefined): string | undefined {
+  return Object.entries(state?.tools ?? {}).find(([, tool]) => tool?.held && tool.part === part)?.[0]
+}
+
+/** The state of an item in a few words, with its look; undefined where it has none, or nothing is known. */
+export function stateWords(node: CellNode, now: CellNow): { readonly words: string; readonly look: Status } | undefined {
+  const name = node.item?.name ?? ''
+  switch (node.kind) {
+    case 'robot': {
+      const robot = lookup(now.robots, name)
+      return robot && { words: [modeWords(robot), robot.activity].filter(Boolean).join(' '), look: robotLook(robot.mode) }
+    }
+    case 'tool': {
+      const tool = now.state && lookup(now.state.tools, name)
+      if (!tool) return undefined
+      return { words: tool.held ? `holds ${tool.part === '?' || !tool.part ? 'a part' : tool.part}` : 'holds nothing', look: 'idle' }
+    }
+    case 'part': {
+      const holder = holderOf(name, now.state)
+      const pose = poseOf(node, now.state)
+      const words = holder ? `held by ${holder}` : pose && positionText(pose)
+      return words === undefined ? undefined : { words, look: 'idle' }
+    }
+    default: {
+      const pose = poseOf(node, now.state)
+      return pose && { words: positionText(pose), look: 'idle' }
+    }
+  }
+}
+
+/** A position in metres to the millimetre: `0.550, 0.000, 0.026 m`. */
+export function positionText({ xyz }: Pose): string {
+  return `${xyz.map((each) => fixed(each, 3)).join(', ')} m`
+}
+
+/** Roll, pitch and yaw of an orientation in degrees. */
+export function orientationText({ xyzw }: Pose): string {
+  const angles = rollPitchYaw(xyzw).map((each) => fixed(degrees(each), 1))
+  return `${angles.join('°, ')}°`
+}
+
+/** Rounded without the sign of a zero: noise around it must not flicker. */
+function fixed(value: number, digits: number): string {
+  const text = value.toFixed(digits)
+  return Number(text) === 0 ? text.replace('-', '') : text
+}

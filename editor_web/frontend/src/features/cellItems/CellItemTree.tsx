@@ -1,0 +1,139 @@
+/** The tree of the cell, with the state of each item beside it. */
+import { getTreeExpandedState, Group, ScrollArea, Text, Tree, useTree, type RenderTreeNodePayload, type TreeNodeData } from '@mantine/core'
+import {
+  IconBox,
+  IconCamera,
+  IconChevronRight,
+  IconCube3dSphere,
+  IconDatabase,
+  IconGridDots,
+  IconHandGrab,
+  IconMap,
+  IconRobot,
+  IconTable,
+  IconUser,
+  IconVector,
+  IconWorld,
+  type Icon,
+} from '@tabler/icons-react'
+import { useEffect, useMemo } from 'react'
+import { StatusIcon } from '../../components/StatusIcon'
+import { ancestorsOf, nodeAt, stateWords, type CellNode, type CellNow, type NodeKind } from '../../document/cellTree'
+import classes from './cellItems.module.css'
+
+const ICONS: Readonly<Record<NodeKind, Icon>> = {
+  group: IconGridDots,
+  robot: IconRobot,
+  tool: IconHandGrab,
+  fixture: IconTable,
+  part: IconBox,
+  camera: IconCamera,
+  person: IconUser,
+  occupancy: IconMap,
+  world: IconWorld,
+  store: IconDatabase,
+  frame: IconVector,
+}
+
+interface CellItemTreeProps {
+  readonly tree: readonly CellNode[]
+  readonly now: CellNow
+  /** The address of the selected item, empty for none. */
+  readonly selected: string
+  readonly onSelect: (address: string) => void
+}
+
+export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProps) {
+  const data = useMemo(() => tree.map(dataOf), [tree])
+  // Groups of items are open at first; the many frames of arms are not.
+  const controller = useTree({
+    initialExpandedState: getTreeExpandedState(
+      data,
+      tree
+        .filter((node) => node.address !== 'group:frames')
+        .flatMap((node) => [node.address, ...node.children.map((child) => child.address)]),
+    ),
+    selectedState: selected ? [selected] : [],
+    onSelectedStateChange: ([address]) => {
+      if (address !== undefined && nodeAt(tree, address)?.kind !== 'group') onSelect(address)
+    },
+  })
+  const { expand } = controller
+  useEffect(() => {
+    for (const address of ancestorsOf(tree, selected)) expand(address)
+    // oxlint-disable-next-line react/exhaustive-deps -- once for each selection: what a person folds stays folded
+  }, [selected])
+  return (
+    <ScrollArea className={classes.tree} viewportProps={{ tabIndex: -1 }}>
+      <Tree
+        aria-label="Items of the cell"
+        data={data}
+        tree={controller}
+        selectOnClick
+        levelOffset="md"
+        allowRangeSelection={false}
+        renderNode={(payload) => <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} />}
+      />
+    </ScrollArea>
+  )
+}
+
+function dataOf(node: CellNode): TreeNodeData {
+  return {
+    value: node.address,
+    label: node.name,
+    ...(node.children.length > 0 && { children: node.children.map(dataOf) }),
+  }
+}
+
+function Line({
+  cell,
+  now,
+  expanded,
+  hasChildren,
+  selected,
+  elementProps,
+}: RenderTreeNodePayload & { readonly cell: CellNode | undefined; readonly now: CellNow }) {
+  if (!cell) return null
+  const Kind = ICONS[cell.kind] ?? IconCube3dSphere
+  const state = stateWords(cell, now)
+  return (
+    <Group
+      {...elementProps}
+      gap={6}
+      wrap="nowrap"
+      className={`${elementProps.className} ${classes.line}`}
+      data-selected={selected || undefined}
+    >
+      <IconChevronRight
+        size={13}
+        aria-hidden
+        className={classes.chevron}
+        data-open={expanded || undefined}
+        data-none={!hasChildren || undefined}
+      />
+      <Kind size={15} stroke={1.6} aria-hidden />
+      <Text span size="sm" fw={cell.kind === 'group' ? 600 : 400} truncate>
+        {cell.name}
+      </Text>
+      {cell.detail && (
+        <Text span size="xs" c="dimmed" truncate>
+          {cell.detail}
+        </Text>
+      )}
+      {cell.kind === 'group' && (
+        <Text span size="xs" c="dimmed">
+          {cell.children.length}
+        </Text>
+      )}
+      {state && (
+        <Group component="span" gap={4} wrap="nowrap" ml="auto">
+          {cell.kind === 'robot' && <StatusIcon status={state.look} size={13} />}
+          <Text span size="xs" c="dimmed" className={classes.state}>
+            {state.words}
+          </Text>
+        </Group>
+      )}
+    </Group>
+  )
+}
