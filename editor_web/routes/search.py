@@ -12,6 +12,7 @@ from editor_web.http_bodies.document_bodies import EntryName
 from editor_web.routes.catalogue import entry_names
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
+from engine.cell import CellItem, items_of_cell
 from engine.library import NameHit, behavior_names, search_names
 from engine.runtime.history import RunView
 
@@ -22,12 +23,14 @@ _MOST = 40
 
 @router.get("")
 async def search(services: ServicesOf, text: Annotated[str, Query(max_length=200)] = "") -> tuple[NameHit, ...]:
-    """Return the behaviors, nodes, entries and runs of this server that have every word of a text, best first."""
+    """Return the behaviors, nodes, entries, runs, items and topics of this server that have every word of a text."""
     backend = services.backend
     entries, runs = await entry_names(services), backend.runs()
+    topics = [topic.name for topic in backend.inspector.topics()]
 
     def found() -> tuple[NameHit, ...]:
         names = [*behavior_names(backend.behaviors()), *_of_entries(entries), *_of_runs(runs)]
+        names += _of_items(items_of_cell(backend.cell.document, topics=topics).items)
         return search_names(text, names, limit=_MOST)
 
     return await run_in_threadpool(found)
@@ -42,3 +45,10 @@ def _of_runs(runs: tuple[RunView, ...]) -> Iterator[NameHit]:
     for run in runs:
         detail = f"{run.id} {run.outcome or run.status}"
         yield NameHit(kind="run", id=run.id, title=run.behavior.rpartition("/")[2], detail=detail)
+
+
+def _of_items(items: tuple[CellItem, ...]) -> Iterator[NameHit]:
+    for item in items:
+        yield NameHit(kind="item", id=item.path, title=item.name, detail=f"{item.path} {item.kind} {item.model}")
+        for topic in item.topics:
+            yield NameHit(kind="topic", id=item.path, path=topic, title=topic, detail=f"topic of {item.path}")

@@ -6,8 +6,10 @@ import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable, Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 from msgspec.structs import replace
 
@@ -15,8 +17,9 @@ from engine.archive import Archive
 from engine.bus import SkillBus
 from engine.bus.bus import BusEntry
 from engine.bus.json_bus import JsonBus
-from engine.cell.cell_connection import CellConnection
+from engine.cell import CellConnection, OpenCell
 from engine.clock import LoopClock
+from engine.document.cell import Cell, load_cell
 from engine.document.faults import Faults
 from engine.editing import DocumentRepository
 from engine.errors import BusError, ControlError, FlexcellError
@@ -78,6 +81,12 @@ class TopicBus:
         raise BusError("no such service", where=address)
 
 
+@cache
+def _cell() -> Cell:
+    """Return the document of the cell that is played."""
+    return load_cell(Path(__file__).parents[2] / "behaviors" / "cells" / "dual_panda.yaml")
+
+
 class NoRecovery(StopRecovery):
     """The recovery of a cell that nobody stops."""
 
@@ -110,6 +119,7 @@ class FakeBackend(Session):
     ) -> None:
         self.lost_reason = ""
         self.recovery = NoRecovery()
+        self.cell = cast("OpenCell", SimpleNamespace(document=_cell()))
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or DocumentRepository(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}

@@ -161,6 +161,10 @@ def test_every_page_is_accessible(visit: Visit, site: Site, scheme: Scheme) -> N
         require_accessible(page, "broken")
         page.set_viewport_size({"width": 390, "height": 844})
         require_accessible(page, "small")
+    with visit("/workcell/robots/left/gripper", scheme=scheme) as page:
+        tree = page.get_by_role("tree", name="Items of the cell")
+        expect(tree.get_by_role("treeitem", selected=True)).to_contain_text("gripper")
+        require_accessible(page, "cell")
     # The browser itself reports the refusal.
     with visit("/", scheme=scheme, quiet=False) as page:
         page.goto(f"{site.running.url}login?t=wrong")

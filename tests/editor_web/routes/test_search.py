@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from engine.bus import SkillBus
+from engine.clock import LoopClock
+from engine.messages import GripperState
+from engine.project import BusInspector
 from tests.editor_web.conftest import Serve
+from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import TRANSFER
 
 
@@ -18,3 +23,16 @@ async def test_behaviors_and_their_nodes_are_found_by_their_names(serve: Serve) 
         "detail": hits[0]["detail"],
     }
     assert none == []
+
+
+async def test_items_of_the_cell_and_their_topics_are_found(serve: Serve) -> None:
+    backend = FakeBackend()
+    async with SkillBus(LoopClock()) as bus, serve(backend) as served:
+        backend.known_inspector = BusInspector(bus)
+        bus.topic("left/gripper/state", GripperState)
+        item = (await served.http.get("/api/v1/search", params={"text": "hca_north part"})).json()
+        topic = (await served.http.get("/api/v1/search", params={"text": "gripper/state"})).json()
+    assert [(hit["kind"], hit["id"]) for hit in item] == [("item", "parts/hca_north")]
+    assert [(hit["kind"], hit["id"], hit["path"]) for hit in topic] == [
+        ("topic", "robots/left/gripper", "left/gripper/state")
+    ]

@@ -1412,9 +1412,9 @@ export interface MoveResultBody {
   readonly left: readonly string[]
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
 export interface NameHit {
-  readonly kind: "behavior" | "entry" | "node" | "run"
+  readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "topic"
   readonly id: string
   readonly title: string
   readonly detail: string

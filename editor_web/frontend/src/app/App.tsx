@@ -1,7 +1,7 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
 import { AppShell, Burger, Kbd, UnstyledButton } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
-import { IconChartDots, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
+import { IconChartDots, IconCube, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
 import { Suspense, useEffect } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
@@ -26,6 +26,7 @@ import { LogIn } from './LogIn'
 import {
   behaviorHref,
   CELL_HREF,
+  cellHref,
   editHref,
   goTo,
   PAST_HREF,
@@ -134,6 +135,10 @@ export function App() {
               Search <Kbd size="xs">Ctrl K</Kbd>
             </span>
           </UnstyledButton>
+          <PageLink href={CELL_HREF} className={sideItem(isCell)} isCurrent={isCell} onOpen={() => open(CELL_HREF)}>
+            <IconCube size={15} aria-hidden />
+            <span className="side-item-name">Cell</span>
+          </PageLink>
           <PageLink href={RUNS_HREF} className={sideItem(isOfRuns)} isCurrent={isOfRuns} onOpen={() => open(RUNS_HREF)}>
             <IconLayoutGrid size={15} aria-hidden />
             <span className="side-item-name">All active runs</span>
@@ -201,6 +206,9 @@ function hrefOf({ kind, id, path }: NameHit): string {
       return runHref(id)
     case 'entry':
       return TEACH_HREF
+    case 'item':
+    case 'topic':
+      return cellHref(id, path)
   }
 }
 

@@ -75,15 +75,20 @@ it('shows the items with what they do, hold, and where they are', async () => {
   await waitFor(() => expect(within(tree).getByText('idle')).toBeVisible())
 })
 
-it('selects an item by mouse, and no group', async () => {
+it('selects an item by mouse and by keyboard; a group folds', async () => {
   server().on('GET /cell/items', CELL)
   live()
   const { user, onOpen } = page('')
   const tree = await screen.findByRole('tree', { name: 'Items of the cell' })
   await user.click(within(tree).getByText('Parts'))
+  expect(within(tree).queryByText('plate')).toBeNull()
   expect(onOpen).not.toHaveBeenCalled()
   await user.click(within(tree).getByText('gripper'))
   expect(onOpen).toHaveBeenCalledExactlyOnceWith('/workcell/robots/left/gripper')
+  await user.keyboard('{ArrowUp}{Enter}')
+  expect(onOpen).toHaveBeenLastCalledWith('/workcell/robots/left')
+  await user.keyboard('{ArrowUp}{Enter}')
+  expect(within(tree).queryByText('gripper')).toBeNull()
 })
 
 it('tells of a robot its state, its topics and its lines of the document', async () => {
@@ -100,6 +105,15 @@ it('tells of a robot its state, its topics and its lines of the document', async
   expect(lines).toHaveTextContent('The document has changed since the cell was opened')
   await user.click(screen.getByRole('button', { name: 'Jog and teach' }))
   expect(onOpen).toHaveBeenCalledWith('/teach')
+})
+
+it('opens at the topic of the address', async () => {
+  server().on('GET /cell/items', CELL)
+  live({ robots: { left: robot() } })
+  history.replaceState(null, '', '#left/joint_state')
+  page('robots/left')
+  expect(await screen.findByRole('combobox', { name: 'Topic' })).toHaveValue('left/joint_state')
+  history.replaceState(null, '', location.pathname)
 })
 
 it('leads from a held part to the arm, and says that the document has it no more', async () => {

@@ -54,11 +54,16 @@ export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProp
         .flatMap((node) => [node.address, ...node.children.map((child) => child.address)]),
     ),
     selectedState: selected ? [selected] : [],
-    onSelectedStateChange: ([address]) => {
-      if (address !== undefined && nodeAt(tree, address)?.kind !== 'group') onSelect(address)
-    },
+    onSelectedStateChange: ([address]) => address !== undefined && choose(address),
   })
-  const { expand } = controller
+  const { expand, toggleExpanded } = controller
+
+  /** A group has nothing to show: it folds. */
+  function choose(address: string): void {
+    if (nodeAt(tree, address)?.kind === 'group') toggleExpanded(address)
+    else onSelect(address)
+  }
+
   useEffect(() => {
     for (const address of ancestorsOf(tree, selected)) expand(address)
     // oxlint-disable-next-line react/exhaustive-deps -- once for each selection: what a person folds stays folded
@@ -67,15 +72,26 @@ export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProp
     <ScrollArea className={classes.tree} viewportProps={{ tabIndex: -1 }}>
       <Tree
         aria-label="Items of the cell"
+        onKeyDown={(event) => {
+          const address = event.key === 'Enter' ? addressOf(event.target) : undefined
+          if (address === undefined) return
+          event.preventDefault()
+          choose(address)
+        }}
         data={data}
         tree={controller}
         selectOnClick
+        expandOnClick={false}
         levelOffset="md"
         allowRangeSelection={false}
         renderNode={(payload) => <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} />}
       />
     </ScrollArea>
   )
+}
+
+function addressOf(target: EventTarget): string | undefined {
+  return target instanceof HTMLElement ? target.closest<HTMLElement>('[role=treeitem]')?.dataset.value : undefined
 }
 
 function dataOf(node: CellNode): TreeNodeData {
@@ -93,6 +109,7 @@ function Line({
   hasChildren,
   selected,
   elementProps,
+  tree,
 }: RenderTreeNodePayload & { readonly cell: CellNode | undefined; readonly now: CellNow }) {
   if (!cell) return null
   const Kind = ICONS[cell.kind] ?? IconCube3dSphere
@@ -111,6 +128,10 @@ function Line({
         className={classes.chevron}
         data-open={expanded || undefined}
         data-none={!hasChildren || undefined}
+        onClick={(event) => {
+          event.stopPropagation()
+          tree.toggleExpanded(cell.address)
+        }}
       />
       <Kind size={15} stroke={1.6} aria-hidden />
       <Text span size="sm" fw={cell.kind === 'group' ? 600 : 400} truncate>

@@ -64,7 +64,7 @@ export function ItemDetails({ node, cell, now, hasCellView, onSelect, onTeach }:
             )}
           </Group>
           <State node={node} now={now} onSelect={onSelect} />
-          {node.item && node.item.topics.length > 0 && <Topics key={node.item.path} item={node.item} />}
+          {node.item && node.item.topics.length > 0 && <Topics key={node.item.path + location.hash} item={node.item} />}
           {node.item && <Lines item={node.item} cell={cell} />}
         </Stack>
       </ScrollArea>
@@ -134,7 +134,7 @@ function State({ node, now, onSelect }: Pick<ItemDetailsProps, 'node' | 'now' | 
 
 /** The latest message of one of the topics that tell of an item. */
 function Topics({ item }: { readonly item: CellItem }) {
-  const [topic, setTopic] = useState(item.topics.find((each) => /(^|\/)(status|state)$/.test(each)) ?? item.topics[0] ?? '')
+  const [topic, setTopic] = useState(() => firstTopic(item))
   const [latest, setLatest] = useState<MessageFrame>()
   useData({ number: 0, traffic: false, topic, fields: [], run: '', goals: '', cell: false }, (frame) => {
     if (frame.k === 'message') setLatest(frame)
@@ -165,6 +165,12 @@ function Topics({ item }: { readonly item: CellItem }) {
       </Stack>
     </section>
   )
+}
+
+/** The topic of the address, else the one that says what the item does. */
+function firstTopic({ topics }: CellItem): string {
+  const named = topics.find((topic) => location.hash === `#${topic}`)
+  return named ?? topics.find((topic) => /(^|\/)(status|state)$/.test(topic)) ?? topics[0] ?? ''
 }
 
 function Lines({ item, cell }: { readonly item: CellItem; readonly cell: CellItems }) {

@@ -1,6 +1,6 @@
 /** Leads to anything by its name, and runs the commands of the page that is shown, from the keyboard. */
 import { useDebouncedValue } from '@mantine/hooks'
-import { IconBinaryTree2, IconCommand, IconHistory, IconMapPin, IconRoute } from '@tabler/icons-react'
+import { IconBinaryTree2, IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin, IconRoute } from '@tabler/icons-react'
 import { useEffect, useMemo, useState, type ReactNode } from 'react'
 import { wordsOf } from '../../api/client'
 import { closeSearch, pageCommands, searchNames, type PageCommand } from '../../api/search'
@@ -22,6 +22,8 @@ const KINDS: Readonly<Record<NameHit['kind'], { readonly group: string; readonly
   behavior: { group: 'Behaviors', icon: <IconRoute size={SIZE} aria-hidden /> },
   node: { group: 'States and containers', icon: <IconBinaryTree2 size={SIZE} aria-hidden /> },
   entry: { group: 'Entries', icon: <IconMapPin size={SIZE} aria-hidden /> },
+  item: { group: 'Items of the cell', icon: <IconCube size={SIZE} aria-hidden /> },
+  topic: { group: 'Topics', icon: <IconBroadcast size={SIZE} aria-hidden /> },
   run: { group: 'Runs', icon: <IconHistory size={SIZE} aria-hidden /> },
 }
 
@@ -36,7 +38,7 @@ export function SearchBox({ pages, edited, onOpen }: SearchBoxProps) {
   return (
     <ChoiceBox
       label="Search"
-      placeholder="Go to a behavior, state, entry or run, or type a command …"
+      placeholder="Go to a behavior, state, entry, run, item or topic, or type a command …"
       choices={choices}
       hits={hits.filter((hit) => hit.kind !== 'node' || hit.id !== edited).map((hit) => choiceOf(hit, onOpen))}
       onText={setText}
