@@ -49,9 +49,7 @@ export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProp
   const controller = useTree({
     initialExpandedState: getTreeExpandedState(
       data,
-      tree
-        .filter((node) => node.address !== 'group:frames')
-        .flatMap((node) => [node.address, ...node.children.map((child) => child.address)]),
+      tree.flatMap((node) => (node.address === 'group:frames' ? [] : [node.address, ...node.children.map((child) => child.address)])),
     ),
     selectedState: selected ? [selected] : [],
     onSelectedStateChange: ([address]) => address !== undefined && choose(address),
