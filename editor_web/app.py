@@ -35,6 +35,7 @@ from editor_web.routes import (
     control,
     demonstration,
     documents,
+    open_cell,
     page,
     run_comparison,
     run_curves,
@@ -43,8 +44,6 @@ from editor_web.routes import (
     session,
     sweeps,
 )
-from editor_web.routes import cell_connection as connection
-from editor_web.routes import cell_items as items
 from editor_web.routes import cell_stop as halt
 from editor_web.routes import past_runs as past
 from editor_web.routes import references as relations
@@ -95,8 +94,7 @@ _ROUTERS = (
     control.router,
     halt.router,
     halt.recovery,
-    connection.router,
-    items.router,
+    open_cell.router,
     bus.router,
     data.router,
     live.router,

@@ -9,11 +9,11 @@ _HOMES = {
     "CellConnection": "engine.cell.cell_connection",
     "CellItem": "engine.cell.cell_items",
     "CellItems": "engine.cell.cell_items",
-    "items_of_cell": "engine.cell.cell_items",
     "OpenCell": "engine.cell.open_cell",
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",
     "ToolKind": "engine.cell.tool_kind",
+    "items_of_cell": "engine.cell.cell_items",
     "tool_kinds": "engine.cell.robot_models",
 }
 

@@ -27,7 +27,7 @@ class Clock(LoopClock):
         return self.at_s
 
 
-def told(page: PageSubscriptions) -> CellStateFrame | None:
+def state_of(page: PageSubscriptions) -> CellStateFrame | None:
     """Return the one frame that is due, if any."""
     frames = page.due()
     assert len(frames) <= 1
@@ -36,7 +36,7 @@ def told(page: PageSubscriptions) -> CellStateFrame | None:
     return frame
 
 
-async def test_poses_and_held_parts_are_told_when_they_change() -> None:
+async def test_poses_and_held_parts_are_sent_when_they_change() -> None:
     """Once in 0.2 s at most, and not again without a change that can be seen."""
     clock = Clock()
     async with SkillBus(clock) as bus:
@@ -46,26 +46,26 @@ async def test_poses_and_held_parts_are_told_when_they_change() -> None:
         tool = bus.topic("left/gripper/state", GripperState)
         page = PageSubscriptions(backend)
         page.look(DataSubscription(cell=True))
-        assert told(page) == CellStateFrame(poses={}, cameras={}, tools={})
+        assert state_of(page) == CellStateFrame(poses={}, cameras={}, tools={})
         frames.publish(FramePoses(time_s=0.0, names=("left/tool",), xyz=((0.0, 0.0, 1.0),), xyzw=((0, 0, 0, 1),)))
         parts.publish(PartPoses(time_s=0.0, poses={"plate": Pose(xyz=(0.10000001, 0.0, 0.0))}))
         tool.publish(GripperState(time_s=0.0, width_m=0.04, force_n=9.0, held=True, part="plate"))
         bus.topic("eye/camera_info", CameraInfo).publish(EYE)
-        assert told(page) is None
+        assert state_of(page) is None
         clock.at_s = 0.3
-        assert told(page) == CellStateFrame(
+        assert state_of(page) == CellStateFrame(
             poses={"left/tool": Pose(xyz=(0.0, 0.0, 1.0)), "plate": Pose(xyz=(0.1, 0.0, 0.0))},
             cameras={"eye": EYE.pose},
             tools={"left": ToolHolds(held=True, part="plate")},
         )
         parts.publish(PartPoses(time_s=0.1, poses={"plate": Pose(xyz=(0.10000002, 0.0, 0.0))}))
         clock.at_s = 0.6
-        assert told(page) is None
+        assert state_of(page) is None
         parts.publish(PartPoses(time_s=0.2, poses={"plate": Pose(xyz=(0.2, 0.0, 0.0))}))
         clock.at_s = 0.9
-        moved = told(page)
+        moved = state_of(page)
         assert moved is not None
         assert moved.poses["plate"].xyz == (0.2, 0.0, 0.0)
         page.look(DataSubscription())
         clock.at_s = 1.2
-        assert told(page) is None
+        assert state_of(page) is None
