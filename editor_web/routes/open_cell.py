@@ -17,7 +17,7 @@ async def get_items(services: ServicesOf) -> CellItems:
     """Return the items of the open cell: robots, tools, fixtures, parts, cameras and what else it has."""
     backend = services.backend
     topics = [topic.name for topic in backend.inspector.topics()]
-    return await run_in_threadpool(items_of_cell, backend.cell.document, topics=topics)
+    return await run_in_threadpool(items_of_cell, backend.cell.document, name=backend.cell_name, topics=topics)
 
 
 @router.get("/connection")

@@ -30,7 +30,7 @@ async def search(services: ServicesOf, text: Annotated[str, Query(max_length=200
 
     def found() -> tuple[NameHit, ...]:
         names = [*behavior_names(backend.behaviors()), *_of_entries(entries), *_of_runs(runs)]
-        names += _of_items(items_of_cell(backend.cell.document, topics=topics).items)
+        names += _of_items(items_of_cell(backend.cell.document, name=backend.cell_name, topics=topics).items)
         return search_names(text, names, limit=_MOST)
 
     return await run_in_threadpool(found)

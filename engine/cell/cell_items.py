@@ -50,13 +50,16 @@ class CellItems(msgspec.Struct, frozen=True, kw_only=True):
     items: tuple[CellItem, ...]
 
 
-def items_of_cell(cell: Cell, *, topics: Iterable[str] = ()) -> CellItems:
+def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -> CellItems:
     """Return the items of an open cell.
 
     Args:
-        cell: The cell as it was opened.
+        cell: The cell as it was opened; None for one that no document describes, which has no items to list.
+        name: The name of the cell.
         topics: The names of all topics on its bus.
     """
+    if cell is None:
+        return CellItems(cell=name, description="", file="", changed=False, items=())
     now, lines = _read(cell)
     known = tuple(sorted(topics))
     items = tuple(
@@ -64,7 +67,7 @@ def items_of_cell(cell: Cell, *, topics: Iterable[str] = ()) -> CellItems:
         for item in _items(cell.document)
     )
     return CellItems(
-        cell=cell.name,
+        cell=name,
         description=cell.document.description,
         file=cell.file.name,
         changed=now is None or now.data != cell.source.data,

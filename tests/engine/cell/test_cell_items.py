@@ -46,11 +46,11 @@ def cell(tmp_path: Path) -> Cell:
 
 def items(cell: Cell) -> dict[str, CellItem]:
     """Return them by address."""
-    return {item.path: item for item in items_of_cell(cell, topics=TOPICS).items}
+    return {item.path: item for item in items_of_cell(cell, name="bench", topics=TOPICS).items}
 
 
 def test_every_item_is_there_in_the_order_of_the_kinds(cell: Cell) -> None:
-    whole = items_of_cell(cell)
+    whole = items_of_cell(cell, name="bench")
     assert (whole.cell, whole.description, whole.file, whole.changed) == ("bench", "A bench.", "cell.yaml", False)
     assert [(item.path, item.kind, item.model, item.owner) for item in whole.items] == [
         ("robots/left", "robot", "panda", ""),
@@ -94,7 +94,7 @@ def test_an_item_has_its_lines_and_no_comment_of_the_next(cell: Cell, path: str,
 def test_the_lines_are_those_of_the_document_now(cell: Cell) -> None:
     """The items are still those of the open cell."""
     cell.file.write_text(CELL.replace("parts:", "# More:\nparts:").replace("  plate:", "  disk:"), encoding="utf-8")
-    whole = items_of_cell(cell)
+    whole = items_of_cell(cell, name="bench")
     changed = {item.path: item for item in whole.items}
     assert whole.changed
     assert (changed["parts/plate"].text, changed["parts/plate"].line) == ("", 0)
@@ -109,9 +109,14 @@ def test_a_document_that_cannot_be_read_takes_no_item_away(cell: Cell, content: 
         cell.file.unlink()
     else:
         cell.file.write_bytes(content)
-    whole = items_of_cell(cell)
+    whole = items_of_cell(cell, name="bench")
     assert whole.changed
     assert ([item.path for item in whole.items], {item.text for item in whole.items}) == (before, {""})
+
+
+def test_a_cell_without_a_document_has_no_items() -> None:
+    whole = items_of_cell(None, name="bench", topics=TOPICS)
+    assert (whole.cell, whole.file, whole.items) == ("bench", "", ())
 
 
 def test_a_json_document_has_its_items(tmp_path: Path) -> None:
@@ -120,6 +125,6 @@ def test_a_json_document_has_its_items(tmp_path: Path) -> None:
         '   "mass_kg": 1}}}',
         encoding="utf-8",
     )
-    (item,) = items_of_cell(load_cell(tmp_path / "cell.json")).items
+    (item,) = items_of_cell(load_cell(tmp_path / "cell.json"), name="bench").items
     assert (item.path, item.line) == ("parts/ball", 3)
     assert item.text.startswith('"ball": {"shape": "sphere",')
