@@ -4,7 +4,7 @@
 
 `dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
 planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path, `editor` a
-behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches, `sweep` what the first
+behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches, `workcell` the page of the cell, `sweep` what the first
 runs of a sweep have shown, which are executed before. Needs the extras `all` and `test` and a Chromium. Without a
 graphics card the 3D view takes seconds a picture.
 """
@@ -171,6 +171,7 @@ PICTURES = (
     Picture(name="editor", cell="dual_panda", address=EDITOR, size=LARGE, prepare=edited),
     Picture(name="timeline", cell="dual_panda", address=TRANSFER + "?layout=debug", size=DESKTOP, prepare=looked_back),
     Picture(name="teach", cell="dual_panda", address="/teach", size=DESKTOP, prepare=taught),
+    Picture(name="workcell", cell="dual_panda", address="/workcell/robots/left", size=DESKTOP, prepare=drawn),
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
     Picture(name="sweep", cell=None, address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),
 )
