@@ -2,11 +2,11 @@
 
     python docs/make_screenshots.py [NAME …]
 
-`dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
-planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path, `editor` a
-behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches, `workcell` the page of the cell, `sweep` what the first
-runs of a sweep have shown, which are executed before. Needs the extras `all` and `test` and a Chromium. Without a
-graphics card the 3D view takes seconds a picture.
+`dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone`
+a planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path,
+`editor` a behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches,
+`workcell` the page of the cell, `sweep` what the first runs of a sweep have shown, which are executed before. Needs
+the extras `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
 """
 
 from __future__ import annotations
