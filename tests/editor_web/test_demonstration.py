@@ -154,7 +154,7 @@ def test_the_dialog_is_accessible(browser: Browser, taught: Workshop, scheme: Sc
         opened_dialog(page)
         page.get_by_role("button", name="Add pose tray_pick").click()
         page.get_by_role("button", name="Close gripper").click()
-        expect(page.locator(".preview-remark")).to_have_count(2)
+        expect(page.get_by_role("region", name="Resulting steps").get_by_role("note")).to_have_count(2)
         require_accessible(page, f"dialog, {scheme}", part="dialog")
 
 

@@ -1,13 +1,14 @@
 /** From demonstration to behavior: choose entries in their order, see what it will do, make it. */
-import './demonstration.css'
+import { Alert, Box, Button, Code, Divider, Flex, Group, List, NativeSelect, SimpleGrid, Text, TextInput, Title } from '@mantine/core'
 import { IconAlertTriangle } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useEffect, useId, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { propose } from '../../api/demonstration'
 import { documents } from '../../api/documents'
 import type { EntryName, ProposalBody, ProposalOptions } from '../../api/types'
 import { added, bodyOf, type Step } from '../../document/demonstration'
 import { fileProblem, idOfFile } from '../../document/editing/fileNames'
+import classes from './Demonstration.module.css'
 import { EntryChoice } from './EntryChoice'
 import { NumberField } from './NumberField'
 import { StepList } from './StepList'
@@ -45,17 +46,17 @@ export function Demonstration({ onMade, initial = NO_STEPS }: DemonstrationProps
   }
 
   return (
-    <div className="demonstration">
-      <div className="demonstration-columns">
+    <>
+      <div className={classes.columns}>
         <EntryChoice entries={entries} onAdd={(kind, name) => setSteps(added(steps, kind, name))} />
         <StepList steps={steps} decided={proposed.proposal?.steps ?? []} parts={proposed.proposal?.parts ?? []} onChange={setSteps} />
-        <div className="proposal">
+        <Flex direction="column" gap="md">
           <OptionFields options={options} arms={proposed.proposal?.arms ?? []} arm={proposed.proposal?.arm} onChange={setOptions} />
           <Preview proposed={proposed} />
-        </div>
+        </Flex>
       </div>
       <MakeForm canMake={proposed.proposal !== undefined} refusal={refusal} onMake={make} />
-    </div>
+    </>
   )
 }
 
@@ -70,18 +71,17 @@ interface OptionFieldsProps {
 
 function OptionFields({ options, arms, arm, onChange }: OptionFieldsProps) {
   return (
-    <div className="proposal-options">
-      <label>
-        Arm
-        <select value={options.arm || arm || ''} onChange={(event) => onChange({ ...options, arm: event.currentTarget.value })}>
-          {!(options.arm || arm) && <option value="">by the names</option>}
-          {[...new Set([...arms, ...(options.arm ? [options.arm] : [])])].map((name) => (
-            <option key={name} value={name}>
-              {name}
-            </option>
-          ))}
-        </select>
-      </label>
+    <SimpleGrid cols={2} spacing="sm" verticalSpacing="xs">
+      <NativeSelect
+        size="xs"
+        label="Arm"
+        value={options.arm || arm || ''}
+        data={[
+          ...(options.arm || arm ? [] : [{ value: '', label: 'by the names' }]),
+          ...new Set([...arms, ...(options.arm ? [options.arm] : [])]),
+        ]}
+        onChange={(event) => onChange({ ...options, arm: event.currentTarget.value })}
+      />
       <NumberField
         label="Speed"
         unit="of limits"
@@ -106,7 +106,7 @@ function OptionFields({ options, arms, arm, onChange }: OptionFieldsProps) {
         most={1}
         onChange={(width) => onChange({ ...options, width_m: width ?? null })}
       />
-    </div>
+    </SimpleGrid>
   )
 }
 
@@ -114,29 +114,35 @@ function OptionFields({ options, arms, arm, onChange }: OptionFieldsProps) {
 function Preview({ proposed }: { proposed: Proposed }) {
   const { proposal, problem } = proposed
   return (
-    <section className="preview" aria-label="Resulting steps" aria-live="polite">
-      <h3>Resulting steps</h3>
+    <Box component="section" className={classes.scroll} flex={1} aria-label="Resulting steps" aria-live="polite">
+      <Title order={3} size="sm" mb="xs">
+        Resulting steps
+      </Title>
       {problem && (
-        <p className="is-failed" role="alert">
+        <Text size="sm" c="var(--failed)" role="alert">
           {problem}
-        </p>
+        </Text>
       )}
-      {!proposal && !problem && <p className="quiet">Shown here as soon as there is a step.</p>}
+      {!proposal && !problem && (
+        <Text size="sm" c="dimmed">
+          Shown here as soon as there is a step.
+        </Text>
+      )}
       {proposal && (
         <>
-          <ol className="preview-words">
+          <List type="ordered" size="sm" spacing={4} mb="sm">
             {proposal.words.map((words, index) => (
-              <li key={index}>{words}</li>
+              <List.Item key={index}>{words}</List.Item>
             ))}
-          </ol>
+          </List>
           {warnings(proposal).map((words) => (
-            <p key={words} className="preview-remark">
-              <IconAlertTriangle size={15} aria-hidden /> <span>{words}</span>
-            </p>
+            <Alert key={words} role="note" color="yellow" p="xs" mb="xs" icon={<IconAlertTriangle aria-hidden />}>
+              {words}
+            </Alert>
           ))}
         </>
       )}
-    </section>
+    </Box>
   )
 }
 
@@ -153,31 +159,40 @@ interface MakeFormProps {
 function MakeForm({ canMake, refusal, onMake }: MakeFormProps) {
   const [name, setName] = useState('')
   const [isTried, setTried] = useState(false)
+  const field = useId()
   const id = idOfFile('', name.trim().replace(/[^A-Za-z0-9_-]+/g, '_') || 'name', '.yaml')
   const obstacle = canMake ? fileProblem('', name) : 'There is nothing to be done yet'
   const problem = isTried ? (obstacle ?? refusal) : refusal
   return (
     <form
-      className="demonstration-make"
       onSubmit={(event) => {
         event.preventDefault()
         setTried(true)
         if (!obstacle) onMake(id)
       }}
     >
-      <label>
-        Name
-        <input value={name} placeholder="taught_transfer" onChange={(event) => setName(event.currentTarget.value)} />
-      </label>
-      <span className="quiet mono demonstration-id">{id}</span>
-      {problem && (
-        <span className="is-failed" role="alert">
-          {problem}
-        </span>
-      )}
-      <button type="submit" className="command is-strong">
-        Create and open
-      </button>
+      <Divider my="sm" />
+      <Group gap="sm">
+        <Text component="label" htmlFor={field} size="sm" fw={550}>
+          Name
+        </Text>
+        <TextInput
+          id={field}
+          w="15rem"
+          value={name}
+          placeholder="taught_transfer"
+          onChange={(event) => setName(event.currentTarget.value)}
+        />
+        <Code>{id}</Code>
+        {problem && (
+          <Text span size="sm" c="var(--failed)" role="alert">
+            {problem}
+          </Text>
+        )}
+        <Button type="submit" ml="auto">
+          Create and open
+        </Button>
+      </Group>
     </form>
   )
 }

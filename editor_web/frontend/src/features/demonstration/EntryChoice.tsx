@@ -1,8 +1,10 @@
 /** The taught entries and the two actions of the tool; each click adds one to the end of the steps. */
+import { Button, Flex, Group, NavLink, Text, TextInput, Title } from '@mantine/core'
 import { IconArrowsHorizontal, IconMapPin, IconRoute, IconSearch } from '@tabler/icons-react'
 import { useState } from 'react'
 import type { EntryName } from '../../api/types'
 import { KIND_WORDS, teachable, type Kind } from '../../document/demonstration'
+import classes from './Demonstration.module.css'
 
 export interface EntryChoiceProps {
   readonly entries: readonly EntryName[] | undefined
@@ -15,50 +17,59 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
   const words = text.toLowerCase().split(/\s+/).filter(Boolean)
   const fitting = all.filter((entry) => words.every((word) => `${entry.name} ${KIND_WORDS[entry.kind]}`.includes(word)))
   return (
-    <section className="taught" aria-label="Taught entries">
-      <h3>Add</h3>
-      <div className="taught-actions">
-        <button type="button" className="command" onClick={() => onAdd('action', 'close')}>
+    <Flex component="section" direction="column" gap="xs" aria-label="Taught entries">
+      <Title order={3} size="sm">
+        Add
+      </Title>
+      <Group gap="xs">
+        <Button variant="default" size="compact-sm" onClick={() => onAdd('action', 'close')}>
           Close gripper
-        </button>
-        <button type="button" className="command" onClick={() => onAdd('action', 'open')}>
+        </Button>
+        <Button variant="default" size="compact-sm" onClick={() => onAdd('action', 'open')}>
           Open gripper
-        </button>
-      </div>
-      <label className="taught-search">
-        <IconSearch size={14} aria-hidden />
-        <input
-          aria-label="Find a taught entry"
-          placeholder="Find a taught entry"
-          value={text}
-          onChange={(event) => setText(event.currentTarget.value)}
-        />
-      </label>
-      <ul className="plain-list taught-list">
+        </Button>
+      </Group>
+      <TextInput
+        size="xs"
+        leftSection={<IconSearch size={14} aria-hidden />}
+        aria-label="Find a taught entry"
+        placeholder="Find a taught entry"
+        value={text}
+        onChange={(event) => setText(event.currentTarget.value)}
+      />
+      <Flex component="ul" direction="column" m={0} p={0} className={classes.scroll}>
         {fitting.map((entry) => (
           <li key={`${entry.kind}:${entry.name}`}>
-            <button
+            <NavLink
+              component="button"
               type="button"
-              className="taught-entry"
+              noWrap
+              px="xs"
+              py={4}
               aria-label={`Add ${KIND_WORDS[entry.kind]} ${entry.name}`}
+              leftSection={<KindIcon kind={entry.kind} />}
+              label={entry.name}
+              rightSection={
+                <Text span size="xs" c="dimmed">
+                  {KIND_WORDS[entry.kind]}
+                </Text>
+              }
               onClick={() => onAdd(entry.kind, entry.name)}
-            >
-              <KindIcon kind={entry.kind} />
-              <span className="taught-name">{entry.name}</span>
-              <span className="quiet">{KIND_WORDS[entry.kind]}</span>
-            </button>
+            />
           </li>
         ))}
-      </ul>
+      </Flex>
       {entries && fitting.length === 0 && (
-        <p className="quiet">{all.length === 0 ? 'Nothing has been taught yet: save poses and motions first.' : 'No entry fits.'}</p>
+        <Text size="sm" c="dimmed">
+          {all.length === 0 ? 'Nothing has been taught yet: save poses and motions first.' : 'No entry fits.'}
+        </Text>
       )}
-    </section>
+    </Flex>
   )
 }
 
 export function KindIcon({ kind }: { kind: Kind }) {
   const Icon =
     kind === 'joints' || kind === 'pose' ? IconMapPin : kind === 'gripper' || kind === 'action' ? IconArrowsHorizontal : IconRoute
-  return <Icon size={15} aria-hidden className="taught-icon" />
+  return <Icon size={15} color="var(--accent)" aria-hidden />
 }

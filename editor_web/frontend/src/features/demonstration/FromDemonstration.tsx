@@ -1,4 +1,5 @@
 /** A button that opens the dialog in which taught entries become a behavior. */
+import { Button } from '@mantine/core'
 import { IconHandFinger } from '@tabler/icons-react'
 import { Suspense, useState } from 'react'
 import { Dialog } from '../../components/Dialog'
@@ -10,9 +11,15 @@ export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) 
   const [isOpen, setOpen] = useState(false)
   return (
     <>
-      <button type="button" className="command is-quiet" onClick={() => setOpen(true)}>
-        <IconHandFinger size={14} aria-hidden /> From demonstration
-      </button>
+      <Button
+        variant="subtle"
+        color="gray"
+        size="compact-sm"
+        leftSection={<IconHandFinger size={14} aria-hidden />}
+        onClick={() => setOpen(true)}
+      >
+        From demonstration
+      </Button>
       <Dialog isOpen={isOpen} title="Behavior from demonstration" onClose={() => setOpen(false)}>
         <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
           <Demonstration

@@ -1,4 +1,5 @@
 /** A number with its unit; nothing is a value of its own. */
+import { Text, TextInput } from '@mantine/core'
 import { useState } from 'react'
 
 export interface NumberFieldProps {
@@ -16,25 +17,28 @@ export function NumberField({ label, unit, value, least, most, onChange }: Numbe
   const number = Number(text)
   const isWrong = text.trim() !== '' && !(Number.isFinite(number) && number >= least && number <= most)
   return (
-    <label>
-      {label}
-      <span className="number-field">
-        <input
-          inputMode="decimal"
-          placeholder="any"
-          aria-invalid={isWrong || undefined}
-          title={isWrong ? `From ${least} to ${most}` : undefined}
-          value={text}
-          onChange={(event) => {
-            const written = event.currentTarget.value
-            setText(written)
-            const given = Number(written)
-            if (written.trim() === '') onChange(undefined)
-            else if (Number.isFinite(given) && given >= least && given <= most) onChange(given)
-          }}
-        />
-        <span className="quiet">{unit}</span>
-      </span>
-    </label>
+    <TextInput
+      size="xs"
+      label={
+        <>
+          {label}{' '}
+          <Text span inherit fw={400} c="dimmed">
+            {unit}
+          </Text>
+        </>
+      }
+      inputMode="decimal"
+      placeholder="any"
+      error={isWrong}
+      title={isWrong ? `From ${least} to ${most}` : undefined}
+      value={text}
+      onChange={(event) => {
+        const written = event.currentTarget.value
+        setText(written)
+        const given = Number(written)
+        if (written.trim() === '') onChange(undefined)
+        else if (Number.isFinite(given) && given >= least && given <= most) onChange(given)
+      }}
+    />
   )
 }

@@ -1,8 +1,10 @@
 /** The chosen steps in their order: what each is for, and what a grasp takes. */
+import { ActionIcon, Flex, Group, NativeSelect, Paper, Text, Title } from '@mantine/core'
 import { IconArrowDown, IconArrowUp, IconX } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
 import type { TaughtStep } from '../../api/types'
 import { KIND_WORDS, moved, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '../../document/demonstration'
+import classes from './Demonstration.module.css'
 import { KindIcon } from './EntryChoice'
 
 export interface StepListProps {
@@ -18,40 +20,57 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
     onChange(steps.map((step) => (step.key === key ? { ...step, ...change } : step)))
   }
   return (
-    <section className="chosen" aria-label="Steps">
-      <h3>Steps in their order</h3>
-      {steps.length === 0 && <p className="quiet">Add taught entries, in the order of execution.</p>}
-      <ol className="chosen-list">
+    <Flex component="section" direction="column" gap="xs" aria-label="Steps">
+      <Title order={3} size="sm">
+        Steps in their order
+      </Title>
+      {steps.length === 0 && (
+        <Text size="sm" c="dimmed">
+          Add taught entries, in the order of execution.
+        </Text>
+      )}
+      <Flex component="ol" direction="column" gap={6} m={0} p={0} className={classes.scroll}>
         {steps.map((step, index) => {
           const known = fitting(decided, steps) ? decided[index] : undefined
           const words = step.kind === 'action' ? `${ROLE_WORDS[step.name === 'close' ? 'close' : 'open']} gripper` : step.name
           return (
-            <li key={step.key} className="chosen-step" aria-label={`Step ${index + 1}: ${words}`}>
-              <KindIcon kind={step.kind} />
-              <span className="chosen-name">{words}</span>
-              {step.kind !== 'action' && <span className="quiet chosen-kind">{KIND_WORDS[step.kind]}</span>}
-              {rolesOf(step.kind).length > 1 && step.kind !== 'action' && (
-                <RoleChoice step={step} guessed={known?.role ?? undefined} onChange={(role) => changed(step.key, { role })} />
-              )}
-              <span className="chosen-tools">
-                <StepButton label="Earlier" isOff={index === 0} onPress={() => onChange(moved(steps, index, -1))}>
-                  <IconArrowUp size={14} aria-hidden />
-                </StepButton>
-                <StepButton label="Later" isOff={index === steps.length - 1} onPress={() => onChange(moved(steps, index, 1))}>
-                  <IconArrowDown size={14} aria-hidden />
-                </StepButton>
-                <StepButton label="Remove" onPress={() => onChange(steps.filter((each) => each.key !== step.key))}>
-                  <IconX size={14} aria-hidden />
-                </StepButton>
-              </span>
+            <Paper key={step.key} component="li" withBorder px="xs" py={4} aria-label={`Step ${index + 1}: ${words}`}>
+              <Group gap="xs" wrap="nowrap">
+                <Text span size="xs" c="dimmed" miw="1.2em" aria-hidden>
+                  {index + 1}
+                </Text>
+                <KindIcon kind={step.kind} />
+                <Text span size="sm" truncate flex={1}>
+                  {words}
+                </Text>
+                {step.kind !== 'action' && (
+                  <Text span size="xs" c="dimmed" visibleFrom="md">
+                    {KIND_WORDS[step.kind]}
+                  </Text>
+                )}
+                {rolesOf(step.kind).length > 1 && step.kind !== 'action' && (
+                  <RoleChoice step={step} guessed={known?.role ?? undefined} onChange={(role) => changed(step.key, { role })} />
+                )}
+                <ActionIcon.Group>
+                  <StepButton label="Earlier" isOff={index === 0} onPress={() => onChange(moved(steps, index, -1))}>
+                    <IconArrowUp size={14} aria-hidden />
+                  </StepButton>
+                  <StepButton label="Later" isOff={index === steps.length - 1} onPress={() => onChange(moved(steps, index, 1))}>
+                    <IconArrowDown size={14} aria-hidden />
+                  </StepButton>
+                  <StepButton label="Remove" onPress={() => onChange(steps.filter((each) => each.key !== step.key))}>
+                    <IconX size={14} aria-hidden />
+                  </StepButton>
+                </ActionIcon.Group>
+              </Group>
               {known && takes(known, decided[index - 1]) && (
                 <PartChoice part={step.part ?? known.part ?? ''} parts={parts} onChange={(part) => changed(step.key, { part })} />
               )}
-            </li>
+            </Paper>
           )
         })}
-      </ol>
-    </section>
+      </Flex>
+    </Flex>
   )
 }
 
@@ -68,20 +87,18 @@ interface RoleChoiceProps {
 
 function RoleChoice({ step, guessed, onChange }: RoleChoiceProps) {
   return (
-    <select
-      className={`chosen-select${step.role ? '' : ' is-guessed'}`}
+    <NativeSelect
+      size="xs"
+      classNames={{ input: step.role ? '' : classes.guessed }}
       aria-label={`What ${step.name} is for`}
       title={step.role ? undefined : 'Guessed from order, names and places'}
       value={step.role ?? guessed ?? ''}
+      data={[
+        ...((step.role ?? guessed) === undefined ? [{ value: '', label: '…' }] : []),
+        ...rolesOf(step.kind).map((role) => ({ value: role, label: ROLE_WORDS[role] })),
+      ]}
       onChange={(event) => onChange(event.currentTarget.value as Role)}
-    >
-      {(step.role ?? guessed) === undefined && <option value="">…</option>}
-      {rolesOf(step.kind).map((role) => (
-        <option key={role} value={role}>
-          {ROLE_WORDS[role]}
-        </option>
-      ))}
-    </select>
+    />
   )
 }
 
@@ -93,17 +110,18 @@ interface PartChoiceProps {
 
 function PartChoice({ part, parts, onChange }: PartChoiceProps) {
   return (
-    <label className="chosen-part">
-      takes
-      <select className="chosen-select" aria-label="Grasped part" value={part} onChange={(event) => onChange(event.currentTarget.value)}>
-        <option value="">a part without a name</option>
-        {[...new Set([...parts, ...(part ? [part] : [])])].map((name) => (
-          <option key={name} value={name}>
-            {name}
-          </option>
-        ))}
-      </select>
-    </label>
+    <Group gap="xs" pl="2.5rem">
+      <Text span size="xs" c="dimmed">
+        takes
+      </Text>
+      <NativeSelect
+        size="xs"
+        aria-label="Grasped part"
+        value={part}
+        data={[{ value: '', label: 'a part without a name' }, ...new Set([...parts, ...(part ? [part] : [])])]}
+        onChange={(event) => onChange(event.currentTarget.value)}
+      />
+    </Group>
   )
 }
 
@@ -116,8 +134,8 @@ interface StepButtonProps {
 
 function StepButton({ label, isOff = false, onPress, children }: StepButtonProps) {
   return (
-    <button type="button" className="icon-button" aria-label={label} title={label} disabled={isOff} onClick={onPress}>
+    <ActionIcon variant="subtle" color="gray" aria-label={label} title={label} disabled={isOff} onClick={onPress}>
       {children}
-    </button>
+    </ActionIcon>
   )
 }
