@@ -140,7 +140,9 @@ def seeing(site: TeachSite, name: str) -> Generator[ViserPage]:
 
 def name_of(page: Page) -> str:
     """What the page calls itself."""
-    found = re.fullmatch(r"http://[^/]+/cell/(\w+)/.*", page.locator("iframe.cell-frame").get_attribute("src") or "")
+    found = re.fullmatch(
+        r"http://[^/]+/cell/(\w+)/.*", page.locator("iframe[title='3D view of the cell']").get_attribute("src") or ""
+    )
     assert found is not None
     return found[1]
 
@@ -289,7 +291,7 @@ def test_the_preview_is_accessible(browser: Browser, site: TeachSite, scheme: Sc
     with editing(browser, site, "turn", scheme=scheme, size=size) as page:
         shown = open_preview(page, "aside")
         expect(shown.get_by_role("status").first).to_have_text("left is shown at aside")
-        require_accessible(page, f"the preview, {scheme}", part=".entry-preview")
+        require_accessible(page, f"the preview, {scheme}", part="[aria-label='Preview of aside']")
         if size == PHONE:
             box = shown.bounding_box()
             assert box is not None

@@ -1,4 +1,5 @@
 /** A named entry in words: where the arm would be, who changed it last, and its tags. */
+import { DataList } from '@mantine/core'
 import { traceLines } from '../../document/editing/preview'
 import { wallTime } from '../../document/time'
 import type { EntryTrace } from './useEntryTrace'
@@ -6,29 +7,31 @@ import type { EntryTrace } from './useEntryTrace'
 export function EntryFacts({ course: { row, trace } }: { readonly course: EntryTrace }) {
   const lines = trace ? traceLines(trace) : []
   return (
-    <dl className="preview-facts">
+    <DataList size="xs" gap={2} labelWidth="8rem">
       {lines.map((line) => (
-        <div key={line.label}>
-          <dt>{line.label}</dt>
-          <dd className="mono">{line.words}</dd>
-        </div>
+        <DataList.Item key={line.label}>
+          <DataList.ItemLabel>{line.label}</DataList.ItemLabel>
+          <DataList.ItemValue ff="monospace" style={{ whiteSpace: 'pre-wrap' }}>
+            {line.words}
+          </DataList.ItemValue>
+        </DataList.Item>
       ))}
       {row && (
-        <div>
-          <dt>Revision {row.revision}</dt>
-          <dd>
+        <DataList.Item>
+          <DataList.ItemLabel>Revision {row.revision}</DataList.ItemLabel>
+          <DataList.ItemValue>
             {[row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`, row.reason]
               .filter(Boolean)
               .join(', ')}
-          </dd>
-        </div>
+          </DataList.ItemValue>
+        </DataList.Item>
       )}
       {row && row.tags.length > 0 && (
-        <div>
-          <dt>Tags</dt>
-          <dd>{row.tags.join(', ')}</dd>
-        </div>
+        <DataList.Item>
+          <DataList.ItemLabel>Tags</DataList.ItemLabel>
+          <DataList.ItemValue>{row.tags.join(', ')}</DataList.ItemValue>
+        </DataList.Item>
       )}
-    </dl>
+    </DataList>
   )
 }

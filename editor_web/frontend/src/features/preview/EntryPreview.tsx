@@ -1,7 +1,6 @@
 /** A named entry as an arm would be there, in 3D and in numbers; it is seen by this page only, until it is closed. */
 import { lookup } from '../../document/dict'
-import './preview.css'
-import { CloseButton } from '@mantine/core'
+import { Box, CloseButton, Flex, NativeSelect, Text, Title, VisuallyHidden } from '@mantine/core'
 import { useEffect, useInsertionEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import type { Previewed } from '../../api/preview'
 import { connectTeach, previewTaught, endPreview, useTeach } from '../../api/teaching'
@@ -9,6 +8,7 @@ import type { ArmInfo } from '../../api/types'
 import { useModal } from '../../components/modal'
 import { PLACED } from '../../document/editing/preview'
 import { EntryFacts } from './EntryFacts'
+import classes from './EntryPreview.module.css'
 import { useEntryTrace } from './useEntryTrace'
 
 export interface EntryPreviewProps {
@@ -34,22 +34,24 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   const title = shown.name || 'No entry'
   const body = (
     <>
-      <header className="preview-head">
-        <h2>
-          {title} <span className="quiet">{lookup(PLACED, shown.kind)}</span>
-        </h2>
-        <span className="spacer" />
-        {arms && arms.length > 0 && <ArmChoice arms={arms} arm={arm} onChoose={choose} />}
+      <Flex component="header" flex="none" align="center" gap="xs" mih="2.5rem" pl="sm" pr="xs" py={4} className={classes.head}>
+        <Title order={2} size="sm" mr="auto" miw={0} className={classes.title}>
+          {title}{' '}
+          <Text span inherit ml={6} fw={450} c="dimmed">
+            {lookup(PLACED, shown.kind)}
+          </Text>
+        </Title>
+        {arms && arms.length > 0 && <ArmChoice arms={arms} arm={arm} isLarge={isSheet} onChoose={choose} />}
         {tools}
         <CloseButton size="sm" aria-label="Close the preview" onClick={close} />
-      </header>
-      <div className="preview-view">{view}</div>
-      <div className="preview-words">
-        <p role="status" className={message ? 'preview-problem' : 'visually-hidden'}>
-          {message || (course.trace && `${arm} is shown at ${shown.name}`)}
-        </p>
+      </Flex>
+      <div className={classes.view}>{view}</div>
+      <Box flex="none" px="sm" py="xs" className={classes.facts}>
+        <Text role="status" size="xs" mb={message ? 4 : 0} c="var(--failed)">
+          {message || <VisuallyHidden>{course.trace && `${arm} is shown at ${shown.name}`}</VisuallyHidden>}
+        </Text>
         <EntryFacts course={course} />
-      </div>
+      </Box>
     </>
   )
   if (isSheet)
@@ -66,7 +68,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   }
   return (
     // oxlint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- a key of what is in it
-    <section className="entry-preview" aria-label={`Preview of ${title}`} onKeyDown={onKeyDown}>
+    <section className={classes.preview} aria-label={`Preview of ${title}`} onKeyDown={onKeyDown}>
       {body}
     </section>
   )
@@ -114,24 +116,27 @@ function useReturn(by: string, onClose: () => void): () => void {
 interface ArmChoiceProps {
   readonly arms: readonly ArmInfo[]
   readonly arm: string
+  /** For fingers. */
+  readonly isLarge: boolean
   readonly onChoose: (arm: string) => void
 }
 
-function ArmChoice({ arms, arm, onChoose }: ArmChoiceProps) {
+function ArmChoice({ arms, arm, isLarge, onChoose }: ArmChoiceProps) {
   const isHere = arms.some((each) => each.name === arm)
-  if (arms.length === 1 && isHere) return <span className="quiet">{arm}</span>
+  if (arms.length === 1 && isHere)
+    return (
+      <Text span size="xs" c="dimmed">
+        {arm}
+      </Text>
+    )
   return (
-    <select
-      className="preview-arm"
+    <NativeSelect
+      size={isLarge ? 'sm' : 'xs'}
       aria-label="Arm that is shown"
       value={isHere ? arm : ''}
+      data={[...(isHere ? [] : [{ value: '', label: 'Choose an arm' }]), ...arms.map((each) => each.name)]}
       onChange={(event) => onChoose(event.currentTarget.value)}
-    >
-      {!isHere && <option value="">Choose an arm</option>}
-      {arms.map((each) => (
-        <option key={each.name}>{each.name}</option>
-      ))}
-    </select>
+    />
   )
 }
 
@@ -143,7 +148,7 @@ function Sheet({ label, onClose, children }: { readonly label: string; readonly 
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
-      className="entry-preview is-sheet"
+      className={`${classes.preview} ${classes.sheet}`}
       aria-label={label}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}
