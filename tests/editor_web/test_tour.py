@@ -27,10 +27,10 @@ def at_step(page: Page, title: str) -> None:
 
 def require_ring_around(page: Page, target: Locator) -> None:
     """The ring lies around the real thing, and the card not on it."""
-    expect(page.locator(".tour-ring")).to_be_visible()
+    expect(page.locator("[data-tour=ring]")).to_be_visible()
     page.wait_for_function(
         """(target) => {
-            const [ring, card] = ['.tour-ring', '.tour-card'].map((each) => document.querySelector(each))
+            const [ring, card] = ['ring', 'card'].map((each) => document.querySelector(`[data-tour=${each}]`))
             if (!ring || !card) return false
             const [r, c, t] = [ring, card, target].map((each) => each.getBoundingClientRect())
             const isAround = r.left <= t.left && r.top <= t.top && r.right >= t.right && r.bottom >= t.bottom

@@ -1,12 +1,12 @@
 /** The tour: a card beside the real thing to press, and a ring around it; who does the step is who takes the tour. */
-import { CloseButton } from '@mantine/core'
+import { CloseButton, Flex, Group, Paper, Text, Title } from '@mantine/core'
 import { useEffect, useLayoutEffect, useRef, useState } from 'react'
 import { createPortal } from 'react-dom'
 import { endTour, leaveTour, openTour, setTour, useTour } from '../../api/tour'
 import { CommandButton } from '../../components/CommandButton'
 import { placeBeside } from './place'
 import { END, STEPS } from './steps'
-import './styles/tour.css'
+import classes from './Tour.module.css'
 import { useTourStep, type Seen } from './useTourStep'
 
 export interface TourProps {
@@ -22,7 +22,7 @@ export function Tour(props: TourProps) {
   const at = useTour((s) => s.step)
   return createPortal(
     <>
-      {seen.box && at < STEPS.length && <div className="tour-ring" style={ringAround(seen.box)} aria-hidden />}
+      {seen.box && at < STEPS.length && <div className={classes.ring} data-tour="ring" style={ringAround(seen.box)} aria-hidden />}
       <Card {...props} seen={seen} at={at} />
     </>,
     seen.dialog ?? document.body,
@@ -50,22 +50,46 @@ function Card({ page, id, onEdit, onBehavior, seen, at }: TourProps & { readonly
   }, [isFresh])
 
   return (
-    <section ref={card} className="tour-card" style={place} aria-label="Tour" tabIndex={-1}>
-      <header>
-        <span className="tour-count">{step ? `Step ${at + 1} of ${STEPS.length}` : 'Done'}</span>
+    <Paper
+      ref={card}
+      component="section"
+      className={classes.card}
+      withBorder
+      shadow="xl"
+      radius="md"
+      px="sm"
+      pt="xs"
+      pb="sm"
+      data-tour="card"
+      style={place}
+      aria-label="Tour"
+      tabIndex={-1}
+    >
+      <Flex component="header" align="center" justify="space-between">
+        <Text span size="xs" fw={620} c="var(--accent)">
+          {step ? `Step ${at + 1} of ${STEPS.length}` : 'Done'}
+        </Text>
         <CloseButton
           size="sm"
           aria-label="Leave the tour"
           title="Leave the tour; it can be gone on with from the first page"
           onClick={leaveTour}
         />
-      </header>
+      </Flex>
       <div aria-live="polite" aria-atomic>
-        <h2>{title}</h2>
-        <p>{isElsewhere ? `This is done with ${made.replace(/^behaviors\//, '')}, which is not on the page now.` : words}</p>
-        {step && !isElsewhere && <p className="quiet">{step.keys}</p>}
+        <Title order={2} size="md" mb={6}>
+          {title}
+        </Title>
+        <Text size="sm" mb="xs">
+          {isElsewhere ? `This is done with ${made.replace(/^behaviors\//, '')}, which is not on the page now.` : words}
+        </Text>
+        {step && !isElsewhere && (
+          <Text size="sm" mb="xs" c="dimmed">
+            {step.keys}
+          </Text>
+        )}
       </div>
-      <div className="command-row">
+      <Group gap={6}>
         {isElsewhere && (
           <CommandButton label="Go there" tone="strong" onPress={() => (step.page === 'edit' ? onEdit(made) : onBehavior(made))} />
         )}
@@ -79,8 +103,8 @@ function Card({ page, id, onEdit, onBehavior, seen, at }: TourProps & { readonly
         )}
         {at > 0 && step && <CommandButton label="Restart" tone="quiet" onPress={beginAnew} />}
         {!step && <CommandButton label="Finish" tone="strong" onPress={endTour} />}
-      </div>
-    </section>
+      </Group>
+    </Paper>
   )
 }
 
