@@ -28,7 +28,7 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
 
 def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
     """Where the arrow along the tool ends on the screen; the blue of the handle is nowhere else in the view."""
-    box = page.locator("iframe.cell-frame").bounding_box()
+    box = page.locator("iframe[title='3D view of the cell']").bounding_box()
     assert box is not None
     area: Any = {key: box[key] for key in ("x", "y", "width", "height")}
     picture = np.asarray(Image.open(BytesIO(page.screenshot(clip=area, timeout=GUARD_MS))).convert("RGB"), dtype=int)
@@ -42,7 +42,7 @@ def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
 
 def require_focus_in(page: Page) -> None:
     """The menu takes the keyboard a moment after it opens; a key before that is for something else."""
-    expect(page.locator(".handle-menu :focus")).to_have_count(1)
+    expect(page.get_by_role("dialog").locator(":focus")).to_have_count(1)
 
 
 def fastest(state: JointState) -> float:
@@ -77,9 +77,9 @@ def test_the_arm_goes_while_the_mouse_is_down_on_its_handle_and_rests_when_it_is
         require_focus_in(page)
         switch(page.get_by_role("radio", name="left"))
         expect(button).to_have_text("Handle: left")
-        require_accessible(page, "the menu of the handle", part=".handle-menu")
+        require_accessible(page, "the menu of the handle", part="[role=dialog]")
         page.keyboard.press("Escape")
-        expect(page.locator(".handle-menu")).to_have_count(0)
+        expect(page.get_by_role("dialog")).to_have_count(0)
         pull_until_it_goes(page, site)
         page.mouse.up()
         site.call(site.seen(lambda state: fastest(state) < RESTS_RAD_S))

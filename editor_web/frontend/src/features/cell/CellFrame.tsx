@@ -1,5 +1,4 @@
 /** The 3D view of the cell: ours, but of an origin of its own, so that no picture of it holds up the page and its STOP. */
-import './styles/index.css'
 import { useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { useEffect, useRef } from 'react'
@@ -10,6 +9,7 @@ import { useSession } from '../../api/session'
 import { PAGE } from '../../api/layerGroups'
 import { stopByKey } from '../../components/stopKey'
 import { Empty } from '../../components/Empty'
+import classes from './Cell.module.css'
 import { PastMark } from './PastMark'
 
 export function CellFrame() {
@@ -29,12 +29,12 @@ export function CellFrame() {
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
-    <div className={isPast ? 'cell-view is-past' : 'cell-view'}>
+    <div className={classes.view} data-shows={isPast ? 'past' : 'present'}>
       {/* oxlint-disable-next-line react/iframe-missing-sandbox -- it has an origin of its own; see decision 0029 */}
       <iframe
         key={`${scheme}${generation}`}
         ref={frame}
-        className="cell-frame"
+        className={classes.frame}
         title="3D view of the cell"
         src={`${origin}/cell/${PAGE}/${query}`}
       />

@@ -1,5 +1,5 @@
 /** Moves an arm, or pushes at it, by a handle in the 3D view. */
-import { Popover, SegmentedControl } from '@mantine/core'
+import { Button, Popover, SegmentedControl, Stack, Text } from '@mantine/core'
 import { IconHandMove } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { showHandle, useHandleDrag, type HandleMode } from '../../api/handleDrag'
@@ -20,42 +20,46 @@ export function HandleMenu() {
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
       <Popover.Target>
-        <button
-          type="button"
-          className="command"
+        <Button
+          variant={arm ? 'light' : 'default'}
+          size="compact-sm"
           aria-pressed={arm !== ''}
           title="Move an arm by a handle in the 3D view"
+          leftSection={<IconHandMove size={15} aria-hidden />}
           onClick={() => setOpen(!isOpen)}
         >
-          <IconHandMove size={15} aria-hidden />
-          <span className="command-label">{arm ? `Handle: ${arm}` : 'Handle'}</span>
-        </button>
+          {arm ? `Handle: ${arm}` : 'Handle'}
+        </Button>
       </Popover.Target>
-      <Popover.Dropdown className="handle-menu">
-        <SegmentedControl
-          fullWidth
-          size="xs"
-          aria-label="Arm with the handle"
-          data={[{ value: '', label: 'None' }, ...arms.map((each) => ({ value: each, label: each }))]}
-          value={arm}
-          onChange={(next) => showHandle(next, mode)}
-        />
-        <SegmentedControl
-          fullWidth
-          size="xs"
-          aria-label="Function of the handle"
-          disabled={arm === ''}
-          data={[
-            { value: 'move', label: 'Move the tool' },
-            { value: 'push', label: 'Push the arm' },
-          ]}
-          value={mode}
-          onChange={(next) => showHandle(arm, next)}
-        />
-        <p className="quiet handle-words">{WORDS[mode]}</p>
-        <p role="status" className={refused ? 'handle-refused' : 'quiet handle-words'}>
-          {refused || (pulled ? `${arm} follows` : '')}
-        </p>
+      <Popover.Dropdown>
+        <Stack gap="xs">
+          <SegmentedControl
+            fullWidth
+            size="xs"
+            aria-label="Arm with the handle"
+            data={[{ value: '', label: 'None' }, ...arms.map((each) => ({ value: each, label: each }))]}
+            value={arm}
+            onChange={(next) => showHandle(next, mode)}
+          />
+          <SegmentedControl
+            fullWidth
+            size="xs"
+            aria-label="Function of the handle"
+            disabled={arm === ''}
+            data={[
+              { value: 'move', label: 'Move the tool' },
+              { value: 'push', label: 'Push the arm' },
+            ]}
+            value={mode}
+            onChange={(next) => showHandle(arm, next)}
+          />
+          <Text size="xs" c="dimmed">
+            {WORDS[mode]}
+          </Text>
+          <Text role="status" size="xs" c={refused ? 'var(--failed)' : 'dimmed'}>
+            {refused || (pulled ? `${arm} follows` : '')}
+          </Text>
+        </Stack>
       </Popover.Dropdown>
     </Popover>
   )

@@ -1,5 +1,5 @@
 /** Puts the parts of a simulated cell back for the next trial. */
-import { Button } from '@mantine/core'
+import { Button, Text } from '@mantine/core'
 import { IconRestore } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api } from '../../api/client'
@@ -8,9 +8,9 @@ export function ResetParts({ isBusy }: { isBusy: boolean }) {
   const { reset, outcome } = useReset()
   return (
     <>
-      <span role="status" className="quiet">
+      <Text span role="status" size="sm" c="dimmed">
         {outcome}
-      </span>
+      </Text>
       <Button
         size="compact-sm"
         variant="default"

@@ -1,5 +1,5 @@
 /** What the 3D view of this page shows. */
-import { Checkbox, Popover } from '@mantine/core'
+import { Button, Checkbox, Popover, Stack } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useState } from 'react'
 import { LAYER_GROUPS, setLayerShown, useShownLayers, type LayerGroup } from '../../api/layerGroups'
@@ -20,22 +20,29 @@ export function ShowMenu() {
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
       <Popover.Target>
-        <button type="button" className="command" title="Layers of the 3D view" onClick={() => setOpen(!isOpen)}>
-          <IconEye size={15} aria-hidden />
-          <span className="command-label">Show</span>
-        </button>
+        <Button
+          variant="default"
+          size="compact-sm"
+          title="Layers of the 3D view"
+          leftSection={<IconEye size={15} aria-hidden />}
+          onClick={() => setOpen(!isOpen)}
+        >
+          Show
+        </Button>
       </Popover.Target>
-      <Popover.Dropdown className="show-menu">
-        {LAYER_GROUPS.map((group) => (
-          <Checkbox
-            key={group}
-            size="sm"
-            label={WORDS[group][0]}
-            description={WORDS[group][1]}
-            checked={shown.includes(group)}
-            onChange={(event) => setLayerShown(group, event.currentTarget.checked)}
-          />
-        ))}
+      <Popover.Dropdown>
+        <Stack gap="xs">
+          {LAYER_GROUPS.map((group) => (
+            <Checkbox
+              key={group}
+              size="sm"
+              label={WORDS[group][0]}
+              description={WORDS[group][1]}
+              checked={shown.includes(group)}
+              onChange={(event) => setLayerShown(group, event.currentTarget.checked)}
+            />
+          ))}
+        </Stack>
       </Popover.Dropdown>
     </Popover>
   )
