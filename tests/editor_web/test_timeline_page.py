@@ -117,13 +117,13 @@ def test_scrubbing_shows_what_was_active_then(browser: Browser, sorted_shop: tup
         expect(node(page, "root/both/right")).to_have_attribute("data-status", "active")
         expect(node(page, "root/approach")).to_have_attribute("data-status", "done")
         expect(node(page, "root/look")).to_have_attribute("data-status", "idle")
-        expect(page.locator(".past-line")).to_contain_text("of the past")
+        expect(page.locator("[data-past-line]")).to_contain_text("of the past")
         page.get_by_role("tab", name="Log").click()
         expect(page.get_by_role("log")).not_to_contain_text("run errored")
         page.get_by_role("button", name="Back to live").click()
         expect(node(page, "root/look")).to_have_attribute("data-status", "failed")
         expect(page.get_by_role("log")).to_contain_text("run errored")
-        expect(page.locator(".past-line")).to_have_count(0)
+        expect(page.locator("[data-past-line]")).to_have_count(0)
 
 
 def test_the_data_is_that_of_the_moment(browser: Browser, sorted_shop: tuple[Workshop, str]) -> None:
@@ -153,7 +153,7 @@ def test_the_keyboard_reaches_every_moment(browser: Browser, sorted_shop: tuple[
         slider(page).press("PageDown")
         expect(node(page, "root/look")).to_have_attribute("data-status", "failed")
         slider(page).press("Escape")
-        expect(page.locator(".past-line")).to_have_count(0)
+        expect(page.locator("[data-past-line]")).to_have_count(0)
 
 
 def test_zooming_keeps_the_cursor_visible_and_rows_close(browser: Browser, sorted_shop: tuple[Workshop, str]) -> None:
@@ -203,7 +203,7 @@ def test_a_failure_is_traced_to_its_node_and_moment(browser: Browser, sorted_sho
         expect(told).to_contain_text("ZeroDivisionError")
         page.get_by_role("button", name="Show the moment").click()
         expect(page.get_by_role("navigation", name="Path of the selection")).to_contain_text("look")
-        expect(page.locator(".past-line")).to_be_visible()
+        expect(page.locator("[data-past-line]")).to_be_visible()
         told.get_by_role("button", name="root", exact=True).click()
         expect(page.get_by_role("navigation", name="Path of the selection")).not_to_contain_text("look")
 
@@ -294,7 +294,7 @@ def test_everything_is_accessible(
     shop, run = sorted_shop
     with at_timeline(browser, shop, f"/runs/{run}", size=size, scheme=scheme) as page:
         slider(page).press("Home")
-        expect(page.locator(".past-line")).to_be_visible()
+        expect(page.locator("[data-past-line]")).to_be_visible()
         require_accessible(page, "timeline")
         page.get_by_role("tab", name="Failure").click()
         expect(page.get_by_role("region", name="How the run failed")).to_be_visible()

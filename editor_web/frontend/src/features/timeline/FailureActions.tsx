@@ -1,5 +1,5 @@
 /** What can be done about a failure. */
-import { Button, CopyButton } from '@mantine/core'
+import { Button, CopyButton, Group, Text } from '@mantine/core'
 import { IconAdjustments, IconClipboardCopy, IconCube, IconPencil, IconRepeat, IconRestore } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, wordsOf } from '../../api/client'
@@ -8,7 +8,6 @@ import { originOf } from '../../api/origin'
 import type { RunFailure, RunView } from '../../api/types'
 import { placesOf } from '../../document/failure'
 import { isActive } from '../../document/runState'
-import classes from './Failure.module.css'
 
 export interface FailurePage {
   /** Id of the behavior that failed. */
@@ -52,7 +51,7 @@ export function FailureActions(props: FailureActionsProps) {
   }
 
   return (
-    <div className={classes.actions} role="group" aria-label="What can be done">
+    <Group gap="xs" my="xs" role="group" aria-label="What can be done">
       {hasView && (
         <Button {...LOOK} leftSection={<IconCube size={15} aria-hidden />} onClick={() => lookAt(placesOf(failure, Object.keys(robots)))}>
           Show place in 3D
@@ -97,10 +96,10 @@ export function FailureActions(props: FailureActionsProps) {
           </Button>
         )}
       </CopyButton>
-      <span role="status" className="quiet">
+      <Text span role="status" size="sm" c="dimmed">
         {message}
-      </span>
-    </div>
+      </Text>
+    </Group>
   )
 }
 

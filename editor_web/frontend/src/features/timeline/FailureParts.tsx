@@ -1,8 +1,9 @@
 /** The sections of a failure: its causes, the way down to it, what differs from the last good run, what happened there. */
-import { Table } from '@mantine/core'
+import { Anchor, List, Table, Text } from '@mantine/core'
 import type { CauseLink, LogLine, MeasuredValue, RunComparison, RunFailure } from '../../api/types'
 import { differenceLines, expectedWords, measuredWords, missWords } from '../../document/failure'
 import { wallTime } from '../../document/time'
+import type { ReactNode } from 'react'
 import classes from './Failure.module.css'
 
 /** A moment of the run, at a node of it. */
@@ -15,7 +16,7 @@ export interface At {
 export function Measured({ values }: { readonly values: readonly MeasuredValue[] }) {
   if (values.length === 0) return null
   return (
-    <Table className={classes.measured} verticalSpacing={3} aria-label="Expected against measured">
+    <Table w="auto" my="xs" verticalSpacing={3} tabularNums aria-label="Expected against measured">
       <Table.Thead>
         <Table.Tr>
           <Table.Th>Quantity</Table.Th>
@@ -32,7 +33,7 @@ export function Measured({ values }: { readonly values: readonly MeasuredValue[]
             <Table.Td>
               <strong>{measuredWords(value)}</strong>
             </Table.Td>
-            <Table.Td className={classes.miss}>{missWords(value)}</Table.Td>
+            <Table.Td c="var(--failed)">{missWords(value)}</Table.Td>
           </Table.Tr>
         ))}
       </Table.Tbody>
@@ -42,17 +43,19 @@ export function Measured({ values }: { readonly values: readonly MeasuredValue[]
 
 export function Causes({ links }: { readonly links: readonly CauseLink[] }) {
   return (
-    <ol>
+    <List {...LINES}>
       {links.map((link, index) => (
         // A message may occur twice in a chain.
         // eslint-disable-next-line react/no-array-index-key
-        <li key={index} className={index === 0 ? 'is-origin' : undefined}>
-          {index > 0 && <span className="quiet">so </span>}
+        <List.Item key={index} {...(index === 0 && ORIGIN)}>
+          {index > 0 && 'so '}
           {link.message}
-          <div className="quiet mono">{[link.kind, link.where].filter(Boolean).join(' · ')}</div>
-        </li>
+          <Text size="xs" c="dimmed" ff="monospace">
+            {[link.kind, link.where].filter(Boolean).join(' · ')}
+          </Text>
+        </List.Item>
       ))}
-    </ol>
+    </List>
   )
 }
 
@@ -63,54 +66,62 @@ interface StepsProps {
 
 export function Steps({ failure: { steps, path }, onShow }: StepsProps) {
   return (
-    <ol className="failure-steps">
+    <List {...LINES} className={classes.steps}>
       {steps.map((step, index) => (
-        <li
-          key={step.path}
-          className={step.path === path ? 'is-origin' : undefined}
-          style={{ marginInlineStart: Math.max(0, index - 1) * 14 }}
-        >
-          <button type="button" className="link-row" onClick={() => onShow(step)}>
+        <List.Item key={step.path} ml={Math.max(0, index - 1) * 14} pl={index > 0 ? 14 : 0} {...(step.path === path && ORIGIN)}>
+          <Anchor {...LINK} onClick={() => onShow(step)}>
             {step.path.split('/').pop()}
-          </button>{' '}
-          <span className="quiet">
+          </Anchor>{' '}
+          <Text span inherit c="dimmed">
             {step.text} at {step.time_s.toFixed(2)} s
-          </span>
-        </li>
+          </Text>
+        </List.Item>
       ))}
-    </ol>
+    </List>
   )
 }
 
 export function LastGood({ comparison }: { readonly comparison: RunComparison | null | undefined }) {
-  if (comparison === undefined) return <p className="quiet">Reading…</p>
-  if (comparison === null) return <p className="quiet">No earlier run of this behavior in the journal succeeded.</p>
+  if (comparison === undefined) return <Quiet>Reading…</Quiet>
+  if (comparison === null) return <Quiet>No earlier run of this behavior in the journal succeeded.</Quiet>
   const lines = differenceLines(comparison)
   return (
     <>
-      <p className="quiet">The last good run started {wallTime(comparison.left.started_at_s)}.</p>
-      <ol>
-        {comparison.divergence && <li className="is-origin">{comparison.divergence.text}</li>}
+      <Quiet>The last good run started {wallTime(comparison.left.started_at_s)}.</Quiet>
+      <List {...LINES}>
+        {comparison.divergence && <List.Item {...ORIGIN}>{comparison.divergence.text}</List.Item>}
         {lines.map((line) => (
-          <li key={line}>{line}</li>
+          <List.Item key={line}>{line}</List.Item>
         ))}
-        {!comparison.divergence && lines.length === 0 && <li>Nothing differs.</li>}
-      </ol>
+        {!comparison.divergence && lines.length === 0 && <List.Item>Nothing differs.</List.Item>}
+      </List>
     </>
   )
 }
 
 export function Around({ lines, onShow }: { readonly lines: readonly LogLine[]; readonly onShow: (at: At) => void }) {
   return (
-    <ol>
+    <List {...LINES}>
       {lines.map((line) => (
-        <li key={line.seq}>
-          <button type="button" className="link-row" onClick={() => onShow(line)}>
+        <List.Item key={line.seq}>
+          <Anchor {...LINK} onClick={() => onShow(line)}>
             {line.time_s.toFixed(2)} s
-          </button>{' '}
+          </Anchor>{' '}
           {line.text}
-        </li>
+        </List.Item>
       ))}
-    </ol>
+    </List>
   )
 }
+
+function Quiet({ children }: { readonly children: ReactNode }) {
+  return (
+    <Text size="sm" c="dimmed">
+      {children}
+    </Text>
+  )
+}
+
+const LINES = { type: 'ordered', listStyleType: 'none', size: 'sm', spacing: 4 } as const
+const ORIGIN = { c: 'var(--failed)', fw: 620 } as const
+const LINK = { component: 'button', type: 'button', inherit: true, c: 'inherit', underline: 'always' } as const

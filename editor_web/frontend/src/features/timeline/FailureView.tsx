@@ -1,5 +1,5 @@
 /** How a run failed: the innermost cause, what was measured, what can be done, and what differs from the last good run. */
-import './styles/timeline.css'
+import { Alert, Box, Button, Flex, SimpleGrid, Text, Title } from '@mantine/core'
 import { IconCircleCheck, IconCircleX, IconHistory } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
 import { seekEvent } from '../../api/timeline'
@@ -8,6 +8,7 @@ import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { reportOf } from '../../document/failure'
 import { isActive } from '../../document/runState'
+import classes from './Failure.module.css'
 import { FailureActions, type FailurePage } from './FailureActions'
 import { Around, Causes, LastGood, Measured, Steps, type At } from './FailureParts'
 import { useFailure, useLastGoodRun } from './useFailure'
@@ -45,14 +46,19 @@ export function FailureView({ run, page, onShow }: FailureViewProps) {
 function Tools({ failure, onShow }: { failure: RunFailure; onShow: (at: At) => void }) {
   return (
     <>
-      <span className="failure-place quiet">
+      <Text span size="sm" c="dimmed" truncate>
         {failure.path ? `It began in ${failure.path}` : 'It began in the run itself'} at {failure.time_s.toFixed(2)} s
-      </span>
-      <span className="spacer" />
-      <button type="button" className="command is-strong" onClick={() => onShow(failure)}>
-        <IconHistory size={15} aria-hidden />
-        <span className="command-label">Show the moment</span>
-      </button>
+      </Text>
+      <Button
+        variant="light"
+        size="compact-sm"
+        ml="auto"
+        flex="none"
+        leftSection={<IconHistory size={15} aria-hidden />}
+        onClick={() => onShow(failure)}
+      >
+        Show the moment
+      </Button>
     </>
   )
 }
@@ -75,20 +81,22 @@ function FailureText({ run, failure, page, onShow }: FailureTextProps) {
   const { links, steps, around, hint } = failure
   const report = reportOf(run, failure, comparison ?? undefined, location.href)
   return (
-    <div className="failure" tabIndex={0} role="region" aria-label="How the run failed">
-      <div className="failure-head">
-        <IconCircleX size={19} aria-hidden />
-        <h3>{failure.text}</h3>
-      </div>
+    <Box className={classes.failure} px="md" py="sm" tabIndex={0} role="region" aria-label="How the run failed">
+      <Flex gap="sm">
+        <IconCircleX size={19} color="var(--failed)" style={{ flex: 'none', marginTop: 2 }} aria-hidden />
+        <Title order={3} size="md">
+          {failure.text}
+        </Title>
+      </Flex>
       <Measured values={links.flatMap((link) => link.compared)} />
       {hint && (
-        <p className="failure-hint">
+        <Alert role="note" p="xs" my="xs">
           <strong>What to do: </strong>
           {hint}
-        </p>
+        </Alert>
       )}
       <FailureActions {...page} run={run} failure={failure} report={report} />
-      <div className="failure-parts">
+      <SimpleGrid minColWidth="min(100%, 17rem)" autoFlow="auto-fit" spacing="xl" verticalSpacing="xs">
         {links.length > 0 && (
           <Section title="Why">
             <Causes links={links} />
@@ -107,15 +115,17 @@ function FailureText({ run, failure, page, onShow }: FailureTextProps) {
             <Around lines={around} onShow={onShow} />
           </Section>
         )}
-      </div>
-    </div>
+      </SimpleGrid>
+    </Box>
   )
 }
 
 function Section({ title, children }: { readonly title: string; readonly children: ReactNode }) {
   return (
     <section>
-      <h4>{title}</h4>
+      <Title order={4} size="sm" my={4}>
+        {title}
+      </Title>
       {children}
     </section>
   )

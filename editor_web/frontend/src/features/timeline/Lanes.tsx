@@ -1,11 +1,12 @@
 /** The ruler with its marks, the names, the bars and the cursor; drawn on canvases, moved by pointer, wheel and keys. */
-import { useComputedColorScheme } from '@mantine/core'
+import { Box, Paper, useComputedColorScheme } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useEffect, useRef, useState, type KeyboardEvent } from 'react'
 import type { ActivationInterval, TimelineMarker } from '../../api/types'
 import { spanAt, timeAt, xOf, type ShownRow, type View } from '../../document/timeline'
 import { cleared, colorsOf, drawBars, drawHead, HEAD, ROW } from './draw'
 import { Names } from './Names'
+import classes from './Timeline.module.css'
 import { markWords, spanWords } from './words'
 import { useGestures } from './useGestures'
 
@@ -104,10 +105,10 @@ export function Lanes(props: LanesProps) {
 
   const cursorX = xOf(view, width, cursorS)
   return (
-    <div className={`tl${isPast ? ' is-past' : ''}`} ref={whole}>
-      <div className="tl-corner">{cursorS.toFixed(2)} s</div>
+    <Box fz="xs" className={`${classes.fill} ${classes.lanes}`} data-past={isPast || undefined} ref={whole}>
+      <div className={classes.corner}>{cursorS.toFixed(2)} s</div>
       <div
-        className="tl-head"
+        className={classes.head}
         role="slider"
         tabIndex={0}
         aria-label="Moment of the run"
@@ -121,8 +122,8 @@ export function Lanes(props: LanesProps) {
       >
         <canvas ref={head} aria-hidden />
       </div>
-      <div className="tl-rows" ref={scroller} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
-        <div className="tl-space" style={{ height: rows.length * ROW }}>
+      <div className={classes.rows} ref={scroller} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
+        <div className={classes.space} style={{ height: rows.length * ROW }}>
           <Names
             rows={rows}
             spans={spans}
@@ -135,22 +136,31 @@ export function Lanes(props: LanesProps) {
           />
         </div>
       </div>
-      <div className="tl-bars" ref={area} {...gestures.bars(scroller)}>
+      <div className={classes.bars} ref={area} {...gestures.bars(scroller)}>
         <canvas ref={bars} aria-hidden />
       </div>
-      <div className="tl-over" aria-hidden>
-        {cursorX >= 0 && cursorX <= width && <div className="tl-cursor" style={{ transform: `translateX(${cursorX}px)` }} />}
+      <div className={classes.over} aria-hidden>
+        {cursorX >= 0 && cursorX <= width && <div className={classes.cursor} style={{ transform: `translateX(${cursorX}px)` }} />}
         {tip && (
-          <div
-            className={`tl-tip${tip.x > width / 2 ? ' is-left' : ''}${tip.y < HEAD + 40 ? ' is-below' : ''}`}
-            style={{ left: tip.x, top: tip.y }}
+          <Paper
+            withBorder
+            shadow="md"
+            radius="sm"
+            px="xs"
+            py={4}
+            className={classes.tip}
+            style={{
+              left: tip.x,
+              top: tip.y,
+              transform: `translate(${tip.x > width / 2 ? 'calc(-100% - 12px)' : '12px'}, ${tip.y < HEAD + 40 ? '12px' : 'calc(-100% - 8px)'})`,
+            }}
           >
             {tip.lines.map((line, index) => (
               <div key={index}>{line}</div>
             ))}
-          </div>
+          </Paper>
         )}
       </div>
-    </div>
+    </Box>
   )
 }

@@ -1,4 +1,5 @@
 /** The names beside the bars: a tree of which only the rows in sight are in the page. */
+import { Text } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useRef, useState, type KeyboardEvent } from 'react'
 import type { ActivationInterval } from '../../api/types'
@@ -6,6 +7,7 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { spanAt, type ShownRow } from '../../document/timeline'
 import { ROW } from './draw'
+import classes from './Timeline.module.css'
 
 export interface NamesProps {
   readonly rows: readonly ShownRow[]
@@ -59,7 +61,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
   }
 
   return (
-    <ul className="tl-names" role="tree" aria-label="Nodes of the timeline" ref={tree}>
+    <ul className={classes.names} role="tree" aria-label="Nodes of the timeline" ref={tree}>
       {rows.slice(first, last).map((row, offset) => {
         const index = first + offset
         const status = statusAt(spans.get(row.path) ?? [], cursorS)
@@ -68,7 +70,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
           <li
             key={row.path}
             role="treeitem"
-            className={`tl-name${row.path === selected ? ' is-selected' : ''}`}
+            className={classes.name}
             style={{ top: index * ROW, height: ROW, paddingInlineStart: 4 + Math.min(row.depth, 8) * 11 }}
             data-index={index}
             title={row.path}
@@ -85,7 +87,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
             onKeyDown={(event) => onKeyDown(event, index, row)}
           >
             <span
-              className="tl-chevron"
+              className={classes.chevron}
               aria-hidden
               onClick={(event) => {
                 event.stopPropagation()
@@ -95,7 +97,9 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
               {row.hasChildren && <Chevron size={13} />}
             </span>
             <StatusIcon status={statusOf(status)} size={12} />
-            <span className="tl-name-text">{row.name}</span>
+            <Text span inherit truncate>
+              {row.name}
+            </Text>
           </li>
         )
       })}

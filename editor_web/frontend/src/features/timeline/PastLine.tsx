@@ -1,10 +1,11 @@
 /** Says that the past is shown, which moment of it, and leads back. */
-import './styles/timeline.css'
+import { Button, Group, Text, VisuallyHidden } from '@mantine/core'
 import { IconHistory } from '@tabler/icons-react'
 import { useEffect } from 'react'
 import { backToPresent, leave, servesCell, useTimeline } from '../../api/timeline'
 import { useLive } from '../../api/live'
 import type { RunView } from '../../api/types'
+import classes from './PastLine.module.css'
 import { useSubject } from './useSubject'
 
 export interface PastLineProps {
@@ -21,23 +22,21 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
   useEffect(() => (subject && !subject.isPast ? () => leave(subject) : undefined), [subject])
   if (!subject || timeS === undefined) return null
   return (
-    <div className="past-place">
-      <div className="past-line">
+    <div className={classes.place}>
+      <Group className={classes.line} data-past-line wrap="nowrap" gap="xs" py={4} pl="sm" pr={6}>
         <IconHistory size={17} aria-hidden />
-        <span>
+        <Text span size="sm">
           {/* Told once, not with every step of the cursor. */}
-          <span className="visually-hidden" role="status">
-            You see the past
-          </span>
+          <VisuallyHidden role="status">You see the past</VisuallyHidden>
           <span aria-hidden>
             You see <strong>{timeS.toFixed(2)} s</strong> of the past{isActive && '; the bar above commands the run as it is now'}
           </span>
           {problem && <span role="alert"> {problem}</span>}
-        </span>
-        <button type="button" className="command is-strong" onClick={() => backToPresent(subject)}>
-          <span className="command-label">{subject.isPast ? 'To the end' : 'Back to live'}</span>
-        </button>
-      </div>
+        </Text>
+        <Button variant="light" size="compact-sm" radius="xl" flex="none" onClick={() => backToPresent(subject)}>
+          {subject.isPast ? 'To the end' : 'Back to live'}
+        </Button>
+      </Group>
     </div>
   )
 }

@@ -1,5 +1,4 @@
 /** When each node of a run was active: rows of bars with marks above them, and a cursor that shows any moment of it. */
-import './styles/timeline.css'
 import { useElementSize } from '@mantine/hooks'
 import { IconTimeline } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
@@ -25,6 +24,7 @@ import {
 } from '../../document/timeline'
 import { flatten } from '../../document/tree'
 import { Lanes } from './Lanes'
+import classes from './Timeline.module.css'
 import { Tools } from './Tools'
 import { useDetail } from './useDetail'
 import { play, usePlayback } from './usePlayback'
@@ -72,7 +72,7 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   if (!subject || !course) {
     return (
       <Panel title="Timeline">
-        <div ref={place} className="tl-empty">
+        <div ref={place} className={classes.fill}>
           <Empty
             icon={<IconTimeline size={26} stroke={1.4} aria-hidden />}
             title={problem ? 'The timeline cannot be shown' : run ? 'Reading…' : 'No run yet'}
@@ -129,7 +129,7 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   return (
     <Panel
       title="Timeline"
-      className="timeline-panel"
+      className={classes.panel ?? ''}
       tools={
         <Tools
           subject={subject}
@@ -144,8 +144,8 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
         />
       }
     >
-      <div ref={place} className="timeline">
-        <div ref={sized} className="tl-fill">
+      <div ref={place} className={classes.fill}>
+        <div ref={sized} className={classes.fill}>
           <Lanes
             rows={rows}
             spans={spans}

@@ -1,5 +1,5 @@
 /** What can be done with a timeline: play, go from mark to mark, zoom, choose marks, go back to the present. */
-import { ActionIcon, Checkbox, NativeSelect, Popover, Tooltip } from '@mantine/core'
+import { ActionIcon, Button, Checkbox, Group, NativeSelect, Popover, Stack, Tooltip } from '@mantine/core'
 import {
   IconAlertTriangle,
   IconArrowsMaximize,
@@ -15,6 +15,7 @@ import {
 import { useState, type ReactNode } from 'react'
 import { backToPresent, SPEEDS, useTimeline, type Subject } from '../../api/timeline'
 import { MARK_KINDS, MARK_WORDS, type MarkKind } from '../../document/timeline'
+import classes from './Timeline.module.css'
 import { play } from './usePlayback'
 
 export interface ToolsProps {
@@ -34,7 +35,7 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
   const speed = useTimeline((s) => s.speed)
   const isPast = useTimeline((s) => s.timeS !== undefined)
   return (
-    <div className="tl-tools" role="toolbar" aria-label="Timeline">
+    <Group className={classes.tools} flex={1} gap={2} miw={0} wrap="nowrap" role="toolbar" aria-label="Timeline">
       <Tool label="Previous mark (Page up)" onPress={() => onJump(-1)}>
         <IconChevronLeftPipe size={16} />
       </Tool>
@@ -46,41 +47,51 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
       </Tool>
       <NativeSelect
         size="xs"
-        className="tl-speed"
+        w="4.7rem"
+        mx={4}
         aria-label="Speed of playing"
         value={String(speed)}
         data={SPEEDS.map((each) => ({ value: String(each), label: `${each}×` }))}
         onChange={(event) => useTimeline.setState({ speed: Number(event.currentTarget.value) })}
       />
-      {hasFailures && (
-        <button
-          type="button"
-          className="command tl-failure"
-          title="Go to the failure before this moment, from the present to the last one"
-          onClick={() => onJump(-1, true)}
-        >
-          <IconAlertTriangle size={14} aria-hidden />
-          <span className={width > 560 ? 'command-label' : 'visually-hidden'}>Last failure</span>
-        </button>
-      )}
-      <span className="spacer" />
-      {isPast && (
-        <button type="button" className="command is-strong" onClick={() => backToPresent(subject)}>
-          <IconPlayerTrackNextFilled size={14} aria-hidden />
-          <span className="command-label">{subject.isPast ? 'To the end' : 'Live'}</span>
-        </button>
-      )}
-      <MarkMenu kinds={kinds} onKinds={onKinds} />
-      <Tool label="Zoom in (+)" onPress={() => onZoom(0.5)}>
-        <IconPlus size={16} />
-      </Tool>
-      <Tool label="Zoom out (−)" onPress={() => onZoom(2)}>
-        <IconMinus size={16} />
-      </Tool>
-      <Tool label="Show the whole run (0)" onPress={onWhole}>
-        <IconArrowsMaximize size={16} />
-      </Tool>
-    </div>
+      {hasFailures && <LastFailure isWide={width > 560} onPress={() => onJump(-1, true)} />}
+      <Group gap={2} wrap="nowrap" ml="auto">
+        {isPast && (
+          <Button
+            variant="light"
+            size="compact-sm"
+            leftSection={<IconPlayerTrackNextFilled size={14} aria-hidden />}
+            onClick={() => backToPresent(subject)}
+          >
+            {subject.isPast ? 'To the end' : 'Live'}
+          </Button>
+        )}
+        <MarkMenu kinds={kinds} onKinds={onKinds} />
+        <Tool label="Zoom in (+)" onPress={() => onZoom(0.5)}>
+          <IconPlus size={16} />
+        </Tool>
+        <Tool label="Zoom out (−)" onPress={() => onZoom(2)}>
+          <IconMinus size={16} />
+        </Tool>
+        <Tool label="Show the whole run (0)" onPress={onWhole}>
+          <IconArrowsMaximize size={16} />
+        </Tool>
+      </Group>
+    </Group>
+  )
+}
+
+function LastFailure({ isWide, onPress }: { isWide: boolean; onPress: () => void }) {
+  const title = 'Go to the failure before this moment, from the present to the last one'
+  const icon = <IconAlertTriangle size={14} aria-hidden />
+  return isWide ? (
+    <Button variant="default" c="var(--failed)" size="compact-sm" title={title} leftSection={icon} onClick={onPress}>
+      Last failure
+    </Button>
+  ) : (
+    <ActionIcon variant="default" c="var(--failed)" size="md" aria-label="Last failure" title={title} onClick={onPress}>
+      {icon}
+    </ActionIcon>
   )
 }
 
@@ -106,16 +117,18 @@ function MarkMenu({ kinds, onKinds }: Pick<ToolsProps, 'kinds' | 'onKinds'>) {
           <IconFilter size={16} />
         </ActionIcon>
       </Popover.Target>
-      <Popover.Dropdown className="show-menu">
-        {MARK_KINDS.map((kind) => (
-          <Checkbox
-            key={kind}
-            size="sm"
-            label={MARK_WORDS[kind]}
-            checked={kinds.has(kind)}
-            onChange={(event) => toggle(kind, event.currentTarget.checked)}
-          />
-        ))}
+      <Popover.Dropdown>
+        <Stack gap="xs">
+          {MARK_KINDS.map((kind) => (
+            <Checkbox
+              key={kind}
+              size="sm"
+              label={MARK_WORDS[kind]}
+              checked={kinds.has(kind)}
+              onChange={(event) => toggle(kind, event.currentTarget.checked)}
+            />
+          ))}
+        </Stack>
       </Popover.Dropdown>
     </Popover>
   )
