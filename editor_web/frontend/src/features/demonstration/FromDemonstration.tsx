@@ -21,7 +21,7 @@ export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) 
         From demonstration
       </Button>
       <Dialog isOpen={isOpen} title="Behavior from demonstration" onClose={() => setOpen(false)}>
-        <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+        <Suspense fallback={<div role="status" aria-label="Loading" />}>
           <Demonstration
             onMade={(id) => {
               setOpen(false)

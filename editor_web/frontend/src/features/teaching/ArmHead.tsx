@@ -1,15 +1,16 @@
 /** Which arm is taught, what it does, and what is captured of it. */
 import { lookup } from '../../document/dict'
 import { IconFlag, IconHandGrab, IconPlayerRecordFilled, IconPlayerStopFilled, IconTopologyRing3 } from '@tabler/icons-react'
-import { SegmentedControl } from '@mantine/core'
+import { Box, Group, SegmentedControl, Text } from '@mantine/core'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { teach, useDisabledReason, useTeach } from '../../api/teaching'
 import type { ArmInfo, Trigger } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
-import { StatusIcon } from '../../components/StatusIcon'
+import { StatusBadge } from '../../components/StatusBadge'
 import type { Status } from '../../document/runState'
 import { FrameCapture } from './FrameCapture'
+import { Problem } from './Problem'
 import { toolWords } from './ToolRow'
 
 const LOOKS: Readonly<Record<string, Status>> = {
@@ -49,19 +50,21 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
   }
 
   return (
-    <div className="teach-head">
+    <Group gap="xs" px="md" py="xs" bg="var(--surface)" style={{ borderBottom: '1px solid var(--line)' }}>
       {arms.length > 1 ? (
         <SegmentedControl size="xs" aria-label="Arm" value={arm.name} onChange={onArm} data={arms.map((each) => each.name)} />
       ) : (
         <strong>{arm.name}</strong>
       )}
-      <span className={`badge is-${look}`} role="status" aria-label={`State of ${arm.name}`}>
-        <StatusIcon status={look} size={13} />
-        {now?.mode === 'guiding' ? 'floats' : (now?.mode ?? 'unknown')}
-      </span>
-      {tool && <span className="quiet teach-tool">{tool}</span>}
-      <span className="spacer" />
-      <div className="command-row" role="group" aria-label="Capture">
+      <Box component="span" role="status" aria-label={`State of ${arm.name}`}>
+        <StatusBadge look={look} words={now?.mode === 'guiding' ? 'floats' : (now?.mode ?? 'unknown')} />
+      </Box>
+      {tool && (
+        <Text span size="sm" c="dimmed">
+          {tool}
+        </Text>
+      )}
+      <Group gap={6} ml="auto" role="group" aria-label="Capture">
         <CommandButton
           label="Joints"
           hint="Capture where the joints are"
@@ -112,17 +115,13 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
             />
           </>
         )}
-      </div>
+      </Group>
       {hand?.said && (
-        <p className="teach-message" role="status" aria-label="Messages of the Helping Hand">
+        <Text size="sm" c="dimmed" flex="1 0 100%" role="status" aria-label="Messages of the Helping Hand">
           {hand.said}
-        </p>
+        </Text>
       )}
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
-    </div>
+      {problem && <Problem>{problem}</Problem>}
+    </Group>
   )
 }

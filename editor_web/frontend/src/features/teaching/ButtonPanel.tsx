@@ -1,10 +1,12 @@
 /** Keys and gamepad buttons of this computer as buttons of the Helping Hand. */
-import { Switch, TextInput } from '@mantine/core'
+import { Badge, Flex, Group, Kbd, Stack, Switch, Text, TextInput, UnstyledButton } from '@mantine/core'
 import { IconDeviceGamepad2, IconPlus, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useDisabledReason, useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 import { buttonFault, keepKeys, useButtonMap, type KeyButton } from './buttonMap'
+import { IconCommand } from './IconCommand'
+import { Problem } from './Problem'
 
 export function ButtonPanel() {
   const { isOn, keys, pressed } = useButtonMap()
@@ -15,7 +17,7 @@ export function ButtonPanel() {
   const pads = [...pressed].filter((each) => each.startsWith('gamepad/'))
 
   return (
-    <div className="buttons">
+    <Stack gap="xs">
       <Switch
         size="sm"
         label="Keys and gamepad of this computer are buttons"
@@ -24,7 +26,7 @@ export function ButtonPanel() {
         disabled={off !== undefined}
         onChange={(event) => useButtonMap.setState({ isOn: event.currentTarget.checked })}
       />
-      <ul className="plain-list key-list" aria-label="Keys">
+      <Flex component="ul" direction="column" gap={6} m={0} p={0} style={{ listStyle: 'none' }} aria-label="Keys">
         {keys.map((each, at) => (
           <KeyRow
             key={at}
@@ -35,30 +37,30 @@ export function ButtonPanel() {
             onRemove={() => keepKeys(keys.filter((_, index) => index !== at))}
           />
         ))}
-      </ul>
-      <CommandButton
-        label="Add a key"
-        icon={<IconPlus size={15} aria-hidden />}
-        onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])}
-      />
-      <p className="pad-row" role="status" aria-label="Gamepad">
+      </Flex>
+      <Group>
+        <CommandButton
+          label="Add a key"
+          icon={<IconPlus size={15} aria-hidden />}
+          onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])}
+        />
+      </Group>
+      <Group gap="xs" role="status" aria-label="Gamepad">
         <IconDeviceGamepad2 size={18} aria-hidden />
         {pads.length > 0 ? (
           pads.map((each) => (
-            <span key={each} className="tag is-on">
+            <Badge key={each} variant="light" tt="none">
               {each}
-            </span>
+            </Badge>
           ))
         ) : (
-          <span className="quiet">Press a button of a gamepad: it is published on buttons/gamepad/south, east, start…</span>
+          <Text span size="sm" c="dimmed">
+            Press a button of a gamepad: it is published on buttons/gamepad/south, east, start…
+          </Text>
         )}
-      </p>
-      {refusal && (
-        <p className="teach-problem" role="alert">
-          {refusal.message}. Add a trigger for it.
-        </p>
-      )}
-    </div>
+      </Group>
+      {refusal && <Problem>{refusal.message}. Add a trigger for it.</Problem>}
+    </Stack>
   )
 }
 
@@ -73,10 +75,9 @@ interface KeyRowProps {
 function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowProps) {
   const [isAsking, setAsking] = useState(false)
   return (
-    <li className={`key-row${isPressed ? ' is-pressed' : ''}`}>
-      <button
-        type="button"
-        className="key-cap"
+    <Flex component="li" wrap="wrap" align="center" gap="xs">
+      <UnstyledButton
+        w="9em"
         aria-label={`Key of ${keyButton.button}: ${keyButton.code || 'none'}`}
         title="Click, then press the key"
         onClick={() => setAsking(true)}
@@ -89,23 +90,22 @@ function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowPro
           if (event.key !== 'Escape') onChange({ ...keyButton, code: event.code })
         }}
       >
-        {isAsking ? 'press a key…' : keyButton.code || 'choose a key'}
-      </button>
+        <Kbd size="md" display="block" ta="center" {...(isPressed && { bg: 'var(--active-soft)', c: 'var(--active)' })}>
+          {isAsking ? 'press a key…' : keyButton.code || 'choose a key'}
+        </Kbd>
+      </UnstyledButton>
       <TextInput
         size="xs"
+        flex="1 1 7em"
         aria-label={`Button of ${keyButton.code}`}
         value={keyButton.button}
         error={buttonFault(keyButton.button) !== ''}
         onChange={(event) => onChange({ ...keyButton, button: event.currentTarget.value })}
       />
-      <span className="quiet key-heard">{isPressed ? 'pressed' : isHeard ? 'a trigger listens' : 'nobody listens'}</span>
-      <CommandButton
-        label={`Remove ${keyButton.button}`}
-        isCompact
-        tone="quiet"
-        icon={<IconTrash size={14} aria-hidden />}
-        onPress={onRemove}
-      />
-    </li>
+      <Text span size="xs" c="dimmed" w="8.5em">
+        {isPressed ? 'pressed' : isHeard ? 'a trigger listens' : 'nobody listens'}
+      </Text>
+      <IconCommand label={`Remove ${keyButton.button}`} icon={<IconTrash size={14} aria-hidden />} onPress={onRemove} />
+    </Flex>
   )
 }

@@ -1,6 +1,6 @@
 /** The buffer: what was captured and waits to be looked at, compared, saved or discarded. */
 import { lookup } from '../../document/dict'
-import { Checkbox } from '@mantine/core'
+import { Checkbox, Group, Stack, Text, UnstyledButton } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -11,9 +11,13 @@ import { Empty } from '../../components/Empty'
 import { degrees } from '../../document/teaching'
 import { duration, wallTime } from '../../document/time'
 import { asCompared, Comparison, fitWords, MOST_COMPARED, useFits } from './Comparison'
+import classes from './Choices.module.css'
 import { FORM_WORDS } from './forms'
+import { Facts } from './Facts'
+import { Part } from './Part'
 import { PlayBack } from './PlayBack'
 import { poseWords } from './poseWords'
+import { Problem } from './Problem'
 import { SaveForm } from './SaveForm'
 
 export function CaptureList({ arm }: { readonly arm: string }) {
@@ -31,10 +35,10 @@ export function CaptureList({ arm }: { readonly arm: string }) {
     )
   }
   return (
-    <div className="captures">
-      <ul className="plain-list capture-list" aria-label="Captures">
+    <Stack gap="xs">
+      <ul className={classes.list} aria-label="Captures">
         {captures.map((each) => (
-          <li key={each.id} className={`capture${each.id === one?.id ? ' is-current' : ''}`}>
+          <li key={each.id}>
             <Checkbox
               size="xs"
               aria-label={`Compare capture ${each.id}`}
@@ -45,23 +49,24 @@ export function CaptureList({ arm }: { readonly arm: string }) {
                 setCompared(event.currentTarget.checked ? [...compared, each.id] : compared.filter((id) => id !== each.id))
               }
             />
-            <button type="button" className="capture-name" aria-pressed={each.id === one?.id} onClick={() => setChosen(each.id)}>
-              <span>
+            <UnstyledButton flex={1} miw={0} py={6} pr="xs" aria-pressed={each.id === one?.id} onClick={() => setChosen(each.id)}>
+              <Text span size="sm" display="block">
                 {each.id} · {FORM_WORDS[each.form]}
-              </span>
-              <span className="quiet">{summaryWords(each)}</span>
-            </button>
+              </Text>
+              <Text span size="xs" display="block" c="dimmed" truncate>
+                {summaryWords(each)}
+              </Text>
+            </UnstyledButton>
           </li>
         ))}
       </ul>
       {beside.length > 0 && (
-        <section aria-label="Comparison" className="teach-part">
-          <h3>Side by side</h3>
+        <Part label="Comparison" title="Side by side">
           <Comparison things={beside.map((each) => asCompared(each, arm))} />
-        </section>
+        </Part>
       )}
       {one && <Details key={one.id} arm={arm} capture={one} />}
-    </div>
+    </Stack>
   )
 }
 
@@ -84,52 +89,32 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
   const pose = last?.poses.at(-1)
   const look = () => previewTaught(robot, { kind: '', name: '', capture: capture.id })
   const joints = last?.joints.at(-1)
+  const isMotion = capture.samples > 0
+  const remark = capture.remark || last?.remark || unfit
   return (
-    <section className="teach-part" aria-label={`Capture ${capture.id}`}>
-      <h3>
-        {FORM_WORDS[capture.form]} {capture.id}
-      </h3>
-      <dl className="facts">
-        <dt>Taken by</dt>
-        <dd>{capture.trigger}</dd>
-        {joints && (
-          <>
-            <dt>{capture.samples > 0 ? 'Ends at joints' : 'Joints'}</dt>
-            <dd className="mono">{joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  ')}</dd>
-          </>
-        )}
-        {place?.frame && (
-          <>
-            <dt>In {place.frame}</dt>
-            <dd className="mono">{poseWords([...place.xyz, ...(place.xyzw ?? [0, 0, 0, 1])])}</dd>
-          </>
-        )}
-        {pose && (
-          <>
-            <dt>{capture.samples > 0 ? 'Ends at pose' : 'Pose'}</dt>
-            <dd className="mono">{poseWords(pose)}</dd>
-          </>
-        )}
-        {capture.samples > 0 && (
-          <>
-            <dt>Motion</dt>
-            <dd>
-              {duration(capture.duration_s)}, {capture.samples} samples, {degrees(capture.length_rad).toFixed(0)}° of joints in all,{' '}
-              {degrees(capture.peak_rad_s).toFixed(0)}°/s at most
-            </dd>
-            <dt>Learned</dt>
-            <dd>{fitWords(fit)}</dd>
-          </>
-        )}
-        {(capture.remark || last?.remark || unfit) && (
-          <>
-            <dt>Remark</dt>
-            <dd>{capture.remark || last?.remark || unfit}</dd>
-          </>
-        )}
-      </dl>
-      {capture.samples > 0 && fit && <Comparison things={[asCompared(capture, arm)]} />}
-      <div className="command-row">
+    <Part label={`Capture ${capture.id}`} title={`${FORM_WORDS[capture.form]} ${capture.id}`}>
+      <Facts
+        facts={[
+          { name: 'Taken by', value: capture.trigger },
+          joints && {
+            name: isMotion ? 'Ends at joints' : 'Joints',
+            value: joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  '),
+            isCode: true,
+          },
+          place?.frame !== undefined &&
+            place.frame !== '' && {
+              name: `In ${place.frame}`,
+              value: poseWords([...place.xyz, ...(place.xyzw ?? [0, 0, 0, 1])]),
+              isCode: true,
+            },
+          pose && { name: isMotion ? 'Ends at pose' : 'Pose', value: poseWords(pose), isCode: true },
+          isMotion && { name: 'Motion', value: motionWords(capture) },
+          isMotion && { name: 'Learned', value: fitWords(fit) },
+          remark !== '' && { name: 'Remark', value: remark },
+        ]}
+      />
+      {isMotion && fit && <Comparison things={[asCompared(capture, arm)]} />}
+      <Group gap={6}>
         <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />
         <CommandButton
           label="Discard"
@@ -138,18 +123,19 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           obstacle={off}
           onPress={() => void teach.discard(capture.id).then(undefined, (error: unknown) => setProblem(wordsOf(error)))}
         />
-      </div>
-      {(problem || looked) && (
-        <p className="teach-problem" role="alert">
-          {problem || looked?.message}
-        </p>
-      )}
+      </Group>
+      {(problem || looked) && <Problem>{problem || looked?.message}</Problem>}
       {capture.form !== 'gripper' && (
         <PlayBack arm={robot} what={{ kind: '', name: '', capture: capture.id }} words={`capture ${capture.id}`} onLook={look} />
       )}
       <SaveForm key={capture.id} capture={capture} fit={fit} arm={robot} />
-    </section>
+    </Part>
   )
+}
+
+function motionWords(capture: CaptureSummary): string {
+  const length = `${degrees(capture.length_rad).toFixed(0)}° of joints in all`
+  return `${duration(capture.duration_s)}, ${capture.samples} samples, ${length}, ${degrees(capture.peak_rad_s).toFixed(0)}°/s at most`
 }
 
 /** Where a captured pose is in its own frame, where that is not the world. */

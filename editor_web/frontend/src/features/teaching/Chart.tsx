@@ -1,6 +1,8 @@
 /** Curves over time as one small drawing. */
+import { Box, Flex, Text } from '@mantine/core'
 import { useId } from 'react'
 import type { Curve } from '../../document/teaching'
+import classes from './Chart.module.css'
 
 const WIDTH = 560
 const HEIGHT = 190
@@ -9,6 +11,7 @@ const BOTTOM = 24
 const TOP = 10
 const RIGHT = 10
 const TICKS = 4
+const COLOURS = ['var(--active)', 'var(--failed)', 'var(--done)', 'var(--stopped)', 'var(--quiet)'] as const
 
 /** A curve and which of the page's colours it has; `isDashed` for what was learned. */
 export interface Drawn extends Curve {
@@ -26,11 +29,11 @@ export function Chart({ curves, unit, label }: { readonly curves: readonly Drawn
   const y = (value: number) => HEIGHT - BOTTOM - ((value - low) / (high - low)) * (HEIGHT - BOTTOM - TOP)
   const ticks = Array.from({ length: TICKS + 1 }, (_, at) => at / TICKS)
   return (
-    <figure className="chart">
-      <svg viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-labelledby={id}>
+    <Box component="figure" m={0}>
+      <svg className={classes.chart} viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-labelledby={id}>
         <title id={id}>{label}</title>
         {ticks.map((share) => (
-          <g key={share} className="chart-tick">
+          <g key={share}>
             <line x1={LEFT} x2={WIDTH - RIGHT} y1={y(low + share * (high - low))} y2={y(low + share * (high - low))} />
             <text x={LEFT - 6} y={y(low + share * (high - low)) + 4} textAnchor="end">
               {`${short(low + share * (high - low), high - low)}${share === 1 ? ` ${unit}` : ''}`}
@@ -43,21 +46,35 @@ export function Chart({ curves, unit, label }: { readonly curves: readonly Drawn
         {curves.map((curve) => (
           <path
             key={curve.name}
-            className={`chart-curve is-colour-${curve.colour}${curve.isDashed ? ' is-dashed' : ''}`}
+            color={COLOURS[curve.colour]}
+            data-dashed={curve.isDashed || undefined}
             d={curve.times_s
               .map((time, at) => `${at === 0 ? 'M' : 'L'}${x(time).toFixed(1)} ${y(curve.values[at] ?? 0).toFixed(1)}`)
               .join('')}
           />
         ))}
       </svg>
-      <figcaption>
+      <Flex component="figcaption" wrap="wrap" gap="xs">
         {curves.map((curve) => (
-          <span key={curve.name} className={`chart-key is-colour-${curve.colour}${curve.isDashed ? ' is-dashed' : ''}`}>
-            {curve.name}
-          </span>
+          <CurveKey key={curve.name} name={curve.name} colour={curve.colour} isDashed={curve.isDashed} />
         ))}
-      </figcaption>
-    </figure>
+      </Flex>
+    </Box>
+  )
+}
+
+interface CurveKeyProps {
+  readonly name: string
+  readonly colour: number
+  readonly isDashed?: boolean
+}
+
+/** A name in the colour of its curve. */
+export function CurveKey({ name, colour, isDashed = false }: CurveKeyProps) {
+  return (
+    <Text span size="xs" c={COLOURS[colour] ?? 'dimmed'} className={classes.key} data-dashed={isDashed || undefined}>
+      {name}
+    </Text>
   )
 }
 

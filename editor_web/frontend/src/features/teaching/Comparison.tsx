@@ -1,6 +1,6 @@
 /** Things taught side by side: over time, each beside the primitive learned from it, and together in the cell. */
 import { lookup, type Dict } from '../../document/dict'
-import { NativeSelect } from '@mantine/core'
+import { Flex, Group, NativeSelect, Stack, Table, Text } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -8,7 +8,8 @@ import { previewTaught, teach, type TaughtReference } from '../../api/teaching'
 import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { apart, changesOf, curveOf, degrees, endOf, errorsOf } from '../../document/teaching'
-import { Chart, type Drawn } from './Chart'
+import { Chart, CurveKey, type Drawn } from './Chart'
+import { Problem } from './Problem'
 
 /** As many as there are colours, here and in the cell. */
 export const MOST_COMPARED = 5
@@ -35,7 +36,7 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
   const curves = things.flatMap((each, at) => drawn(each, lookup(fits, each.key), channel, at))
   const learned = things.filter((each) => lookup(fits, each.key)?.demonstration && lookup(fits, each.key)?.primitive)
   return (
-    <div className="comparison">
+    <Stack gap="xs">
       {curves.length > 0 && (
         <>
           <NativeSelect
@@ -55,45 +56,41 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
           />
         </>
       )}
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
+      {problem && <Problem>{problem}</Problem>}
       {learned.length > 0 && (
-        <table className="fit-table" aria-label="Learned against shown">
-          <thead>
-            <tr>
-              <th scope="col">Learned against shown</th>
-              <th scope="col">What is drawn</th>
-              <th scope="col">Joints</th>
-              <th scope="col">Tool</th>
-            </tr>
-          </thead>
-          <tbody>
+        <Table fz="xs" verticalSpacing={4} horizontalSpacing="xs" aria-label="Learned against shown">
+          <Table.Thead>
+            <Table.Tr>
+              <Table.Th scope="col">Learned against shown</Table.Th>
+              <Table.Th scope="col">What is drawn</Table.Th>
+              <Table.Th scope="col">Joints</Table.Th>
+              <Table.Th scope="col">Tool</Table.Th>
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
             {learned.map((each) => (
-              <tr key={each.key}>
-                <th scope="row">{each.label}</th>
-                <td>{apartWords(lookup(fits, each.key), channel, unit)}</td>
-                <td>{jointErrorWords(lookup(fits, each.key))}</td>
-                <td>{toolErrorWords(lookup(fits, each.key))}</td>
-              </tr>
+              <Table.Tr key={each.key}>
+                <Table.Th scope="row">{each.label}</Table.Th>
+                <Table.Td>{apartWords(lookup(fits, each.key), channel, unit)}</Table.Td>
+                <Table.Td>{jointErrorWords(lookup(fits, each.key))}</Table.Td>
+                <Table.Td>{toolErrorWords(lookup(fits, each.key))}</Table.Td>
+              </Table.Tr>
             ))}
-          </tbody>
-        </table>
+          </Table.Tbody>
+        </Table>
       )}
       {things.length > 1 && <Differences things={things} fits={fits} />}
       {things.length > 1 && (
-        <div className="command-row">
+        <Group>
           <CommandButton
             label="Show all in the cell"
             hint="Each in the colour that it has here"
             icon={<IconEye size={15} aria-hidden />}
             onPress={() => things.forEach((each, at) => previewTaught(each.arm, each.what, at))}
           />
-        </div>
+        </Group>
       )}
-    </div>
+    </Stack>
   )
 }
 
@@ -103,20 +100,22 @@ function Differences({ things, fits }: { readonly things: readonly Compared[]; r
   const before = first && traceOf(lookup(fits, first.key))
   if (!first || !before) return null
   return (
-    <ul className="plain-list differences" aria-label={`Against ${first.label}`}>
+    <Flex component="ul" direction="column" gap={4} m={0} p={0} style={{ listStyle: 'none' }} aria-label={`Against ${first.label}`}>
       <li>
-        <span className="chart-key is-colour-0">{first.label}</span>
+        <CurveKey name={first.label} colour={0} />
       </li>
       {others.map((each, at) => {
         const after = traceOf(lookup(fits, each.key))
         return (
-          <li key={each.key}>
-            <span className={`chart-key is-colour-${at + 1}`}>{each.label}</span>
-            <span className="quiet">{after ? `against ${first.label}: ${differencesOf(before, after).join(', ')}` : ''}</span>
-          </li>
+          <Flex component="li" key={each.key} wrap="wrap" columnGap="xs">
+            <CurveKey name={each.label} colour={at + 1} />
+            <Text span size="sm" c="dimmed">
+              {after ? `against ${first.label}: ${differencesOf(before, after).join(', ')}` : ''}
+            </Text>
+          </Flex>
         )
       })}
-    </ul>
+    </Flex>
   )
 }
 

@@ -1,5 +1,5 @@
 /** One named entry: shown, played back, undone, tagged; and what it was. */
-import { TextInput } from '@mantine/core'
+import { Group, Text, TextInput } from '@mantine/core'
 import { IconArrowBackUp, IconEye, IconTag, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -9,7 +9,9 @@ import { CommandButton } from '../../components/CommandButton'
 import { tagFault, tagsOf } from '../../document/teaching'
 import { EntryHistory } from './EntryHistory'
 import { PLAYED } from './forms'
+import { Part } from './Part'
 import { PlayBack } from './PlayBack'
+import { Problem } from './Problem'
 
 export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryChanged }) {
   const off = useDisabledReason()
@@ -27,11 +29,18 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
   }
 
   return (
-    <section className="teach-part" aria-label={`Entry ${kind} ${name}`}>
-      <h3>
-        {name} <span className="quiet">{kind}</span>
-      </h3>
-      <div className="command-row">
+    <Part
+      label={`Entry ${kind} ${name}`}
+      title={
+        <>
+          {name}{' '}
+          <Text span inherit c="dimmed">
+            {kind}
+          </Text>
+        </>
+      }
+    >
+      <Group gap={6}>
         {PLAYED.has(kind) && <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />}
         <CommandButton
           label="Undo"
@@ -48,12 +57,8 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
           obstacle={off}
           onPress={() => attempt(() => teach.remove(kind, name))}
         />
-      </div>
-      {(problem || looked) && (
-        <p className="teach-problem" role="alert">
-          {problem || looked?.message}
-        </p>
-      )}
+      </Group>
+      {(problem || looked) && <Problem>{problem || looked?.message}</Problem>}
       {PLAYED.has(kind) && <PlayBack arm={arm} what={what} words={`${kind} ${name}`} onLook={look} />}
       <Tags
         key={entry.revision}
@@ -62,7 +67,7 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
         onKeep={(tags) => attempt(() => teach.tag({ kind, name, tags, revision: entry.revision }))}
       />
       <EntryHistory arm={arm} entry={entry} />
-    </section>
+    </Part>
   )
 }
 
@@ -80,24 +85,26 @@ function Tags({ entry, obstacle, onKeep }: TagsProps) {
   const off = obstacle ?? (fault || (isSame ? 'they are as they were' : undefined))
   return (
     <form
-      className="tag-form"
       aria-label={`Tags of ${entry.name}`}
       onSubmit={(event) => {
         event.preventDefault()
         if (off === undefined) onKeep(tagsOf(typed))
       }}
     >
-      <TextInput
-        size="xs"
-        label="Tags"
-        placeholder="station_1, tested"
-        value={typed}
-        error={fault}
-        onChange={(event) => setTyped(event.currentTarget.value)}
-        autoComplete="off"
-        spellCheck={false}
-      />
-      <CommandButton label="Save tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
+      <Group align="flex-end" wrap="nowrap" gap="xs">
+        <TextInput
+          flex={1}
+          size="xs"
+          label="Tags"
+          placeholder="station_1, tested"
+          value={typed}
+          error={fault}
+          onChange={(event) => setTyped(event.currentTarget.value)}
+          autoComplete="off"
+          spellCheck={false}
+        />
+        <CommandButton label="Save tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
+      </Group>
     </form>
   )
 }

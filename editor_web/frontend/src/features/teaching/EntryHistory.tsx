@@ -1,4 +1,5 @@
 /** The changes of an entry, each with what it was then. */
+import { Anchor, Flex, Paper, Stack, Text, Title } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -8,8 +9,10 @@ import { CommandButton } from '../../components/CommandButton'
 import { changesOf, degrees } from '../../document/teaching'
 import { wallTime } from '../../document/time'
 import { useFits } from './Comparison'
+import { Facts } from './Facts'
 import { PLAYED } from './forms'
 import { poseWords } from './poseWords'
+import { Problem } from './Problem'
 
 const MOST_SHOWN = 1200
 
@@ -18,33 +21,48 @@ export function EntryHistory({ arm, entry }: { readonly arm: string; readonly en
   const history = useHistory(entry)
   return (
     <>
-      <h4>History</h4>
-      <ol className="plain-list history" aria-label={`History of ${entry.name}`}>
+      <Title order={4} size="xs">
+        History
+      </Title>
+      <Flex
+        component="ol"
+        direction="column"
+        gap={4}
+        m={0}
+        p={0}
+        fz="sm"
+        style={{ listStyle: 'none' }}
+        aria-label={`History of ${entry.name}`}
+      >
         {history.toReversed().map((change) => {
           const words = `${change.deleted ? 'deleted' : change.revision === 1 ? 'made' : 'changed'}${change.by && ` by ${change.by}`}, ${wallTime(change.changed_unix_ms / 1000)}`
           return (
             <li key={change.revision}>
               {change.deleted ? (
-                <span className="history-change">
-                  <span className="mono">{change.revision}</span> {words}
-                </span>
+                <Revision number={change.revision} words={words} />
               ) : (
-                <button
+                <Anchor
+                  component="button"
                   type="button"
-                  className="history-change"
+                  inherit
                   aria-expanded={opened === change.revision}
                   title="Value at that time"
                   onClick={() => setOpened(opened === change.revision ? undefined : change.revision)}
                 >
-                  <span className="mono">{change.revision}</span> {words}
-                </button>
+                  <Revision number={change.revision} words={words} />
+                </Anchor>
               )}
-              {change.reason && <span className="quiet"> – {change.reason}</span>}
+              {change.reason && (
+                <Text span inherit c="dimmed">
+                  {' '}
+                  – {change.reason}
+                </Text>
+              )}
               {opened === change.revision && <Was arm={arm} entry={entry} revision={change.revision} />}
             </li>
           )
         })}
-      </ol>
+      </Flex>
     </>
   )
 }
@@ -74,52 +92,42 @@ function Was({ arm, entry, revision }: WasProps) {
   const pose = before?.poses.at(-1)
   const isMotion = (before?.poses.length ?? 0) > 1
   return (
-    <div className="was" role="group" aria-label={`Revision ${revision} of ${name}`}>
-      <dl className="facts">
-        {joints && (
-          <>
-            <dt>{isMotion ? 'Ends at joints' : 'Joints'}</dt>
-            <dd className="mono">{joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  ')}</dd>
-          </>
-        )}
-        {pose && (
-          <>
-            <dt>{isMotion ? 'Ends at pose' : 'Pose'}</dt>
-            <dd className="mono">{poseWords(pose)}</dd>
-          </>
-        )}
-        {!hasPlace && was && (
-          <>
-            <dt>Value</dt>
-            <dd className="mono">{valueWords(was)}</dd>
-          </>
-        )}
-        {was?.tags && was.tags.length > 0 && (
-          <>
-            <dt>Tags</dt>
-            <dd>{was.tags.join(', ')}</dd>
-          </>
-        )}
-        {before && after && revision !== entry.revision && (
-          <>
-            <dt>Brought back</dt>
-            <dd>{changesOf(after, before).join(', ')}</dd>
-          </>
-        )}
-      </dl>
-      {(problem || unfit) && (
-        <p className="teach-problem" role="alert">
-          {problem || unfit}
-        </p>
-      )}
-      {hasPlace && (
-        <CommandButton
-          label="Show this one in the cell"
-          icon={<IconEye size={15} aria-hidden />}
-          onPress={() => previewTaught(arm, then)}
+    <Paper withBorder p="xs" my={4} role="group" aria-label={`Revision ${revision} of ${name}`}>
+      <Stack gap="xs" align="flex-start">
+        <Facts
+          facts={[
+            joints && {
+              name: isMotion ? 'Ends at joints' : 'Joints',
+              value: joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  '),
+              isCode: true,
+            },
+            pose && { name: isMotion ? 'Ends at pose' : 'Pose', value: poseWords(pose), isCode: true },
+            !hasPlace && was && { name: 'Value', value: valueWords(was), isCode: true },
+            was?.tags && was.tags.length > 0 && { name: 'Tags', value: was.tags.join(', ') },
+            before && after && revision !== entry.revision && { name: 'Brought back', value: changesOf(after, before).join(', ') },
+          ]}
         />
-      )}
-    </div>
+        {(problem || unfit) && <Problem>{problem || unfit}</Problem>}
+        {hasPlace && (
+          <CommandButton
+            label="Show this one in the cell"
+            icon={<IconEye size={15} aria-hidden />}
+            onPress={() => previewTaught(arm, then)}
+          />
+        )}
+      </Stack>
+    </Paper>
+  )
+}
+
+function Revision({ number, words }: { readonly number: number; readonly words: string }) {
+  return (
+    <>
+      <Text span inherit ff="monospace">
+        {number}
+      </Text>{' '}
+      {words}
+    </>
   )
 }
 

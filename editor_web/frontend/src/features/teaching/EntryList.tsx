@@ -1,13 +1,16 @@
 /** The named entries of the cell: found, and laid beside each other. */
-import { Checkbox, NativeSelect, TextInput } from '@mantine/core'
+import { Badge, Checkbox, Flex, Group, NativeSelect, Stack, Text, TextInput, UnstyledButton } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { teach, useTeach } from '../../api/teaching'
 import type { EntryPage, EntryChanged } from '../../api/types'
 import { Empty } from '../../components/Empty'
+import classes from './Choices.module.css'
 import { Comparison, MOST_COMPARED, type Compared } from './Comparison'
 import { EntryDetails } from './EntryDetails'
 import { PLAYED } from './forms'
+import { Part } from './Part'
+import { Problem } from './Problem'
 
 const KINDS = ['joints', 'pose', 'dmp', 'cart_dmp', 'trajectory', 'gripper', 'cart_offsets', 'record']
 const TYPING_MS = 150
@@ -21,9 +24,10 @@ export function EntryList({ arm }: { readonly arm: string }) {
   const one = page?.entries.find((each) => keyOf(each) === chosen)
   const beside = page?.entries.filter((each) => compared.includes(keyOf(each))) ?? []
   return (
-    <div className="entries">
-      <div className="entry-search">
+    <Stack gap="xs">
+      <Group wrap="nowrap" gap="xs">
         <TextInput
+          flex={1}
           size="xs"
           label="Search"
           placeholder="name or tag"
@@ -32,26 +36,23 @@ export function EntryList({ arm }: { readonly arm: string }) {
           autoComplete="off"
         />
         <NativeSelect
+          w="9em"
           size="xs"
           label="Kind"
           value={kind}
           onChange={(event) => setKind(event.currentTarget.value)}
           data={[{ value: '', label: 'all' }, ...KINDS]}
         />
-      </div>
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
+      </Group>
+      {problem && <Problem>{problem}</Problem>}
       {page && page.entries.length === 0 ? (
         <Empty title={text || kind ? 'Nothing is found' : 'No entries yet'}>
           {text || kind ? 'Search for the beginning of a word of the name or of a tag.' : 'Capture something and save it under a name.'}
         </Empty>
       ) : (
-        <ul className="plain-list entry-list" aria-label="Entries">
+        <ul className={classes.list} aria-label="Entries">
           {page?.entries.map((each) => (
-            <li key={keyOf(each)} className={`entry-row${keyOf(each) === chosen ? ' is-current' : ''}`}>
+            <li key={keyOf(each)}>
               <Checkbox
                 size="xs"
                 aria-label={`Compare ${keyOf(each)}`}
@@ -62,35 +63,42 @@ export function EntryList({ arm }: { readonly arm: string }) {
                   setCompared(event.currentTarget.checked ? [...compared, keyOf(each)] : compared.filter((key) => key !== keyOf(each)))
                 }
               />
-              <button type="button" className="entry" aria-pressed={keyOf(each) === chosen} onClick={() => setChosen(keyOf(each))}>
-                <span className="entry-kind">{each.kind}</span>
-                <span className="entry-name">{each.name}</span>
-                <span className="entry-tags">
+              <UnstyledButton flex={1} miw={0} py={6} pr="xs" aria-pressed={keyOf(each) === chosen} onClick={() => setChosen(keyOf(each))}>
+                <Flex component="span" gap={4} align="center">
+                  <Text span size="sm" c="dimmed" w="6em">
+                    {each.kind}
+                  </Text>
+                  <Text span size="sm" fw={560} flex={1} truncate>
+                    {each.name}
+                  </Text>
                   {each.tags.map((tag) => (
-                    <span key={tag} className="tag">
+                    <Badge key={tag} component="span" variant="default" size="sm" tt="none" fw={500}>
                       {tag}
-                    </span>
+                    </Badge>
                   ))}
-                </span>
-              </button>
+                </Flex>
+              </UnstyledButton>
             </li>
           ))}
         </ul>
       )}
       {page && page.total > page.entries.length && (
-        <p className="quiet">
+        <Text size="sm" c="dimmed">
           The first {page.entries.length} of {page.total}; search to see others.
-        </p>
+        </Text>
       )}
       {beside.length > 0 && (
-        <section aria-label="Comparison" className="teach-part">
-          <h3>Side by side</h3>
-          {beside.length < 2 && <p className="quiet">Choose another one to compare it with.</p>}
+        <Part label="Comparison" title="Side by side">
+          {beside.length < 2 && (
+            <Text size="sm" c="dimmed">
+              Choose another one to compare it with.
+            </Text>
+          )}
           <Comparison things={beside.map((each) => asCompared(each, arm))} />
-        </section>
+        </Part>
       )}
       {one && <EntryDetails key={keyOf(one)} arm={arm} entry={one} />}
-    </div>
+    </Stack>
   )
 }
 

@@ -1,5 +1,5 @@
 /** Captures where one frame of the cell is, seen from another. */
-import { NativeSelect, Popover } from '@mantine/core'
+import { Button, NativeSelect, Popover, Stack } from '@mantine/core'
 import { IconAxisX } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useTeach } from '../../api/teaching'
@@ -22,41 +22,45 @@ export function FrameCapture({ obstacle, onCapture }: FrameCaptureProps) {
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={260} shadow="md" trapFocus returnFocus>
       <Popover.Target>
-        <button
-          type="button"
-          className="command"
+        <Button
+          variant="default"
+          size="xs"
+          px="xs"
+          leftSection={<IconAxisX size={15} aria-hidden />}
           aria-disabled={obstacle === undefined ? undefined : true}
+          data-disabled={obstacle !== undefined}
           title={obstacle === undefined ? 'Capture where a frame of the cell is' : `Not possible: ${obstacle}`}
           onClick={() => setOpen(!isOpen && obstacle === undefined)}
         >
-          <IconAxisX size={15} aria-hidden />
-          <span className="command-label">Frame</span>
-        </button>
+          Frame
+        </Button>
       </Popover.Target>
-      <Popover.Dropdown className="frame-capture">
-        <NativeSelect
-          size="xs"
-          label="Where is"
-          value={from}
-          onChange={(event) => setSource(event.currentTarget.value)}
-          data={[...frames]}
-        />
-        <NativeSelect
-          size="xs"
-          label="Seen from"
-          value={target}
-          onChange={(event) => setTarget(event.currentTarget.value)}
-          data={[WORLD, ...frames.filter((each) => each !== WORLD)]}
-        />
-        <CommandButton
-          label="Capture the frame"
-          tone="strong"
-          obstacle={obstacle ?? (from === target ? 'choose two frames' : undefined)}
-          onPress={() => {
-            setOpen(false)
-            onCapture(from, target)
-          }}
-        />
+      <Popover.Dropdown>
+        <Stack gap="xs">
+          <NativeSelect
+            size="xs"
+            label="Where is"
+            value={from}
+            onChange={(event) => setSource(event.currentTarget.value)}
+            data={[...frames]}
+          />
+          <NativeSelect
+            size="xs"
+            label="Seen from"
+            value={target}
+            onChange={(event) => setTarget(event.currentTarget.value)}
+            data={[WORLD, ...frames.filter((each) => each !== WORLD)]}
+          />
+          <CommandButton
+            label="Capture the frame"
+            tone="strong"
+            obstacle={obstacle ?? (from === target ? 'choose two frames' : undefined)}
+            onPress={() => {
+              setOpen(false)
+              onCapture(from, target)
+            }}
+          />
+        </Stack>
       </Popover.Dropdown>
     </Popover>
   )

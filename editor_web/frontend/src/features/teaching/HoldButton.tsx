@@ -1,5 +1,7 @@
 /** A button that counts only while it is held, by pointer or keyboard. */
+import { UnstyledButton } from '@mantine/core'
 import type { ReactNode } from 'react'
+import classes from './Jog.module.css'
 
 interface HoldButtonProps {
   readonly label: string
@@ -13,9 +15,9 @@ interface HoldButtonProps {
 export function HoldButton({ label, children, isHeld, obstacle, onHold, onLetGo }: HoldButtonProps) {
   const isOff = obstacle !== undefined
   return (
-    <button
-      type="button"
-      className={`hold-button${isHeld ? ' is-held' : ''}`}
+    <UnstyledButton
+      className={classes.hold}
+      data-held={isHeld || undefined}
       aria-label={label}
       aria-disabled={isOff || undefined}
       title={isOff ? `Not possible: ${obstacle}` : `${label}, as long as it is held`}
@@ -36,6 +38,6 @@ export function HoldButton({ label, children, isHeld, obstacle, onHold, onLetGo 
       onContextMenu={(event) => event.preventDefault()}
     >
       {children}
-    </button>
+    </UnstyledButton>
   )
 }

@@ -1,6 +1,6 @@
 /** Moving an arm by hand: held or step by step, by joints or at the tool, with mouse, touch or keyboard. */
 import { lookup } from '../../document/dict'
-import { SegmentedControl, Slider, Switch } from '@mantine/core'
+import { Button, Flex, Group, SegmentedControl, Slider, Stack, Switch, Text, UnstyledButton } from '@mantine/core'
 import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import { useDisabledReason, useTeach } from '../../api/teaching'
@@ -17,6 +17,7 @@ import {
   type Space,
 } from '../../document/teaching'
 import { HoldButton } from './HoldButton'
+import classes from './Jog.module.css'
 import { jogKey } from './jogKeys'
 import { ToolRow } from './ToolRow'
 import { useJog } from './useJog'
@@ -74,8 +75,8 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   }
 
   return (
-    <div className="jog">
-      <div className="jog-choices">
+    <Stack gap="xs">
+      <Group gap={6}>
         <SegmentedControl
           size="xs"
           aria-label="Jog target"
@@ -109,10 +110,11 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
             ]}
           />
         )}
-      </div>
-      <div className="jog-speed">
+      </Group>
+      <Group gap="sm" wrap="nowrap" fz="sm">
         <span id={`${hint}-speed`}>Speed</span>
         <Slider
+          flex={1}
           size="sm"
           min={1}
           max={100}
@@ -121,10 +123,12 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
           label={(value) => `${value} %`}
           thumbProps={{ 'aria-labelledby': `${hint}-speed` }}
         />
-        <output>{space === 'tool' ? `${((0.25 * share * 1000) / 100).toFixed(0)} mm/s` : `${degrees(share / 100).toFixed(0)}°/s`}</output>
-      </div>
+        <Text component="output" size="sm" w="5em" className={classes.value}>
+          {space === 'tool' ? `${((0.25 * share * 1000) / 100).toFixed(0)} mm/s` : `${degrees(share / 100).toFixed(0)}°/s`}
+        </Text>
+      </Group>
       {isStepping && (
-        <div className="jog-choices">
+        <Group gap={6}>
           {space === 'tool' && (
             <SegmentedControl
               size="xs"
@@ -141,22 +145,26 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
             onChange={setStepDeg}
             data={STEPS_DEG.map((value) => ({ value, label: `${value}°` }))}
           />
-        </div>
+        </Group>
       )}
-      <ul className={`plain-list jog-rows is-${space}`} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
+      <ul className={classes.rows} data-space={space} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
         {rows.map((row, axis) => (
-          <li key={row.name} className="jog-row">
+          <li key={row.name}>
             <JogKey row={row} axis={axis} direction={-1} jog={jog} press={press} obstacle={obstacle} />
-            <span className="jog-name">{row.name}</span>
-            <span className="jog-value">{row.value}</span>
+            <Text span size="sm" fw={620}>
+              {row.name}
+            </Text>
+            <Text span size="sm" className={classes.value}>
+              {row.value}
+            </Text>
             {space === 'joints' && <LimitBar share={row.share ?? 0.5} words={row.limits} />}
             <JogKey row={row} axis={axis} direction={1} jog={jog} press={press} obstacle={obstacle} />
           </li>
         ))}
       </ul>
-      <button
-        type="button"
-        className={`jog-keyboard${jog.held ? ' is-held' : ''}`}
+      <UnstyledButton
+        className={classes.keyboard}
+        data-held={jog.held ? true : undefined}
         aria-describedby={hint}
         onKeyDown={(event) => {
           const pressed = jogKey(space, event.key, event.shiftKey, rows.length)
@@ -167,14 +175,16 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         onKeyUp={jog.letGo}
         onBlur={jog.letGo}
       >
-        <IconKeyboard size={16} aria-hidden />
-        <span>Jog with the keyboard</span>
-        <span id={hint} className="quiet">
-          {space === 'tool'
-            ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.'
-            : 'Digits move that joint, with Shift in the other direction.'}
-        </span>
-      </button>
+        <Flex component="span" wrap="wrap" align="center" columnGap="xs" fz="sm">
+          <IconKeyboard size={16} aria-hidden />
+          <span>Jog with the keyboard</span>
+          <Text span inherit c="dimmed" id={hint}>
+            {space === 'tool'
+              ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.'
+              : 'Digits move that joint, with Shift in the other direction.'}
+          </Text>
+        </Flex>
+      </UnstyledButton>
       <Switch
         size="sm"
         label="Jog with a gamepad"
@@ -183,18 +193,18 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         disabled={off !== undefined}
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
-      <p className="teach-message" role="status" aria-label="State of jogging">
+      <Text size="sm" c="dimmed" mih="1.5em" role="status" aria-label="State of jogging">
         {refusal
           ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
           : heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : '')}
-      </p>
+      </Text>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (
-        <button type="button" className="command is-danger" onClick={steps.stop}>
+        <Button color="red" variant="outline" size="xs" onClick={steps.stop}>
           Stop (Escape)
-        </button>
+        </Button>
       )}
-    </div>
+    </Stack>
   )
 }
 
@@ -236,7 +246,8 @@ function LimitBar({ share, words }: { readonly share: number; readonly words: st
   const isNear = share < 0.05 || share > 0.95
   return (
     <span
-      className={`limit-bar${isNear ? ' is-near' : ''}`}
+      className={classes.limit}
+      data-near={isNear || undefined}
       role="img"
       aria-label={`${words}${isNear ? ', near a limit' : ''}`}
       title={words}

@@ -9,13 +9,16 @@ import {
   IconChevronsUp,
   IconFeather,
 } from '@tabler/icons-react'
-import { Slider } from '@mantine/core'
+import { Box, Group, Slider, Text } from '@mantine/core'
 import { useEffect, useId, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { teach, useDisabledReason, useTeach } from '../../api/teaching'
 import type { ArmInfo } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { HoldButton } from './HoldButton'
+import classes from './Jog.module.css'
+import { Part } from './Part'
+import { Problem } from './Problem'
 
 const PUSH_S = 0.3
 const REPEAT_MS = 200
@@ -43,8 +46,8 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
   }
 
   return (
-    <section className="lead" aria-label="Lead by hand">
-      <div className="command-row">
+    <Part label="Lead by hand">
+      <Group gap="xs">
         <CommandButton
           label={isFloating ? 'Hold itself' : 'Let it float'}
           hint={isFloating ? 'The arm holds its position' : 'The arm compensates gravity and can be guided by hand'}
@@ -53,15 +56,13 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
           obstacle={off}
           onPress={float}
         />
-        <span className="quiet">{isFloating ? 'It floats: lead it by hand.' : 'It holds itself.'}</span>
-      </div>
+        <Text span size="sm" c="dimmed">
+          {isFloating ? 'It floats: lead it by hand.' : 'It holds itself.'}
+        </Text>
+      </Group>
       {canPush && <PushPad arm={arm.name} obstacle={off ?? (isFloating ? undefined : 'let it float first')} onProblem={setProblem} />}
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
-    </section>
+      {problem && <Problem>{problem}</Problem>}
+    </Part>
   )
 }
 
@@ -104,8 +105,8 @@ function PushPad({
   useEffect(() => () => clearInterval(timer.current), [])
 
   return (
-    <div className="push">
-      <div className="push-pad" role="group" aria-label="Push at the tool">
+    <Group align="flex-start">
+      <div className={classes.pad} role="group" aria-label="Push at the tool">
         {PUSHES.map(({ name, force, Icon, area }) => (
           <span key={name} style={{ gridArea: area }}>
             <HoldButton label={`Push ${name}`} isHeld={held === name} obstacle={obstacle} onHold={() => hold(name, force)} onLetGo={letGo}>
@@ -114,11 +115,15 @@ function PushPad({
           </span>
         ))}
       </div>
-      <div className="push-force">
-        <span id={id}>Push with {force_n} N</span>
+      <Box flex="1 1 12em">
+        <Text span size="sm" id={id}>
+          Push with {force_n} N
+        </Text>
         <Slider size="sm" min={2} max={40} value={force_n} onChange={setForce} label={null} thumbProps={{ 'aria-labelledby': id }} />
-        <p className="quiet">Here you are the hand: the arrows push at the tool of the simulated arm, along the axes of the world.</p>
-      </div>
-    </div>
+        <Text size="sm" c="dimmed" mt="xs">
+          Here you are the hand: the arrows push at the tool of the simulated arm, along the axes of the world.
+        </Text>
+      </Box>
+    </Group>
   )
 }

@@ -1,5 +1,5 @@
 /** Plays back something taught, slowly: it is shown first, a person says yes, and Escape stops it. */
-import { NativeSelect } from '@mantine/core'
+import { Alert, Group, NativeSelect, Stack, Text } from '@mantine/core'
 import { IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
 import { useCallback, useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -52,7 +52,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
   }, [stop])
 
   return (
-    <div className="play-back">
+    <Stack gap="xs" align="flex-start">
       {stage === 'idle' && (
         <CommandButton
           label="Play back slowly"
@@ -66,12 +66,12 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
         />
       )}
       {stage === 'asks' && (
-        <div className="play-asks" role="group" aria-label="Play back">
-          <p>
+        <Alert color="yellow" p="xs" role="group" aria-label="Play back">
+          <Text size="sm" mb="xs">
             <strong>{arm} will move</strong> to the beginning of {words} and along it, whatever stands there. Look at the blue ghost first,
             and keep people out of reach.
-          </p>
-          <div className="command-row">
+          </Text>
+          <Group gap={6}>
             <NativeSelect
               size="xs"
               aria-label="Speed of the play-back"
@@ -81,15 +81,15 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
             />
             <CommandButton label="Move the arm" tone="strong" obstacle={off} onPress={move} />
             <CommandButton label="Cancel" tone="quiet" onPress={() => setStage('idle')} />
-          </div>
-        </div>
+          </Group>
+        </Alert>
       )}
       {stage === 'moves' && (
         <CommandButton label="Stop (Escape)" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} onPress={stop} />
       )}
-      <span className="quiet" role="status" aria-label="Play-back">
+      <Text span size="sm" c="dimmed" role="status" aria-label="Play-back">
         {message}
-      </span>
-    </div>
+      </Text>
+    </Stack>
   )
 }

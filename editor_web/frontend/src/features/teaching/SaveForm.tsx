@@ -1,5 +1,5 @@
 /** Saves a capture as a named entry; overwriting one says first what that changes. */
-import { NativeSelect, TextInput } from '@mantine/core'
+import { Alert, Group, List, NativeSelect, Paper, SimpleGrid, Stack, Text, TextInput } from '@mantine/core'
 import { IconDeviceFloppy } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -8,6 +8,7 @@ import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, endOf, nameFault, tagFault, tagsOf } from '../../document/teaching'
 import { FORM_WORDS, formsOf, type Form } from './forms'
+import { Problem } from './Problem'
 
 const TYPING_MS = 250
 
@@ -44,85 +45,85 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
   }
 
   return (
-    <form
-      className="save-form"
+    <Paper
+      component="form"
+      withBorder
+      p="sm"
       aria-label={`Save capture ${capture.id}`}
       onSubmit={(event) => {
         event.preventDefault()
         if (obstacle === undefined) save()
       }}
     >
-      <div className="save-fields">
-        <TextInput
-          size="xs"
-          label="Name"
-          placeholder="above_tray"
-          value={name}
-          onChange={(event) => setName(event.currentTarget.value)}
-          error={name !== '' && fault}
-          autoComplete="off"
-          spellCheck={false}
-        />
-        <NativeSelect
-          size="xs"
-          label="As"
-          value={form}
-          onChange={(event) => setForm(event.currentTarget.value as Form)}
-          data={formsOf(capture).map((value) => ({ value, label: FORM_WORDS[value] }))}
-        />
-        <TextInput
-          size="xs"
-          label="Tags"
-          placeholder="station_1, tested"
-          value={tags}
-          onChange={(event) => setTags(event.currentTarget.value)}
-          error={wrongTags}
-          autoComplete="off"
-          spellCheck={false}
-        />
-        <TextInput
-          size="xs"
-          label="Why"
-          placeholder="more room"
-          value={reason}
-          maxLength={1000}
-          onChange={(event) => setReason(event.currentTarget.value)}
-          autoComplete="off"
-        />
-      </div>
-      {present.exists && (
-        <div className="overwrites" role="status" aria-label="Effect of overwriting">
-          <strong>
-            {form} {name} is there already.
-          </strong>{' '}
-          Behaviors that use it move differently from their next run on; its history keeps the old value.
-          {changes.length > 0 && (
-            <ul>
-              {changes.map((each) => (
-                <li key={each}>{each}</li>
-              ))}
-            </ul>
-          )}
-        </div>
-      )}
-      <div className="command-row">
-        <CommandButton
-          label={present.exists ? 'Overwrite' : 'Save'}
-          tone={present.exists ? 'danger' : 'strong'}
-          icon={<IconDeviceFloppy size={15} aria-hidden />}
-          obstacle={obstacle}
-          onPress={save}
-        />
-        <span className="quiet" role="status" aria-label="Saving">
-          {message}
-        </span>
-      </div>
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
-    </form>
+      <Stack gap="xs">
+        <SimpleGrid minColWidth="13em" spacing="sm" verticalSpacing="xs">
+          <TextInput
+            size="xs"
+            label="Name"
+            placeholder="above_tray"
+            value={name}
+            onChange={(event) => setName(event.currentTarget.value)}
+            error={name !== '' && fault}
+            autoComplete="off"
+            spellCheck={false}
+          />
+          <NativeSelect
+            size="xs"
+            label="As"
+            value={form}
+            onChange={(event) => setForm(event.currentTarget.value as Form)}
+            data={formsOf(capture).map((value) => ({ value, label: FORM_WORDS[value] }))}
+          />
+          <TextInput
+            size="xs"
+            label="Tags"
+            placeholder="station_1, tested"
+            value={tags}
+            onChange={(event) => setTags(event.currentTarget.value)}
+            error={wrongTags}
+            autoComplete="off"
+            spellCheck={false}
+          />
+          <TextInput
+            size="xs"
+            label="Why"
+            placeholder="more room"
+            value={reason}
+            maxLength={1000}
+            onChange={(event) => setReason(event.currentTarget.value)}
+            autoComplete="off"
+          />
+        </SimpleGrid>
+        {present.exists && (
+          <Alert color="yellow" p="xs" role="status" aria-label="Effect of overwriting">
+            <strong>
+              {form} {name} is there already.
+            </strong>{' '}
+            Behaviors that use it move differently from their next run on; its history keeps the old value.
+            {changes.length > 0 && (
+              <List size="sm" mt={4}>
+                {changes.map((each) => (
+                  <List.Item key={each}>{each}</List.Item>
+                ))}
+              </List>
+            )}
+          </Alert>
+        )}
+        <Group gap="xs">
+          <CommandButton
+            label={present.exists ? 'Overwrite' : 'Save'}
+            tone={present.exists ? 'danger' : 'strong'}
+            icon={<IconDeviceFloppy size={15} aria-hidden />}
+            obstacle={obstacle}
+            onPress={save}
+          />
+          <Text span size="sm" c="dimmed" role="status" aria-label="Saving">
+            {message}
+          </Text>
+        </Group>
+        {problem && <Problem>{problem}</Problem>}
+      </Stack>
+    </Paper>
   )
 }
 

@@ -1,4 +1,5 @@
 /** The gripper or hand of an arm: what it measures, open and close. */
+import { Group, Text } from '@mantine/core'
 import { IconHandGrab, IconHandStop } from '@tabler/icons-react'
 import type { ArmInfo, ArmLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
@@ -23,10 +24,13 @@ export function ToolRow({
   if (!isGripper && !isHand) return null
   const off = obstacle ?? (steps.isBusy ? 'wait until the last command has ended' : undefined)
   return (
-    <div className="tool-row" role="group" aria-label="Tool">
-      <span className="tool-name">{isGripper ? 'Gripper' : 'Hand'}</span>
-      <span className="quiet">{toolWords(now)}</span>
-      <span className="spacer" />
+    <Group gap="xs" pt="xs" style={{ borderTop: '1px solid var(--line)' }} role="group" aria-label="Tool">
+      <Text span size="sm" fw={620}>
+        {isGripper ? 'Gripper' : 'Hand'}
+      </Text>
+      <Text span size="sm" c="dimmed" mr="auto">
+        {toolWords(now)}
+      </Text>
       <CommandButton
         label="Open"
         icon={<IconHandStop size={15} aria-hidden />}
@@ -41,7 +45,7 @@ export function ToolRow({
           isGripper ? steps.send(`${arm.name}/gripper/gripper_grasp`, GRASP) : steps.send(`${arm.name}/hand/hand_close`, { percent: 100 })
         }
       />
-    </div>
+    </Group>
   )
 }
 

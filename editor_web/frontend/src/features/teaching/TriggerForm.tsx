@@ -1,5 +1,5 @@
 /** Makes or changes one trigger, in the words of the Helping Hand. */
-import { NativeSelect, TextInput } from '@mantine/core'
+import { Group, NativeSelect, Paper, SimpleGrid, TextInput } from '@mantine/core'
 import { useState } from 'react'
 import { useTeach } from '../../api/teaching'
 import type { Trigger } from '../../api/types'
@@ -32,15 +32,17 @@ export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerF
   }
 
   return (
-    <form
-      className="trigger-form"
+    <Paper
+      component="form"
+      withBorder
+      p="sm"
       aria-label="Trigger"
       onSubmit={(event) => {
         event.preventDefault()
         if (!fault) onKeep({ ...made, trig_value: valueOf(value) })
       }}
     >
-      <div className="save-fields">
+      <SimpleGrid minColWidth="13em" spacing="sm" verticalSpacing="xs">
         <TextInput
           size="xs"
           label="Name"
@@ -110,8 +112,8 @@ export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerF
             />
           </>
         )}
-      </div>
-      <div className="command-row">
+      </SimpleGrid>
+      <Group gap="xs" mt="xs">
         <CommandButton
           label="Keep the trigger"
           tone="strong"
@@ -119,8 +121,8 @@ export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerF
           onPress={() => onKeep({ ...made, trig_value: valueOf(value) })}
         />
         <CommandButton label="Cancel" tone="quiet" onPress={onCancel} />
-      </div>
-    </form>
+      </Group>
+    </Paper>
   )
 }
 

@@ -1,5 +1,5 @@
 /** What the buttons do: the triggers of the Helping Hand as a table and as YAML, and which fires just now. */
-import { SegmentedControl, Textarea } from '@mantine/core'
+import { Group, SegmentedControl, Stack, Table, Text, Textarea, VisuallyHidden } from '@mantine/core'
 import { IconPencil, IconPlus, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { ServerError, wordsOf } from '../../api/client'
@@ -7,7 +7,10 @@ import { teach, useDisabledReason, useTeach } from '../../api/teaching'
 import type { Trigger, TriggerDocument, TriggerStatus } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
+import { IconCommand } from './IconCommand'
+import { Problem } from './Problem'
 import { CALLBACK_WORDS, TYPE_WORDS } from './triggerWords'
+import classes from './Triggers.module.css'
 import { TriggerForm } from './TriggerForm'
 
 const NEW: Trigger = {
@@ -28,8 +31,9 @@ export function TriggerTable({ arms }: { readonly arms: readonly string[] }) {
   const hand = useTeach((s) => s.hand)
   if (hand === null) return <Empty title="No Helping Hand">This server was started without one.</Empty>
   return (
-    <div className="triggers">
+    <Stack gap="xs">
       <SegmentedControl
+        style={{ alignSelf: 'flex-start' }}
         size="xs"
         aria-label="How the triggers are shown"
         value={isText ? 'yaml' : 'table'}
@@ -40,7 +44,7 @@ export function TriggerTable({ arms }: { readonly arms: readonly string[] }) {
         ]}
       />
       {isText ? <TriggerText /> : <Rows arms={arms} triggers={hand?.triggers ?? []} />}
-    </div>
+    </Stack>
   )
 }
 
@@ -67,60 +71,63 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
       {triggers.length === 0 ? (
         <Empty title="No button does anything yet">Add a trigger: its topic, and the action and arm that it triggers.</Empty>
       ) : (
-        <div className="trigger-scroll" tabIndex={0} role="region" aria-label="Triggers">
-          <table className="trigger-table">
-            <thead>
-              <tr>
-                <th scope="col">Trigger</th>
-                <th scope="col">Arm</th>
-                <th scope="col">Topic</th>
-                <th scope="col">Type</th>
-                <th scope="col">Value</th>
-                <th scope="col">Callback</th>
-                <th scope="col">
-                  <span className="visually-hidden">Edit</span>
-                </th>
-              </tr>
-            </thead>
-            <tbody>
+        <div className={classes.scroll} tabIndex={0} role="region" aria-label="Triggers">
+          <Table fz="xs" verticalSpacing={4} horizontalSpacing={6}>
+            <Table.Thead>
+              <Table.Tr>
+                <Table.Th scope="col">Trigger</Table.Th>
+                <Table.Th scope="col">Arm</Table.Th>
+                <Table.Th scope="col">Topic</Table.Th>
+                <Table.Th scope="col">Type</Table.Th>
+                <Table.Th scope="col">Value</Table.Th>
+                <Table.Th scope="col">Callback</Table.Th>
+                <Table.Th scope="col">
+                  <VisuallyHidden>Edit</VisuallyHidden>
+                </Table.Th>
+              </Table.Tr>
+            </Table.Thead>
+            <Table.Tbody>
               {triggers.map(({ trigger, pressed, fault }, at) => (
-                <tr key={trigger.trig_name} className={pressed ? 'is-pressed' : ''}>
-                  <th scope="row">
+                <Table.Tr key={trigger.trig_name} {...(pressed && { bg: 'var(--active-soft)' })}>
+                  <Table.Th scope="row">
                     <span
-                      className={`trigger-light${pressed ? ' is-on' : ''}`}
+                      className={classes.light}
+                      data-pressed={pressed || undefined}
                       role="img"
                       aria-label={pressed ? 'pressed' : 'not pressed'}
                     />
                     {trigger.trig_name}
-                    {fault && <span className="trigger-fault">{fault}</span>}
-                  </th>
-                  <td>{trigger.robot_ns || 'the only one'}</td>
-                  <td className="mono">{trigger.trig_topic}</td>
-                  <td>{TYPE_WORDS[trigger.trig_type]}</td>
-                  <td className="mono">{JSON.stringify(trigger.trig_value)}</td>
-                  <td>{CALLBACK_WORDS[trigger.trig_callback]}</td>
-                  <td className="trigger-commands">
-                    <CommandButton
-                      label={`Edit ${trigger.trig_name}`}
-                      isCompact
-                      icon={<IconPencil size={14} aria-hidden />}
-                      tone="quiet"
-                      obstacle={off}
-                      onPress={() => setEdited({ at, trigger })}
-                    />
-                    <CommandButton
-                      label={`Remove ${trigger.trig_name}`}
-                      isCompact
-                      icon={<IconTrash size={14} aria-hidden />}
-                      tone="quiet"
-                      obstacle={off}
-                      onPress={() => void keep(all.filter((_, index) => index !== at))}
-                    />
-                  </td>
-                </tr>
+                    {fault && (
+                      <Text size="xs" c="var(--failed)">
+                        {fault}
+                      </Text>
+                    )}
+                  </Table.Th>
+                  <Table.Td>{trigger.robot_ns || 'the only one'}</Table.Td>
+                  <Table.Td ff="monospace">{trigger.trig_topic}</Table.Td>
+                  <Table.Td>{TYPE_WORDS[trigger.trig_type]}</Table.Td>
+                  <Table.Td ff="monospace">{JSON.stringify(trigger.trig_value)}</Table.Td>
+                  <Table.Td>{CALLBACK_WORDS[trigger.trig_callback]}</Table.Td>
+                  <Table.Td>
+                    <Group gap={4} wrap="nowrap">
+                      <IconCommand
+                        label={`Edit ${trigger.trig_name}`}
+                        icon={<IconPencil size={14} aria-hidden />}
+                        obstacle={off}
+                        onPress={() => setEdited({ at, trigger })}
+                      />
+                      <IconCommand
+                        label={`Remove ${trigger.trig_name}`}
+                        icon={<IconTrash size={14} aria-hidden />}
+                        obstacle={off}
+                        onPress={() => void keep(all.filter((_, index) => index !== at))}
+                      />
+                    </Group>
+                  </Table.Td>
+                </Table.Tr>
               ))}
-            </tbody>
-          </table>
+            </Table.Tbody>
+          </Table>
         </div>
       )}
       {edited ? (
@@ -135,18 +142,16 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
           }
         />
       ) : (
-        <CommandButton
-          label="Add a trigger"
-          icon={<IconPlus size={15} aria-hidden />}
-          obstacle={off}
-          onPress={() => setEdited({ at: all.length, trigger: { ...NEW, robot_ns: arms[0] ?? '' } })}
-        />
+        <Group>
+          <CommandButton
+            label="Add a trigger"
+            icon={<IconPlus size={15} aria-hidden />}
+            obstacle={off}
+            onPress={() => setEdited({ at: all.length, trigger: { ...NEW, robot_ns: arms[0] ?? '' } })}
+          />
+        </Group>
       )}
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
+      {problem && <Problem>{problem}</Problem>}
     </>
   )
 }
@@ -183,7 +188,7 @@ function TriggerText() {
   }
 
   return (
-    <div className="trigger-text">
+    <Stack gap="xs">
       <Textarea
         label={kept?.file ? `Triggers in ${kept.file}` : 'Triggers'}
         value={text}
@@ -192,25 +197,21 @@ function TriggerText() {
         minRows={10}
         maxRows={24}
         spellCheck={false}
-        classNames={{ input: 'mono' }}
+        styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
       />
-      <div className="command-row">
+      <Group gap="xs">
         <CommandButton
           label="Save the YAML"
           tone="strong"
           obstacle={off ?? (text === kept?.text ? 'nothing is changed' : undefined)}
           onPress={save}
         />
-        <span className="quiet" role="status" aria-label="Saving the triggers">
+        <Text span size="sm" c="dimmed" role="status" aria-label="Saving the triggers">
           {message}
-        </span>
-      </div>
-      {problem && (
-        <p className="teach-problem" role="alert">
-          {problem}
-        </p>
-      )}
-    </div>
+        </Text>
+      </Group>
+      {problem && <Problem>{problem}</Problem>}
+    </Stack>
   )
 }
 
