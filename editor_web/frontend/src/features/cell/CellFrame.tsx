@@ -1,5 +1,5 @@
 /** The 3D view of the cell: ours, but of an origin of its own, so that no picture of it holds up the page and its STOP. */
-import { useComputedColorScheme } from '@mantine/core'
+import { Box, useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { useEffect, useRef } from 'react'
 import { sendDragKeepAlive } from '../../api/handleDrag'
@@ -29,17 +29,22 @@ export function CellFrame() {
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
-    <div className={classes.view} data-shows={isPast ? 'past' : 'present'}>
-      {/* oxlint-disable-next-line react/iframe-missing-sandbox -- it has an origin of its own; see decision 0029 */}
-      <iframe
+    <Box pos="relative" w="100%" h="100%" className={classes.view} data-shows={isPast ? 'past' : 'present'}>
+      {/* It has an origin of its own in the place of a sandbox; see decision 0029. */}
+      <Box
+        component="iframe"
+        display="block"
+        w="100%"
+        h="100%"
+        bd={0}
+        bg="var(--canvas)"
         key={`${scheme}${generation}`}
         ref={frame}
-        className={classes.frame}
         title="3D view of the cell"
         src={`${origin}/cell/${PAGE}/${query}`}
       />
       <PastMark />
-    </div>
+    </Box>
   )
 }
 

@@ -136,7 +136,15 @@ function Preview({ proposed }: { proposed: Proposed }) {
             ))}
           </List>
           {warnings(proposal).map((words) => (
-            <Alert key={words} role="note" color="yellow" p="xs" mb="xs" icon={<IconAlertTriangle aria-hidden />}>
+            <Alert
+              key={words}
+              role="note"
+              color="yellow"
+              bg="var(--stopped-soft)"
+              p="xs"
+              mb="xs"
+              icon={<IconAlertTriangle color="var(--stopped)" aria-hidden />}
+            >
               {words}
             </Alert>
           ))}

@@ -14,7 +14,8 @@ export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) 
       <Button
         variant="subtle"
         color="gray"
-        size="compact-sm"
+        size="xs"
+        px="xs"
         leftSection={<IconHandFinger size={14} aria-hidden />}
         onClick={() => setOpen(true)}
       >

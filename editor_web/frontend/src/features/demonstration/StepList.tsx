@@ -34,7 +34,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
           const known = fitting(decided, steps) ? decided[index] : undefined
           const words = step.kind === 'action' ? `${ROLE_WORDS[step.name === 'close' ? 'close' : 'open']} gripper` : step.name
           return (
-            <Paper key={step.key} component="li" withBorder px="xs" py={4} aria-label={`Step ${index + 1}: ${words}`}>
+            <Paper key={step.key} component="li" withBorder bg="var(--raised)" px="xs" py={4} aria-label={`Step ${index + 1}: ${words}`}>
               <Group gap="xs" wrap="nowrap">
                 <Text span size="xs" c="dimmed" miw="1.2em" aria-hidden>
                   {index + 1}
@@ -110,7 +110,7 @@ interface PartChoiceProps {
 
 function PartChoice({ part, parts, onChange }: PartChoiceProps) {
   return (
-    <Group gap="xs" pl="2.5rem">
+    <Group gap="xs" mt={4} pl="2.5rem">
       <Text span size="xs" c="dimmed">
         takes
       </Text>
@@ -134,7 +134,15 @@ interface StepButtonProps {
 
 function StepButton({ label, isOff = false, onPress, children }: StepButtonProps) {
   return (
-    <ActionIcon variant="subtle" color="gray" aria-label={label} title={label} disabled={isOff} onClick={onPress}>
+    <ActionIcon
+      variant="subtle"
+      color="gray"
+      aria-label={label}
+      title={label}
+      disabled={isOff}
+      {...(isOff && { bg: 'transparent' })}
+      onClick={onPress}
+    >
       {children}
     </ActionIcon>
   )

@@ -21,6 +21,8 @@ export interface EntryPreviewProps {
   readonly onClose: () => void
 }
 
+const LINE = '1px solid var(--line)'
+
 export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPreviewProps) {
   useEffect(connectTeach, [])
   const arms = useTeach((s) => s.arms)
@@ -34,8 +36,8 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   const title = shown.name || 'No entry'
   const body = (
     <>
-      <Flex component="header" flex="none" align="center" gap="xs" mih="2.5rem" pl="sm" pr="xs" py={4} className={classes.head}>
-        <Title order={2} size="sm" mr="auto" miw={0} className={classes.title}>
+      <Flex component="header" flex="none" align="center" gap="xs" mih="2.5rem" pl="sm" pr="xs" py={4} style={{ borderBottom: LINE }}>
+        <Title order={2} size="sm" mr="auto" lineClamp={1}>
           {title}{' '}
           <Text span inherit ml={6} fw={450} c="dimmed">
             {lookup(PLACED, shown.kind)}
@@ -45,8 +47,10 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
         {tools}
         <CloseButton size="sm" aria-label="Close the preview" onClick={close} />
       </Flex>
-      <div className={classes.view}>{view}</div>
-      <Box flex="none" px="sm" py="xs" className={classes.facts}>
+      <Box flex={1} mih="7.5rem">
+        {view}
+      </Box>
+      <Box flex="none" mah="40%" px="sm" py="xs" style={{ overflowY: 'auto', borderTop: LINE }}>
         <Text role="status" size="xs" mb={message ? 4 : 0} c="var(--failed)">
           {message || <VisuallyHidden>{course.trace && `${arm} is shown at ${shown.name}`}</VisuallyHidden>}
         </Text>

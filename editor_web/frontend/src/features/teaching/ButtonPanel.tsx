@@ -45,8 +45,8 @@ export function ButtonPanel() {
           onPress={() => keepKeys([...keys, { code: '', button: `button_${keys.length + 1}` }])}
         />
       </Group>
-      <Group gap="xs" role="status" aria-label="Gamepad">
-        <IconDeviceGamepad2 size={18} aria-hidden />
+      <Group gap="xs" wrap="nowrap" role="status" aria-label="Gamepad">
+        <IconDeviceGamepad2 size={18} style={{ flex: 'none' }} aria-hidden />
         {pads.length > 0 ? (
           pads.map((each) => (
             <Badge key={each} variant="light" tt="none">
@@ -77,7 +77,7 @@ function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowPro
   return (
     <Flex component="li" wrap="wrap" align="center" gap="xs">
       <UnstyledButton
-        w="9em"
+        w="7em"
         aria-label={`Key of ${keyButton.button}: ${keyButton.code || 'none'}`}
         title="Click, then press the key"
         onClick={() => setAsking(true)}
@@ -90,19 +90,19 @@ function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowPro
           if (event.key !== 'Escape') onChange({ ...keyButton, code: event.code })
         }}
       >
-        <Kbd size="md" display="block" ta="center" {...(isPressed && { bg: 'var(--active-soft)', c: 'var(--active)' })}>
+        <Kbd size="sm" display="block" ta="center" {...(isPressed && { bg: 'var(--active-soft)', c: 'var(--active)' })}>
           {isAsking ? 'press a key…' : keyButton.code || 'choose a key'}
         </Kbd>
       </UnstyledButton>
       <TextInput
         size="xs"
-        flex="1 1 7em"
+        flex="1 1 6em"
         aria-label={`Button of ${keyButton.code}`}
         value={keyButton.button}
         error={buttonFault(keyButton.button) !== ''}
         onChange={(event) => onChange({ ...keyButton, button: event.currentTarget.value })}
       />
-      <Text span size="xs" c="dimmed" w="8.5em">
+      <Text span size="xs" c="dimmed" w="8em">
         {isPressed ? 'pressed' : isHeard ? 'a trigger listens' : 'nobody listens'}
       </Text>
       <IconCommand label={`Remove ${keyButton.button}`} icon={<IconTrash size={14} aria-hidden />} onPress={onRemove} />

@@ -92,7 +92,7 @@ function Was({ arm, entry, revision }: WasProps) {
   const pose = before?.poses.at(-1)
   const isMotion = (before?.poses.length ?? 0) > 1
   return (
-    <Paper withBorder p="xs" my={4} role="group" aria-label={`Revision ${revision} of ${name}`}>
+    <Paper withBorder bg="transparent" p="xs" my={4} role="group" aria-label={`Revision ${revision} of ${name}`}>
       <Stack gap="xs" align="flex-start">
         <Facts
           facts={[

@@ -66,7 +66,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
         />
       )}
       {stage === 'asks' && (
-        <Alert color="yellow" p="xs" role="group" aria-label="Play back">
+        <Alert color="yellow" bg="var(--stopped-soft)" p="xs" role="group" aria-label="Play back">
           <Text size="sm" mb="xs">
             <strong>{arm} will move</strong> to the beginning of {words} and along it, whatever stands there. Look at the blue ghost first,
             and keep people out of reach.

@@ -48,6 +48,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
     <Paper
       component="form"
       withBorder
+      bg="transparent"
       p="sm"
       aria-label={`Save capture ${capture.id}`}
       onSubmit={(event) => {
@@ -95,7 +96,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
           />
         </SimpleGrid>
         {present.exists && (
-          <Alert color="yellow" p="xs" role="status" aria-label="Effect of overwriting">
+          <Alert color="yellow" bg="var(--stopped-soft)" p="xs" role="status" aria-label="Effect of overwriting">
             <strong>
               {form} {name} is there already.
             </strong>{' '}

@@ -35,6 +35,7 @@ export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerF
     <Paper
       component="form"
       withBorder
+      bg="transparent"
       p="sm"
       aria-label="Trigger"
       onSubmit={(event) => {

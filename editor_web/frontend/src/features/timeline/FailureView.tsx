@@ -8,7 +8,6 @@ import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { reportOf } from '../../document/failure'
 import { isActive } from '../../document/runState'
-import classes from './Failure.module.css'
 import { FailureActions, type FailurePage } from './FailureActions'
 import { Around, Causes, LastGood, Measured, Steps, type At } from './FailureParts'
 import { useFailure, useLastGoodRun } from './useFailure'
@@ -81,7 +80,16 @@ function FailureText({ run, failure, page, onShow }: FailureTextProps) {
   const { links, steps, around, hint } = failure
   const report = reportOf(run, failure, comparison ?? undefined, location.href)
   return (
-    <Box className={classes.failure} px="md" py="sm" tabIndex={0} role="region" aria-label="How the run failed">
+    <Box
+      pos="absolute"
+      inset={0}
+      px="md"
+      py="sm"
+      style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+      tabIndex={0}
+      role="region"
+      aria-label="How the run failed"
+    >
       <Flex gap="sm">
         <IconCircleX size={19} color="var(--failed)" style={{ flex: 'none', marginTop: 2 }} aria-hidden />
         <Title order={3} size="md">

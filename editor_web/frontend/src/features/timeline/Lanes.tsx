@@ -1,5 +1,5 @@
 /** The ruler with its marks, the names, the bars and the cursor; drawn on canvases, moved by pointer, wheel and keys. */
-import { Box, Paper, useComputedColorScheme } from '@mantine/core'
+import { Box, Flex, Paper, useComputedColorScheme } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useEffect, useRef, useState, type KeyboardEvent } from 'react'
 import type { ActivationInterval, TimelineMarker } from '../../api/types'
@@ -105,8 +105,10 @@ export function Lanes(props: LanesProps) {
 
   const cursorX = xOf(view, width, cursorS)
   return (
-    <Box fz="xs" className={`${classes.fill} ${classes.lanes}`} data-past={isPast || undefined} ref={whole}>
-      <div className={classes.corner}>{cursorS.toFixed(2)} s</div>
+    <Box pos="absolute" inset={0} fz="xs" className={classes.lanes} data-past={isPast || undefined} ref={whole}>
+      <Flex align="center" px="xs" fw={620} className={classes.corner}>
+        {cursorS.toFixed(2)} s
+      </Flex>
       <div
         className={classes.head}
         role="slider"
@@ -123,7 +125,7 @@ export function Lanes(props: LanesProps) {
         <canvas ref={head} aria-hidden />
       </div>
       <div className={classes.rows} ref={scroller} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
-        <div className={classes.space} style={{ height: rows.length * ROW }}>
+        <Box pos="relative" h={rows.length * ROW}>
           <Names
             rows={rows}
             spans={spans}
@@ -134,7 +136,7 @@ export function Lanes(props: LanesProps) {
             onShow={props.onShow}
             onToggle={props.onToggle}
           />
-        </div>
+        </Box>
       </div>
       <div className={classes.bars} ref={area} {...gestures.bars(scroller)}>
         <canvas ref={bars} aria-hidden />
@@ -148,8 +150,11 @@ export function Lanes(props: LanesProps) {
             radius="sm"
             px="xs"
             py={4}
-            className={classes.tip}
+            pos="absolute"
+            maw="min(44ch, 70%)"
+            bg="var(--raised)"
             style={{
+              overflowWrap: 'anywhere',
               left: tip.x,
               top: tip.y,
               transform: `translate(${tip.x > width / 2 ? 'calc(-100% - 12px)' : '12px'}, ${tip.y < HEAD + 40 ? '12px' : 'calc(-100% - 8px)'})`,

@@ -1,5 +1,5 @@
 /** The names beside the bars: a tree of which only the rows in sight are in the page. */
-import { Text } from '@mantine/core'
+import { Box, Flex, Text } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useRef, useState, type KeyboardEvent } from 'react'
 import type { ActivationInterval } from '../../api/types'
@@ -67,9 +67,15 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
         const status = statusAt(spans.get(row.path) ?? [], cursorS)
         const Chevron = row.isOpen ? IconChevronDown : IconChevronRight
         return (
-          <li
+          <Flex
+            component="li"
             key={row.path}
             role="treeitem"
+            pos="absolute"
+            align="center"
+            gap={4}
+            w="100%"
+            pr={6}
             className={classes.name}
             style={{ top: index * ROW, height: ROW, paddingInlineStart: 4 + Math.min(row.depth, 8) * 11 }}
             data-index={index}
@@ -86,8 +92,12 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
             }}
             onKeyDown={(event) => onKeyDown(event, index, row)}
           >
-            <span
-              className={classes.chevron}
+            <Box
+              component="span"
+              flex="none"
+              w={13}
+              c="dimmed"
+              lh={0}
               aria-hidden
               onClick={(event) => {
                 event.stopPropagation()
@@ -95,12 +105,12 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
               }}
             >
               {row.hasChildren && <Chevron size={13} />}
-            </span>
+            </Box>
             <StatusIcon status={statusOf(status)} size={12} />
             <Text span inherit truncate>
               {row.name}
             </Text>
-          </li>
+          </Flex>
         )
       })}
     </ul>

@@ -1,5 +1,5 @@
 /** Says that the past is shown, which moment of it, and leads back. */
-import { Button, Group, Text, VisuallyHidden } from '@mantine/core'
+import { Box, Button, Group, Text, VisuallyHidden } from '@mantine/core'
 import { IconHistory } from '@tabler/icons-react'
 import { useEffect } from 'react'
 import { backToPresent, leave, servesCell, useTimeline } from '../../api/timeline'
@@ -22,9 +22,9 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
   useEffect(() => (subject && !subject.isPast ? () => leave(subject) : undefined), [subject])
   if (!subject || timeS === undefined) return null
   return (
-    <div className={classes.place}>
+    <Box pos="relative" h={0} style={{ zIndex: 20 }}>
       <Group className={classes.line} data-past-line wrap="nowrap" gap="xs" py={4} pl="sm" pr={6}>
-        <IconHistory size={17} aria-hidden />
+        <IconHistory size={17} color="var(--stopped)" style={{ flex: 'none' }} aria-hidden />
         <Text span size="sm">
           {/* Told once, not with every step of the cursor. */}
           <VisuallyHidden role="status">You see the past</VisuallyHidden>
@@ -37,6 +37,6 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
           {subject.isPast ? 'To the end' : 'Back to live'}
         </Button>
       </Group>
-    </div>
+    </Box>
   )
 }

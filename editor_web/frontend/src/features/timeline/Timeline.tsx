@@ -1,4 +1,5 @@
 /** When each node of a run was active: rows of bars with marks above them, and a cursor that shows any moment of it. */
+import { Box } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconTimeline } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
@@ -72,14 +73,14 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   if (!subject || !course) {
     return (
       <Panel title="Timeline">
-        <div ref={place} className={classes.fill}>
+        <Box ref={place} pos="absolute" inset={0}>
           <Empty
             icon={<IconTimeline size={26} stroke={1.4} aria-hidden />}
             title={problem ? 'The timeline cannot be shown' : run ? 'Reading…' : 'No run yet'}
           >
             {problem || (run ? '' : 'Start the behavior; then see here when each of its nodes was active, and go back to any moment.')}
           </Empty>
-        </div>
+        </Box>
       </Panel>
     )
   }
@@ -144,8 +145,8 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
         />
       }
     >
-      <div ref={place} className={classes.fill}>
-        <div ref={sized} className={classes.fill}>
+      <Box ref={place} pos="absolute" inset={0}>
+        <Box ref={sized} pos="absolute" inset={0}>
           <Lanes
             rows={rows}
             spans={spans}
@@ -163,8 +164,8 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
             onShow={onShow}
             onToggle={(path) => setToggled(new Set(toggled.has(path) ? [...toggled].filter((each) => each !== path) : [...toggled, path]))}
           />
-        </div>
-      </div>
+        </Box>
+      </Box>
     </Panel>
   )
 }
