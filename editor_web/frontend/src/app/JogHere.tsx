@@ -2,7 +2,6 @@
 import { useEffect } from 'react'
 import { connectTeach, useTeach } from '../api/teaching'
 import { JogPanel } from '../features/teaching/JogPanel'
-import '../features/teaching/styles/index.css'
 
 export function JogHere({ arm }: { readonly arm: string }) {
   useEffect(connectTeach, [])

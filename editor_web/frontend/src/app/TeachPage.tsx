@@ -19,6 +19,7 @@ import { EntryList } from '../features/teaching/EntryList'
 import { JogPanel } from '../features/teaching/JogPanel'
 import { LeadPanel } from '../features/teaching/LeadPanel'
 import '../features/teaching/styles/index.css'
+import { TabBody } from '../features/teaching/TabBody'
 import { TriggerTable } from '../features/teaching/TriggerTable'
 import { useButtons } from '../features/teaching/useButtons'
 
@@ -62,12 +63,12 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
         <>
           <ArmHead arms={arms} arm={arm} onArm={setChosen} />
           {isNarrow ? (
-            <div className="teach-work">
-              {cell}
+            <div style={{ flex: 'none' }}>
+              <div style={{ height: '42vh' }}>{cell}</div>
               <Tabs arms={arms} arm={arm} />
             </div>
           ) : (
-            <Group orientation="horizontal" className="teach-work">
+            <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
               <Pane id="teach-cell" defaultSize="56%" minSize="25%">
                 {cell}
               </Pane>
@@ -97,13 +98,6 @@ function Tabs({ arms, arm }: { readonly arms: readonly ArmInfo[]; readonly arm: 
     Triggers: <TriggerTable arms={names} />,
     Buttons: <ButtonPanel />,
   }
-  const shown = Object.fromEntries(
-    Object.entries(bodies).map(([name, body]) => [
-      name,
-      <div key={name} className="teach-body">
-        {body}
-      </div>,
-    ]),
-  )
+  const shown = Object.fromEntries(Object.entries(bodies).map(([name, body]) => [name, <TabBody key={name}>{body}</TabBody>]))
   return <OpenedTabs label="Teaching" bodies={shown} />
 }

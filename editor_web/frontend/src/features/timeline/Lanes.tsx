@@ -105,7 +105,7 @@ export function Lanes(props: LanesProps) {
 
   const cursorX = xOf(view, width, cursorS)
   return (
-    <Box pos="absolute" inset={0} fz="xs" className={classes.lanes} data-past={isPast || undefined} ref={whole}>
+    <Box pos="absolute" inset={0} fz="0.8rem" className={classes.lanes} data-past={isPast || undefined} ref={whole}>
       <Flex align="center" px="xs" fw={620} className={classes.corner}>
         {cursorS.toFixed(2)} s
       </Flex>

@@ -54,6 +54,10 @@ function Card({ page, id, onEdit, onBehavior, seen, at }: TourProps & { readonly
       ref={card}
       component="section"
       className={classes.card}
+      pos="fixed"
+      w="min(21rem, 100vw - 1.25rem)"
+      bg="var(--raised)"
+      ta="start"
       withBorder
       shadow="xl"
       radius="md"
