@@ -50,7 +50,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
   }
 
   return (
-    <Group gap="xs" px="md" py="xs" bg="var(--surface)" style={{ borderBottom: '1px solid var(--line)' }}>
+    <Group gap="xs" px="md" py={6} bg="var(--surface)" style={{ borderBottom: '1px solid var(--line)' }}>
       {arms.length > 1 ? (
         <SegmentedControl size="xs" aria-label="Arm" value={arm.name} onChange={onArm} data={arms.map((each) => each.name)} />
       ) : (

@@ -178,7 +178,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         <Flex component="span" wrap="wrap" align="center" columnGap="xs" fz="sm">
           <IconKeyboard size={16} aria-hidden />
           <span>Jog with the keyboard</span>
-          <Text span inherit c="dimmed" id={hint}>
+          <Text span size="xs" c="dimmed" id={hint}>
             {space === 'tool'
               ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.'
               : 'Digits move that joint, with Shift in the other direction.'}
