@@ -16,6 +16,7 @@ export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) 
         color="gray"
         size="xs"
         px="xs"
+        justify="flex-start"
         leftSection={<IconHandFinger size={14} aria-hidden />}
         onClick={() => setOpen(true)}
       >
