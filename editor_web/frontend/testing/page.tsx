@@ -1,15 +1,16 @@
 /** A part of the page under test: drawn with the look of the page, fed by what a server tells. */
 import { MantineProvider } from '@mantine/core'
+import type { QueryClient } from '@tanstack/react-query'
 import { act, render } from '@testing-library/react'
 import userEvent, { type UserEvent } from '@testing-library/user-event'
 import type { ReactNode } from 'react'
 import type { StoreApi } from 'zustand'
 import { useSavedBreakpoints } from '../src/api/breakpoints.ts'
-import { useCellConnection } from '../src/api/cellConnection.ts'
 import { useShownLayers } from '../src/api/layerGroups.ts'
 import { connect, operate, showMoment, useLive, watch } from '../src/api/live.ts'
 import { newLiveStore } from '../src/api/liveStore.ts'
 import { usePast } from '../src/api/past.ts'
+import { newQueryClient } from '../src/api/queryClient.ts'
 import { clearRefusal } from '../src/api/refusal.ts'
 import { useSession } from '../src/api/session.ts'
 import { useStop } from '../src/api/stopStore.ts'
@@ -24,6 +25,7 @@ import type {
   RunView,
   SessionBody,
 } from '../src/api/types.ts'
+import { ServerAnswers } from '../src/app/ServerAnswers.tsx'
 import { theme } from '../src/app/theme.ts'
 import { useEditor } from '../src/features/editor/store.ts'
 import { FakeServer, type FakeSocket } from './server.ts'
@@ -33,6 +35,7 @@ const BLANK = newLiveStore().getState()
 let current: FakeServer | undefined
 let disconnect: (() => void) | undefined
 let started = 0
+const clients: QueryClient[] = []
 
 /** Begin with a server that knows nothing yet. */
 export function newServer(): void {
@@ -50,14 +53,16 @@ export function server(): FakeServer {
 /** Draw a part of the page, and give it a user. */
 export function show(part: ReactNode): UserEvent {
   const user = userEvent.setup({ delay: null })
-  render(part, { wrapper: Look })
+  const client = newQueryClient()
+  clients.push(client)
+  render(part, { wrapper: ({ children }) => <Look client={client}>{children}</Look> })
   return user
 }
 
-function Look({ children }: { readonly children: ReactNode }) {
+function Look({ client, children }: { readonly client: QueryClient; readonly children: ReactNode }) {
   return (
     <MantineProvider theme={theme} env="test">
-      {children}
+      <ServerAnswers client={client}>{children}</ServerAnswers>
     </MantineProvider>
   )
 }
@@ -78,6 +83,7 @@ export function forgetPage(): void {
   act(() => {
     disconnect?.()
     disconnect = undefined
+    for (const client of clients.splice(0)) client.clear()
     watch('')
     operate('')
     showMoment(undefined)
@@ -86,7 +92,6 @@ export function forgetPage(): void {
     forget(useSession)
     forget(useStop)
     forget(useSavedBreakpoints)
-    forget(useCellConnection)
     forget(useShownLayers)
     forget(usePast)
     forget(useEditor)

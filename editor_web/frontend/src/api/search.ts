@@ -1,6 +1,8 @@
 /** What the search of the page offers: the commands of the page that is shown, and what the server finds by name. */
+import { queryOptions } from '@tanstack/react-query'
 import { create } from 'zustand'
 import { call } from './client'
+import { queryKeys } from './queryKeys'
 import type { NameHit } from './types'
 
 export interface PageCommand {
@@ -45,6 +47,10 @@ export function pageCommands(): readonly PageCommand[] {
 }
 
 /** Behaviors, nodes, entries and runs whose names have every word of a text, best first. */
-export function searchNames(text: string, signal: AbortSignal): Promise<readonly NameHit[]> {
-  return call<readonly NameHit[]>(`/search?text=${encodeURIComponent(text)}`, { signal })
+export function namesQuery(text: string) {
+  return queryOptions({
+    queryKey: queryKeys.names(text),
+    queryFn: ({ signal }) => call<readonly NameHit[]>(`/search?text=${encodeURIComponent(text)}`, { signal }),
+    enabled: text !== '',
+  })
 }

@@ -1,7 +1,9 @@
 /** Sweeps: lists, results, and their execution; and what was told of runs that were executed again. */
+import { queryOptions } from '@tanstack/react-query'
 import { create } from 'zustand'
 import type { Dict } from '../document/dict'
 import { call, idPath, post } from './client'
+import { queryKeys } from './queryKeys'
 import type {
   Baseline,
   FactorChoice,
@@ -35,6 +37,30 @@ export const sweepsApi = {
   baselines: (id: string) => call<readonly Baseline[]>(`/sweeps/${idPath(id)}/baselines`),
   comparison: (id: string, { results, version }: Baseline, margin: number | undefined) =>
     call<SweepComparison>(`/sweeps/${idPath(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
+}
+
+/** A running one is looked at again that often. */
+const SHRINKING_PERIOD_MS = 1000
+
+export const sweepQueries = {
+  list: () => queryOptions({ queryKey: queryKeys.sweeps, queryFn: sweepsApi.list }),
+  /** With its runs. */
+  one: (id: string) =>
+    queryOptions({
+      queryKey: queryKeys.sweep(id),
+      queryFn: async () => {
+        const [view, runs] = await Promise.all([sweepsApi.view(id), sweepsApi.runs(id)])
+        return { view, runs }
+      },
+    }),
+  run: (id: string, number: number) => queryOptions({ queryKey: queryKeys.sweepRun(id, number), queryFn: () => sweepsApi.run(id, number) }),
+  shrinking: (id: string, number: number) =>
+    queryOptions({
+      queryKey: queryKeys.shrinking(id, number),
+      queryFn: () => sweepsApi.shrinking(id, number),
+      refetchInterval: ({ state }) => (state.data && state.data.status !== 'idle' ? SHRINKING_PERIOD_MS : false),
+    }),
+  factors: (behavior: string) => queryOptions({ queryKey: queryKeys.factors(behavior), queryFn: () => sweepsApi.factors(behavior) }),
 }
 
 function shrinkingPath(id: string, number: number): string {

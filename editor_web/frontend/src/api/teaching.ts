@@ -1,5 +1,6 @@
 /** The connection of the page for teaching: what jogs and presses ends with it; and what it asks over HTTP. */
 import type { Dict } from '../document/dict'
+import { queryOptions } from '@tanstack/react-query'
 import { create } from 'zustand'
 import { call, post } from './client'
 import { useLive } from './live'
@@ -26,6 +27,7 @@ import type {
   TriggerDocument,
 } from './types'
 import { PAGE } from './layerGroups'
+import { queryKeys } from './queryKeys'
 import { openSocket } from './socket'
 
 export interface TeachStore {
@@ -200,4 +202,9 @@ export const teach = {
   play: (body: PlayBody, signal: AbortSignal) => aborted<PlaybackResult>('/teach/play', body, signal),
   goal: (address: string, request: unknown, signal: AbortSignal) => aborted<GoalEnd>('/bus/goal', { address, request }, signal),
   push: (body: PushToolBody) => post<void>('/teach/push', body),
+}
+
+/** It is edited: what somebody typed before does not come back from what is kept here. */
+export function triggerDocumentQuery() {
+  return queryOptions({ queryKey: queryKeys.triggers, queryFn: teach.document, gcTime: 0 })
 }

@@ -1,11 +1,13 @@
 /** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
 import type { Dict } from '../document/dict'
+import { queryOptions } from '@tanstack/react-query'
 import { create } from 'zustand'
 import { nextMoment } from '../document/timelineMoment'
 import { withTimeline, type LoadedTimeline } from '../document/timeline'
 import { call, idPath, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
+import { queryKeys } from './queryKeys'
 import type { OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
@@ -46,6 +48,24 @@ export const pastApi = {
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
   userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),
   failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
+}
+
+export const pastQueries = {
+  runs: (looked: PastQuery) => queryOptions({ queryKey: queryKeys.foundRuns(looked), queryFn: () => pastApi.runs(looked) }),
+  recordings: () => queryOptions({ queryKey: queryKeys.recordings, queryFn: pastApi.recordings }),
+  opened: (id: string, isRecording: boolean) =>
+    queryOptions({
+      queryKey: queryKeys.opened(id, isRecording),
+      queryFn: () => (isRecording ? pastApi.openRecording(id) : pastApi.openRun(id)),
+    }),
+  part: (subject: Subject, fromS: number, untilS: number, seq: number) =>
+    queryOptions({
+      queryKey: queryKeys.timelinePart(subject, fromS, untilS, seq),
+      queryFn: () => pastApi.timeline(subject, 0, fromS, untilS),
+    }),
+  userdata: (subject: Subject, seq: number) =>
+    queryOptions({ queryKey: queryKeys.userdata(subject, seq), queryFn: () => pastApi.userdata(subject, seq) }),
+  failure: (subject: Subject) => queryOptions({ queryKey: queryKeys.failure(subject), queryFn: () => pastApi.failure(subject) }),
 }
 
 function query(values: Dict<string | number | undefined>): string {

@@ -3,8 +3,10 @@ import { AppShell, Burger, Kbd, UnstyledButton } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
 import { IconChartDots, IconCube, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
 import { Suspense, useEffect } from 'react'
-import { api } from '../api/client'
+import { behaviorQueries } from '../api/behaviorQueries'
 import { connect, useLive, watch } from '../api/live'
+import { useAnswer, useOutdated } from '../api/queryClient'
+import { queryKeys } from '../api/queryKeys'
 import { openSearch, useSearch, type PageCommand } from '../api/search'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
@@ -38,7 +40,6 @@ import {
   type Route,
 } from './route'
 import { RoutedPage } from './RoutedPage'
-import { useFetched } from './useFetched'
 
 const StopGuide = lazyView(async () => (await import('./StopGuide')).StopGuide)
 const Tour = lazyView(async () => (await import('../features/tour/Tour')).Tour)
@@ -47,10 +48,9 @@ export function App() {
   const route = useRoute()
   const [menuOpen, menu] = useDisclosure(false)
   const runs = useLive((s) => s.runs)
-  // Whoever writes a file, here or elsewhere: the list is as the files are.
-  const written = useLive((s) => JSON.stringify(s.documents))
   const session = useSession((s) => s.session)
-  const behaviors = useFetched('behaviors', api.behaviors, `${location.pathname} ${written}`)
+  const behaviors = useAnswer(behaviorQueries.all())
+  useOutdated(queryKeys.behaviors, location.pathname)
   const isNarrow = useMediaQuery('(max-width: 62em)', false, { getInitialValueInEffect: false })
   const shown = shownRun(route, runs)
   const isEditing = route.page === 'edit'

@@ -20,7 +20,9 @@ interface ParameterViewProps {
 
 export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) {
   const name = shortName(facts.name)
-  const form = useForm(() => Promise.resolve([valueField(name, facts.schema, facts.value)]))
+  // As the value was when it was chosen: what is typed is not lost when somebody else sets it.
+  const [fields] = useState(() => [valueField(name, facts.schema, facts.value)])
+  const form = useForm({ value: fields, problem: undefined })
   const [value, setValue] = useState<unknown>(facts.value)
   const [refusal, setRefusal] = useState('')
 
