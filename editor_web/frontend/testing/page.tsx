@@ -4,16 +4,9 @@ import type { QueryClient } from '@tanstack/react-query'
 import { act, render } from '@testing-library/react'
 import userEvent, { type UserEvent } from '@testing-library/user-event'
 import type { ReactNode } from 'react'
-import type { StoreApi } from 'zustand'
-import { useSavedBreakpoints } from '../src/api/breakpoints.ts'
-import { useShownLayers } from '../src/api/layerGroups.ts'
-import { connect, operate, showMoment, useLive, watch } from '../src/api/live.ts'
-import { newLiveStore } from '../src/api/liveStore.ts'
-import { usePast } from '../src/api/past.ts'
+import { connect } from '../src/api/live.ts'
+import { beginPage } from '../src/api/pageStore.ts'
 import { newQueryClient } from '../src/api/queryClient.ts'
-import { clearRefusal } from '../src/api/refusal.ts'
-import { useSession } from '../src/api/session.ts'
-import { useStop } from '../src/api/stopStore.ts'
 import type {
   ArmInfo,
   ControlView,
@@ -27,10 +20,7 @@ import type {
 } from '../src/api/types.ts'
 import { ServerAnswers } from '../src/app/ServerAnswers.tsx'
 import { theme } from '../src/app/theme.ts'
-import { useEditor } from '../src/features/editor/store.ts'
 import { FakeServer, type FakeSocket } from './server.ts'
-
-const BLANK = newLiveStore().getState()
 
 let current: FakeServer | undefined
 let disconnect: (() => void) | undefined
@@ -80,28 +70,14 @@ export function live(told: Partial<LiveSnapshot> = {}, role = 'operator'): FakeS
 
 /** Take everything away that a test has left in the stores of the page. */
 export function forgetPage(): void {
+  for (const client of clients.splice(0)) client.clear()
+  localStorage.clear()
+  sessionStorage.clear()
   act(() => {
     disconnect?.()
     disconnect = undefined
-    for (const client of clients.splice(0)) client.clear()
-    watch('')
-    operate('')
-    showMoment(undefined)
-    clearRefusal()
-    useLive.setState(BLANK, true)
-    forget(useSession)
-    forget(useStop)
-    forget(useSavedBreakpoints)
-    forget(useShownLayers)
-    forget(usePast)
-    forget(useEditor)
+    beginPage()
   })
-  localStorage.clear()
-  sessionStorage.clear()
-}
-
-function forget<T>(store: StoreApi<T>): void {
-  store.setState(store.getInitialState(), true)
 }
 
 export function session(told: Partial<SessionBody> = {}): SessionBody {

@@ -1,9 +1,9 @@
 /** What the search of the page offers: the commands of the page that is shown, and what the server finds by name. */
 import { queryOptions } from '@tanstack/react-query'
-import { create } from 'zustand'
 import { call } from './client'
 import { queryKeys } from './queryKeys'
 import type { NameHit } from './types'
+import { pageStore } from './pageStore'
 
 export interface PageCommand {
   readonly id: string
@@ -25,7 +25,7 @@ interface SearchStore {
 
 const none = (): readonly PageCommand[] => []
 
-export const useSearch = create<SearchStore>(() => ({ isOpen: false, commands: none }))
+export const useSearch = pageStore<SearchStore>(() => ({ isOpen: false, commands: none }))
 
 export function openSearch(): void {
   useSearch.setState({ isOpen: true })

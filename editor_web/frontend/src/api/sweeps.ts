@@ -1,6 +1,5 @@
 /** Sweeps: lists, results, and their execution; and what was told of runs that were executed again. */
 import { queryOptions } from '@tanstack/react-query'
-import { create } from 'zustand'
 import type { Dict } from '../document/dict'
 import { call, idPath, post } from './client'
 import { queryKeys } from './queryKeys'
@@ -19,6 +18,7 @@ import type {
   SweepView,
   TrialResult,
 } from './types'
+import { pageStore } from './pageStore'
 
 export const sweepsApi = {
   list: () => call<SweepList>('/sweeps'),
@@ -78,7 +78,7 @@ export interface Rerun {
 }
 
 /** By the path of their recordings, as long as the page lives. */
-export const useReruns = create<{ readonly byRecording: Dict<Rerun> }>(() => ({ byRecording: {} }))
+export const useReruns = pageStore<{ readonly byRecording: Dict<Rerun> }>(() => ({ byRecording: {} }))
 
 /** Execute a run again, and keep what came of it for the page of its recording. */
 export async function recordRun(sweep: string, number: number): Promise<RecordedTrial> {

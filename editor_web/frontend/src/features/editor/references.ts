@@ -7,15 +7,8 @@ import { replaced, presentOf, type History } from '../../document/editing/histor
 import { nodeOf, type EditNode } from '../../document/editing/model'
 import { draftOf, editor, isOpenNow, showEditorRefusal, rootOf, setEditor } from './store'
 
-interface Body {
-  readonly hash: string
-  readonly root: EditNode
-}
-
-const bodies = new Map<string, Body>()
-
 function roots(): ReadonlyMap<string, EditNode> {
-  return new Map([...bodies].map(([id, body]) => [id, body.root]))
+  return new Map([...editor().bodies].map(([id, body]) => [id, body.root]))
 }
 
 /** A history whose present draft shows the insides of the references that were opened. */
@@ -23,11 +16,6 @@ export function withReferences(history: History): History {
   const { draft } = presentOf(history)
   const root = draft.root && inlineReferences(draft.root, roots())
   return root === draft.root ? history : replaced(history, { ...draft, root })
-}
-
-/** Forget what was opened; another behavior is edited. */
-export function forgetReferences(): void {
-  bodies.clear()
 }
 
 /** Show what is inside of a reference here, or close it. */
@@ -48,7 +36,8 @@ async function load(id: string): Promise<boolean> {
       showEditorRefusal('Open in place', `${id} cannot be read`, 'Open it in its own page and mend it.')
       return false
     }
-    bodies.set(id, { hash, root: { ...graph, name: document?.name || graph.name } })
+    const body = { hash, root: { ...graph, name: document?.name || graph.name } }
+    setEditor({ bodies: new Map(editor().bodies).set(id, body) })
     setEditor({ history: withReferences(editor().history) })
     return true
   } catch (error) {
@@ -59,7 +48,7 @@ async function load(id: string): Promise<boolean> {
 
 /** Read those anew that have changed on disk. */
 export function refreshReferences(onDisk: Dict<string | null>): void {
-  for (const [id, body] of bodies) {
+  for (const [id, body] of editor().bodies) {
     const hash = lookup(onDisk, id)
     if (hash && hash !== body.hash) void load(id)
   }
