@@ -21,12 +21,12 @@ export function usePastValues(run: string | undefined, isShown: boolean): PastUs
   const { data, error, isFetching } = useQuery({ ...query, ...(!asked && { queryFn: skipToken }) })
   const isOther = asked?.seq !== seq || asked?.subject.address !== subject?.address
   if (isShown && !isFetching && isOther && seq !== undefined && subject) ask({ subject, seq })
-  const [told, setTold] = useState<Moment & { readonly values: PastUserdata }>()
+  const [latest, setLatest] = useState<Moment & { readonly values: PastUserdata }>()
   const problem = problemOf(error)
   const values = problem === undefined ? data : { seq: asked?.seq ?? 0, scopes: {}, problem }
-  if (asked && values && (told?.subject !== asked.subject || told.seq !== asked.seq || told.values.problem !== values.problem))
-    setTold({ ...asked, values })
+  if (asked && values && (latest?.subject !== asked.subject || latest.seq !== asked.seq || latest.values.problem !== values.problem))
+    setLatest({ ...asked, values })
   if (seq === undefined) return undefined
   // Of another time than the one that is shown, until that has come; never of another run.
-  return told && told.subject.address === subject?.address ? told.values : { seq, scopes: {}, problem: '' }
+  return latest && latest.subject.address === subject?.address ? latest.values : { seq, scopes: {}, problem: '' }
 }

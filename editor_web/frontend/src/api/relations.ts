@@ -1,6 +1,6 @@
 /** Around a document: data flow, fixes of findings, versions, who refers to it, moving, deleting and restoring. */
 import { queryOptions } from '@tanstack/react-query'
-import { call, idPath, post } from './client'
+import { call, post } from './client'
 import { queryKeys } from './queryKeys'
 import type {
   DeletedDocumentBody,
@@ -14,9 +14,10 @@ import type {
   VersionBody,
   VersionTextBody,
 } from './types'
+import { addressOf } from '../document/path'
 
 function at(id: string, rest = ''): string {
-  return `/documents/${idPath(id)}${rest}`
+  return `/documents/${addressOf(id)}${rest}`
 }
 
 export const relations = {

@@ -3,7 +3,8 @@ import type { Dict } from '../document/dict'
 import { queryOptions } from '@tanstack/react-query'
 import { nextMoment } from '../document/timelineMoment'
 import { withTimeline, type LoadedTimeline } from '../document/timeline'
-import { call, idPath, wordsOf } from './client'
+import { addressOf } from '../document/path'
+import { call, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
 import { queryKeys } from './queryKeys'
@@ -26,7 +27,7 @@ export function runSubject(run: string, isPast = false): Subject {
 }
 
 export function recordingSubject(path: string, run: string): Subject {
-  return { address: `/recordings/${idPath(path)}`, run, recorded: path, isPast: true }
+  return { address: `/recordings/${addressOf(path)}`, run, recorded: path, isPast: true }
 }
 
 export interface PastQuery {
@@ -43,7 +44,7 @@ export const pastApi = {
     call<PastRunsBody>(`/past-runs?${query({ text, kind, since_s: sinceS, until_s: untilS, limit })}`),
   recordings: () => call<readonly RecordingFile[]>('/recordings'),
   openRun: (run: string) => call<OpenRunBody>(`/runs/${encodeURIComponent(run)}/past`),
-  openRecording: (path: string) => call<OpenRunBody>(`/recordings/${idPath(path)}`),
+  openRecording: (path: string) => call<OpenRunBody>(`/recordings/${addressOf(path)}`),
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
   userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),

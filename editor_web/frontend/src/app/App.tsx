@@ -16,6 +16,7 @@ import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
+import { nameOfPath } from '../document/path'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
@@ -69,7 +70,7 @@ export function App() {
   useSearchKey()
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
   useEffect(() => {
-    const name = behaviorId ? (behaviorId.split('/').pop() ?? '') : (session?.cell_name ?? '')
+    const name = behaviorId ? nameOfPath(behaviorId) : (session?.cell_name ?? '')
     document.title = [name, 'flexcell'].filter(Boolean).join(' · ')
   }, [behaviorId, session])
 

@@ -1,7 +1,7 @@
 /** What the page has asked the server, for all that stands inside; kept up with what the live streams tell. */
 import { QueryClientProvider, type QueryClient } from '@tanstack/react-query'
 import { useEffect, type ReactNode } from 'react'
-import { followNews } from '../api/serverNews'
+import { invalidateByStreams } from '../api/invalidation'
 
 export interface ServerAnswersProps {
   readonly client: QueryClient
@@ -9,6 +9,6 @@ export interface ServerAnswersProps {
 }
 
 export function ServerAnswers({ client, children }: ServerAnswersProps) {
-  useEffect(() => followNews(client), [client])
+  useEffect(() => invalidateByStreams(client), [client])
   return <QueryClientProvider client={client}>{children}</QueryClientProvider>
 }

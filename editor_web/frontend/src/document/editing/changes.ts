@@ -1,7 +1,8 @@
 /** What differs between two versions, in words and as marks on both drawings. Pure. */
 import type { NodeChange } from '../../api/types'
 import { edgeId, edgeOf, sourceOf } from '../edgeId'
-import { allNodes, isMachine, nameOfPath, parentPath, pathsTo, type EditNode } from './model'
+import { allNodes, isMachine, type EditNode } from './model'
+import { nameOfPath, parentPath, pathsTo } from '../path'
 
 export type Marking = 'added' | 'removed' | 'changed'
 

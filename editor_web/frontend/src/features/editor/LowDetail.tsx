@@ -2,7 +2,7 @@
 import { ViewportPortal, type NodeProps } from '@xyflow/react'
 import { memo, useMemo, type ComponentType } from 'react'
 import type { Box, Point } from '../../document/geometry'
-import { parentPath } from '../../document/editing/model'
+import { parentPath } from '../../document/path'
 import type { CanvasEdge, CanvasNode, CardData } from './elements'
 import { useMark } from './marks'
 import { pageStore } from '../../api/pageStore'

@@ -4,20 +4,9 @@ import { documents } from '../../api/documents'
 import { wordsOf } from '../../api/client'
 import { edgeOf, sourceOf, type EdgeId } from '../../document/edgeId'
 import { corner, setField, type AddNode, type Corner, type Edit, type GroupKind } from '../../document/editing/edits'
-import {
-  allNodes,
-  freeName,
-  holderOf,
-  isComposite,
-  isMachine,
-  isTreePart,
-  nameOfPath,
-  nodeOf,
-  parentPath,
-  ROOT,
-  type EditNode,
-} from '../../document/editing/model'
+import { allNodes, freeName, holderOf, isComposite, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
+import { nameOfPath, parentPath } from '../../document/path'
 import { perform, performOn } from './apply'
 import { canvasBoxes } from './canvasPositions'
 import { fromClipboard, toClipboard } from './clipboard'

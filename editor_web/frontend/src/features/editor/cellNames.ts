@@ -14,12 +14,12 @@ export async function lookForNames(): Promise<void> {
     return
   }
   if (!(await mayAsk())) return
-  const isWanted = () => editor().id === id && editor().namesOf === cell
+  const isCurrent = () => editor().id === id && editor().namesOf === cell
   try {
     const names = await documents.names(id, text)
-    if (isWanted()) setEditor({ names })
+    if (isCurrent()) setEditor({ names })
   } catch {
     // The names of the open cell stand in; the next text asks again.
-    if (isWanted()) setEditor({ namesOf: undefined })
+    if (isCurrent()) setEditor({ namesOf: undefined })
   }
 }

@@ -9,7 +9,6 @@ import {
   isFrame,
   isMachine,
   isTreePart,
-  parentPath,
   outgoingTransitions,
   type EditNode,
   type OutgoingTransition,
@@ -18,6 +17,7 @@ import { disabledText, isPassedOver } from '../../document/editing/disabling'
 import { countInside, drawnNodes, frameOf } from '../../document/editing/expansion'
 import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
+import { parentPath } from '../../document/path'
 
 export interface CardData extends Record<string, unknown> {
   readonly node: EditNode

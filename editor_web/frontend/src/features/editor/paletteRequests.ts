@@ -1,7 +1,8 @@
 /** Opening the palettes: what to add or connect, and where. */
 import { edgeOf, sourceOf } from '../../document/edgeId'
-import { holderOf, isForeign, isHolder, isTreePart, nodeOf, parentPath, type EditNode } from '../../document/editing/model'
+import { holderOf, isForeign, isHolder, isTreePart, nodeOf, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
+import { parentPath } from '../../document/path'
 import { chosenOf, editor, isOpenNow, showEditorRefusal, rootOf, scopeOf, setEditor } from './store'
 
 /** Where something new goes: into the selected container where it is open or empty, else beside the selected node; else into what fills the canvas. */

@@ -5,6 +5,7 @@ import { documents } from '../../api/documents'
 import { inlineReferences } from '../../document/editing/referenceInlining'
 import { replaced, presentOf, type History } from '../../document/editing/history'
 import { nodeOf, type EditNode } from '../../document/editing/model'
+import { nameOfPath } from '../../document/path'
 import { draftOf, editor, isOpenNow, showEditorRefusal, rootOf, setEditor } from './store'
 
 function roots(): ReadonlyMap<string, EditNode> {
@@ -68,7 +69,7 @@ function keyOf(id: string): string {
 /** Remember that `id` is opened from a node here, so that its page leads back. */
 export function rememberReferrer(id: string, node: string): void {
   const { id: from } = editor()
-  const name = draftOf(editor()).document?.name || from.split('/').pop() || from
+  const name = draftOf(editor()).document?.name || nameOfPath(from)
   try {
     sessionStorage.setItem(keyOf(id), JSON.stringify({ id: from, name, node } satisfies Referrer))
   } catch {

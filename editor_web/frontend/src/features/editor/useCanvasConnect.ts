@@ -2,9 +2,9 @@
 import { useCallbackRef } from '@mantine/hooks'
 import { useReactFlow, type FinalConnectionState } from '@xyflow/react'
 import { useState } from 'react'
-import { parentPath } from '../../document/editing/model'
 import { positionIn, type DrawnCanvas } from './canvasPlaces'
 import { openPortPalette } from './paletteRequests'
+import { parentPath } from '../../document/path'
 
 export interface CanvasConnect {
   readonly isConnecting: boolean

@@ -1,6 +1,7 @@
 /** Dragging nodes on the canvas: to another place of their container, or into another container. */
 import { useCallbackRef } from '@mantine/hooks'
-import { isMachine, nodeOf, parentPath } from '../../document/editing/model'
+import { isMachine, nodeOf } from '../../document/editing/model'
+import { parentPath } from '../../document/path'
 import { moveInto } from './actions'
 import { boxOf, holderUnder, positionIn, type DrawnCanvas } from './canvasPlaces'
 import type { CanvasNode } from './elements'

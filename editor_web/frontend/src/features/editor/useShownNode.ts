@@ -1,7 +1,8 @@
 /** A node that is asked for is brought into view where it is not, and gets the keyboard. */
 import { useReactFlow } from '@xyflow/react'
 import { useEffect, useRef, useState, type RefObject } from 'react'
-import { nodeOf, parentPath } from '../../document/editing/model'
+import { nodeOf } from '../../document/editing/model'
+import { parentPath } from '../../document/path'
 import type { CanvasEdge, CanvasNode } from './elements'
 import { editor, rootOf, setEditor, useEditor } from './store'
 import type { Arranged } from './useArrangement'

@@ -10,6 +10,7 @@ import type { BehaviorView, StartBody, StartData } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { ParameterField } from '../../components/ParameterField'
 import { lookup } from '../../document/dict'
+import { nameOfPath } from '../../document/path'
 import { useStart } from './useStart'
 
 export interface StartHereDialogProps {
@@ -26,7 +27,7 @@ export function StartHereDialog(props: StartHereDialogProps) {
   const query = behaviorQueries.startData(here?.behavior ?? '', here?.path ?? '')
   const { value, problem } = useAnswer({ ...query, ...(!here && { queryFn: skipToken }) })
   if (!here) return null
-  const name = here.path.split('/').pop() ?? here.path
+  const name = nameOfPath(here.path)
   const found = problem ?? value
   const close = () => askStartHere(undefined)
   return (

@@ -6,6 +6,7 @@ import { pastQueries } from '../../api/timeline'
 import type { RecordingFile } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { wallTime } from '../../document/time'
+import { nameOfPath } from '../../document/path'
 
 export interface RecordingsProps {
   readonly href: (path: string) => string
@@ -57,7 +58,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
 function Named({ file }: { file: RecordingFile }) {
   return (
     <>
-      <span className="past-item-name">{file.behavior || file.path.split('/').pop()}</span>
+      <span className="past-item-name">{file.behavior || nameOfPath(file.path)}</span>
       <span className="quiet past-item-facts">
         {wallTime(file.started_at_s)} · {size(file.size_bytes)}
       </span>

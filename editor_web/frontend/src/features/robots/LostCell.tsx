@@ -55,7 +55,7 @@ export function LostCell() {
 
 /** What the server last said; it is asked as long as a robot is not well, or the cell was lost when it was asked last. */
 function useConnection(isServed: boolean, modes: string): CellConnection {
-  const isLost = (told: CellConnection | undefined) => isServed && (modes !== '' || told?.connected === false)
+  const isLost = (known: CellConnection | undefined) => isServed && (modes !== '' || known?.connected === false)
   useOutdated(queryKeys.cellConnection, modes)
   const { data = CONNECTED } = useQuery({
     ...cellConnectionQuery(),

@@ -3,6 +3,7 @@ import { Table } from '@mantine/core'
 import type { CauseLink, LogLine, MeasuredValue, RunComparison, RunFailure } from '../../api/types'
 import { differenceLines, expectedWords, measuredWords, missWords } from '../../document/failure'
 import { wallTime } from '../../document/time'
+import { nameOfPath } from '../../document/path'
 import classes from './Failure.module.css'
 
 /** A moment of the run, at a node of it. */
@@ -71,7 +72,7 @@ export function Steps({ failure: { steps, path }, onShow }: StepsProps) {
           style={{ marginInlineStart: Math.max(0, index - 1) * 14 }}
         >
           <button type="button" className="link-row" onClick={() => onShow(step)}>
-            {step.path.split('/').pop()}
+            {nameOfPath(step.path)}
           </button>{' '}
           <span className="quiet">
             {step.text} at {step.time_s.toFixed(2)} s

@@ -7,7 +7,7 @@ import { queryKeys } from './queryKeys'
 import { useTeach } from './teaching'
 
 /** Let answers be asked for anew when they are out of date; returns how to end that. */
-export function followNews(client: QueryClient): () => void {
+export function invalidateByStreams(client: QueryClient): () => void {
   const outdate = (...keys: readonly QueryKey[]) => {
     for (const queryKey of keys) void client.invalidateQueries({ queryKey })
   }
