@@ -187,6 +187,18 @@ it('shrinks a run, follows it, and saves what is left as a test case', async () 
   expect(opened.mock.calls).toEqual([['tests/cases/a.yaml']])
 })
 
+it('is followed further where it could not be read once', async () => {
+  const progress = { runs: 4, most_runs: 200, step: 'round', changed: [] }
+  server().on(`GET ${SHRINKING}`, { ...NEVER, status: 'running', progress })
+  shrinkRun()
+  await screen.findByText('4 of at most 200 runs tried: round')
+  server().on(`GET ${SHRINKING}`, new Refusal(503, { message: 'too much to do', hint: '' }))
+  expect(await screen.findByText('too much to do')).toBeVisible()
+  server().on(`GET ${SHRINKING}`, FOUND)
+  expect(await screen.findByRole('group', { name: 'The smallest change from nominal' })).toBeVisible()
+  expect(screen.queryByText('too much to do')).toBeNull()
+})
+
 it('stops with the smallest so far, and says why nothing was found', async () => {
   server()
     .on(`GET ${SHRINKING}`, { ...NEVER, status: 'running' })
