@@ -9,6 +9,7 @@ export const queryKeys = {
   startData: (behavior: string, path: string) => ['start data', behavior, path] as const,
   interrupted: ['interrupted'],
   cellConnection: ['cell connection'],
+  cellItems: ['cell items'],
   names: (text: string) => ['names', text] as const,
 
   pastRuns: ['past runs'],

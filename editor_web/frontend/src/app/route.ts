@@ -46,7 +46,7 @@ export const CELL_HREF = '/workcell'
 
 /** The cell, at one of its items where one is given, `robots/left`, and at a topic that tells of it. */
 export function cellHref(item = '', topic = ''): string {
-  return item ? `${CELL_HREF}/${item.split('/').map(encodeURIComponent).join('/')}${topic && `#${topic}`}` : CELL_HREF
+  return item ? `${CELL_HREF}/${addressOf(item)}${topic && `#${topic}`}` : CELL_HREF
 }
 
 export const TEACH_HREF = '/teach'

@@ -1,10 +1,24 @@
 import { expect, it } from 'vitest'
-import { addressOf, depthOf, fileTitle, firstOfPath, nameOfPath, parentPath, pathOfAddress, pathsTo, pathWords, relativePath } from './path'
+import {
+  addressOf,
+  depthOf,
+  fileTitle,
+  firstOfPath,
+  nameOfPath,
+  parentPath,
+  pathOfAddress,
+  pathsTo,
+  pathWords,
+  relativePath,
+  restOfPath,
+} from './path'
 
 it('takes a path apart', () => {
   const path = 'root/inner/grasp'
   expect([firstOfPath(path), nameOfPath(path), parentPath(path), depthOf(path)]).toEqual(['root', 'grasp', 'root/inner', 2])
   expect(pathsTo(path)).toEqual(['root', 'root/inner', path])
+  expect(restOfPath(path)).toBe('inner/grasp')
+  expect(restOfPath('root')).toBe('')
   expect(pathWords(path)).toBe('inner › grasp')
 })
 

@@ -30,6 +30,11 @@ export function depthOf(path: string): number {
   return path.split('/').length - 1
 }
 
+/** All parts but the first; empty where there is one only. */
+export function restOfPath(path: string): string {
+  return path.slice(firstOfPath(path).length + 1)
+}
+
 /** All parts but the first, for people: `both › left`; a path of one part as it is. */
 export function pathWords(path: string): string {
   const [, ...inner] = path.split('/')
