@@ -1,18 +1,12 @@
 /** A part of the page under test: drawn with the look of the page, fed by what a server tells. */
 import { MantineProvider } from '@mantine/core'
+import type { QueryClient } from '@tanstack/react-query'
 import { act, render } from '@testing-library/react'
 import userEvent, { type UserEvent } from '@testing-library/user-event'
 import type { ReactNode } from 'react'
-import type { StoreApi } from 'zustand'
-import { useSavedBreakpoints } from '../src/api/breakpoints.ts'
-import { useCellConnection } from '../src/api/cellConnection.ts'
-import { useShownLayers } from '../src/api/layerGroups.ts'
-import { connect, operate, showMoment, useLive, watch } from '../src/api/live.ts'
-import { newLiveStore } from '../src/api/liveStore.ts'
-import { usePast } from '../src/api/past.ts'
-import { clearRefusal } from '../src/api/refusal.ts'
-import { useSession } from '../src/api/session.ts'
-import { useStop } from '../src/api/stopStore.ts'
+import { connect } from '../src/api/live.ts'
+import { beginPage } from '../src/api/pageStore.ts'
+import { newQueryClient } from '../src/api/queryClient.ts'
 import type {
   ArmInfo,
   ControlView,
@@ -24,15 +18,14 @@ import type {
   RunView,
   SessionBody,
 } from '../src/api/types.ts'
+import { ServerAnswers } from '../src/app/ServerAnswers.tsx'
 import { theme } from '../src/app/theme.ts'
-import { useEditor } from '../src/features/editor/store.ts'
 import { FakeServer, type FakeSocket } from './server.ts'
-
-const BLANK = newLiveStore().getState()
 
 let current: FakeServer | undefined
 let disconnect: (() => void) | undefined
 let started = 0
+const clients: QueryClient[] = []
 
 /** Begin with a server that knows nothing yet. */
 export function newServer(): void {
@@ -50,14 +43,16 @@ export function server(): FakeServer {
 /** Draw a part of the page, and give it a user. */
 export function show(part: ReactNode): UserEvent {
   const user = userEvent.setup({ delay: null })
-  render(part, { wrapper: Look })
+  const client = newQueryClient()
+  clients.push(client)
+  render(part, { wrapper: ({ children }) => <Look client={client}>{children}</Look> })
   return user
 }
 
-function Look({ children }: { readonly children: ReactNode }) {
+function Look({ client, children }: { readonly client: QueryClient; readonly children: ReactNode }) {
   return (
     <MantineProvider theme={theme} env="test">
-      {children}
+      <ServerAnswers client={client}>{children}</ServerAnswers>
     </MantineProvider>
   )
 }
@@ -75,28 +70,14 @@ export function live(told: Partial<LiveSnapshot> = {}, role = 'operator'): FakeS
 
 /** Take everything away that a test has left in the stores of the page. */
 export function forgetPage(): void {
+  for (const client of clients.splice(0)) client.clear()
+  localStorage.clear()
+  sessionStorage.clear()
   act(() => {
     disconnect?.()
     disconnect = undefined
-    watch('')
-    operate('')
-    showMoment(undefined)
-    clearRefusal()
-    useLive.setState(BLANK, true)
-    forget(useSession)
-    forget(useStop)
-    forget(useSavedBreakpoints)
-    forget(useCellConnection)
-    forget(useShownLayers)
-    forget(usePast)
-    forget(useEditor)
+    beginPage()
   })
-  localStorage.clear()
-  sessionStorage.clear()
-}
-
-function forget<T>(store: StoreApi<T>): void {
-  store.setState(store.getInitialState(), true)
 }
 
 export function session(told: Partial<SessionBody> = {}): SessionBody {

@@ -1,18 +1,18 @@
 /** The breakpoints of the shown behavior: those of the run under way, and those kept beside its file. */
 import { useMemo } from 'react'
-import { create } from 'zustand'
 import { completed, matches, toggled, type CompleteBreakpoint } from '../document/breakpoints'
 import { api } from './client'
 import { useLive } from './live'
 import { useControl } from './liveParts'
 import { showRefusal, send } from './refusal'
+import { pageStore } from './pageStore'
 
 interface Kept {
   readonly behavior: string
   readonly kept: readonly CompleteBreakpoint[]
 }
 
-export const useSavedBreakpoints = create<Kept>(() => ({ behavior: '', kept: [] }))
+export const useSavedBreakpoints = pageStore<Kept>(() => ({ behavior: '', kept: [] }))
 
 /** Show the breakpoints of this behavior from now on. */
 export async function loadSavedBreakpoints(behavior: string): Promise<void> {

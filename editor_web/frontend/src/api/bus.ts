@@ -1,6 +1,9 @@
 /** The skill bus over HTTP: what there is, forms, calls, publishing, parameters, and goals with their course. */
+import { queryOptions } from '@tanstack/react-query'
 import type { Dict } from '../document/dict'
+import { requestFields } from '../document/requestForm'
 import { call, post, request as ask, sent, ServerError } from './client'
+import { queryKeys } from './queryKeys'
 import type { BusFields, BusForm, BusListing, ErrorBody, GoalStreamLine } from './types'
 
 export const bus = {
@@ -12,6 +15,28 @@ export const bus = {
   publish: (topic: string, message: Dict<unknown>) => post<void>('/bus/publish', { topic, message }),
   setParameter: (name: string, value: unknown) => sent<unknown>('PUT', '/bus/parameter', { name, value }),
   cancel: (goal: string) => post<void>(`/bus/goals/${encodeURIComponent(goal)}/cancel`, {}),
+}
+
+/** New devices bring new numbers. */
+const FIELDS_PERIOD_MS = 5000
+
+export const busQueries = {
+  /** `shape` is what the traffic calls the listing; it is another one when devices come or go. */
+  listing: (shape: number | string | undefined) =>
+    queryOptions({ queryKey: queryKeys.busListing(shape), queryFn: bus.board, enabled: shape !== undefined }),
+  fields: () => queryOptions({ queryKey: queryKeys.busFields, queryFn: bus.fields, refetchInterval: FIELDS_PERIOD_MS }),
+  requestForm: (address: string) =>
+    queryOptions({
+      queryKey: queryKeys.busForm('request', address),
+      queryFn: async () => requestFields((await bus.requestForm(address)).schema),
+      staleTime: Infinity,
+    }),
+  messageForm: (topic: string) =>
+    queryOptions({
+      queryKey: queryKeys.busForm('message', topic),
+      queryFn: async () => requestFields((await bus.messageForm(topic)).schema),
+      staleTime: Infinity,
+    }),
 }
 
 /** Send a goal and hear its course until it has ended; whoever aborts cancels it. */

@@ -1,24 +1,26 @@
 /** Whether the world and the devices of the cell are there, and connecting them again. */
-import { create } from 'zustand'
+import { queryOptions } from '@tanstack/react-query'
 import { call, post, ServerError } from './client'
+import { queryKeys } from './queryKeys'
 import type { CellConnection } from './types'
 
-const CONNECTED: CellConnection = { connected: true, reason: '' }
+export const CONNECTED: CellConnection = { connected: true, reason: '' }
 
-export const useCellConnection = create<CellConnection>(() => CONNECTED)
+export function cellConnectionQuery() {
+  return queryOptions({ queryKey: queryKeys.cellConnection, queryFn: readConnection })
+}
 
-/** Ask the server; one that is not asked about its cell, or does not answer now, changes nothing. */
-export async function loadCellConnection(): Promise<void> {
+/** A server that is not asked about its cell has nothing to lose. */
+async function readConnection(): Promise<CellConnection> {
   try {
-    useCellConnection.setState(await call<CellConnection>('/cell/connection'))
+    return await call<CellConnection>('/cell/connection')
   } catch (error) {
-    // The page says by other means that nobody answers, or that it is logged out.
-    if (error instanceof ServerError && error.status === 404) useCellConnection.setState(CONNECTED)
+    if (error instanceof ServerError && error.status === 404) return CONNECTED
+    throw error
   }
 }
 
 /** Connect what was lost; a refusal is a ServerError. */
-export async function connectCell(): Promise<void> {
-  await post<unknown>('/cell/connect', {})
-  await loadCellConnection()
+export function connectCell(): Promise<unknown> {
+  return post<unknown>('/cell/connect', {})
 }

@@ -17,6 +17,7 @@ import type {
   StepBody,
   HotChangeBody,
 } from './types'
+import { addressOf } from '../document/path'
 
 /** The server refused; `where` names the parameter or place it is about. */
 export class ServerError extends Error {
@@ -103,15 +104,10 @@ async function session(): Promise<SessionBody> {
   return answer
 }
 
-/** An id as a part of an address; its slashes stay. */
-export function idPath(id: string): string {
-  return id.split('/').map(encodeURIComponent).join('/')
-}
-
 export const api = {
   session,
   behaviors: () => call<readonly BehaviorSummary[]>('/behaviors'),
-  behavior: (id: string) => call<BehaviorView>(`/behaviors/${idPath(id)}`),
+  behavior: (id: string) => call<BehaviorView>(`/behaviors/${addressOf(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartResultBody>('/runs', body, { 'idempotency-key': key }),
   /** The data with which a run can start at a node. */
@@ -129,8 +125,8 @@ export const api = {
   autonomy: (run: string, level: string) => command(run, 'autonomy', { level }),
   breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),
   change: (run: string, body: HotChangeBody) => post<HotChangeResultBody>(`/runs/${encodeURIComponent(run)}/control/change`, body),
-  keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
-  keepBreakpoints: (behavior: string, body: BreakpointsBody) => sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
+  keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${addressOf(behavior)}`),
+  keepBreakpoints: (behavior: string, body: BreakpointsBody) => sent<BreakpointsBody>('PUT', `/breakpoints/${addressOf(behavior)}`, body),
   interrupted: () => call<readonly InterruptedRun[]>('/interrupted'),
   resumeInterrupted: (run: string, body: ResumeBody) => post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
   stopCell: (reason: string) => post<void>('/cell/stop', { reason }),

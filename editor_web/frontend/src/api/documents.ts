@@ -1,5 +1,5 @@
 /** Editing over HTTP: documents, drafts, edits of texts, saving, and what can be put into a behavior. */
-import { call, idPath, post, sent, ServerError } from './client'
+import { call, post, sent, ServerError } from './client'
 import type {
   CatalogueBody,
   ConflictBody,
@@ -13,9 +13,10 @@ import type {
   SaveResultBody,
   TargetFindingsBody,
 } from './types'
+import { addressOf } from '../document/path'
 
 function at(id: string, rest = ''): string {
-  return `/documents/${idPath(id)}${rest}`
+  return `/documents/${addressOf(id)}${rest}`
 }
 
 export const documents = {

@@ -1,6 +1,9 @@
 /** Named entries of the cell's store: who changed one last, and what is in it. */
+import { queryOptions } from '@tanstack/react-query'
 import type { Dict } from '../document/dict'
 import { call, post } from './client'
+import { queryKeys } from './queryKeys'
+import { teach, type TaughtReference } from './teaching'
 import type { EntryChanged, EntryPage, EntryRecord } from './types'
 
 export const entries = {
@@ -17,4 +20,26 @@ export const entries = {
     })
     return record.value
   },
+}
+
+export const entryQueries = {
+  found: (kind: string, text: string) =>
+    queryOptions({ queryKey: queryKeys.entriesFound(kind, text), queryFn: () => teach.entries(kind, text) }),
+  /** Null where there is none. */
+  row: (kind: string, name: string) =>
+    queryOptions({ queryKey: queryKeys.entry(kind, name), queryFn: async () => (await entries.row(kind, name)) ?? null }),
+  value: (kind: string, name: string) =>
+    queryOptions({ queryKey: queryKeys.entryValue(kind, name), queryFn: () => entries.value(kind, name) }),
+  history: (kind: string, name: string) =>
+    queryOptions({ queryKey: queryKeys.entryHistory(kind, name), queryFn: () => teach.history(kind, name) }),
+  /** A revision stays what it is. */
+  revision: (kind: string, name: string, revision: number) =>
+    queryOptions({
+      queryKey: queryKeys.revision(kind, name, revision),
+      queryFn: () => teach.revision(kind, name, revision),
+      staleTime: Infinity,
+    }),
+  /** Where an arm would be along something. */
+  fits: (arm: string, what: TaughtReference) => queryOptions({ queryKey: queryKeys.fits(arm, what), queryFn: () => teach.fits(arm, what) }),
+  capture: (id: number) => queryOptions({ queryKey: queryKeys.capture(id), queryFn: () => teach.capture(id) }),
 }

@@ -1,11 +1,11 @@
 /** How far the goals of the shown run are, by the node that sent them. */
 import type { Dict } from '../document/dict'
 import { useEffect, useSyncExternalStore } from 'react'
-import { create } from 'zustand'
 import { useData } from './data'
 import type { GoalProgress } from './types'
+import { pageStore } from './pageStore'
 
-export const useGoals = create<{ readonly goals: Dict<GoalProgress> }>(() => ({ goals: {} }))
+export const useGoals = pageStore<{ readonly goals: Dict<GoalProgress> }>(() => ({ goals: {} }))
 
 /** Follow the goals of a run while it is under way and the page can be seen; undefined follows none. */
 export function useGoalsOf(run: string | undefined): void {

@@ -3,10 +3,10 @@
  * The arm follows only while the mouse is down in the view and this page passes that on, every 50 ms: neither says so in
  * the other's name, so an arm rests when either of them hangs.
  */
-import { create } from 'zustand'
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
 import type { HandleStatus, RefusedFrame } from './types'
+import { pageStore } from './pageStore'
 
 /** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
 export type HandleMode = HandleStatus['mode']
@@ -17,45 +17,69 @@ interface GripStore extends Omit<HandleStatus, 'k'> {
 }
 
 const NONE: GripStore = { arm: '', mode: 'move', pulled: false, refused: '' }
-export const useHandleDrag = create<GripStore>(() => NONE)
-
-let socket: WebSocket | undefined
+export const useHandleDrag = pageStore<GripStore>(() => NONE)
 
 /** Show a handle at this arm's tool, for operators; empty takes it away. */
 export function showHandle(arm: string, mode: HandleMode = 'move'): void {
-  if (!arm) {
-    socket?.close()
-    socket = undefined
-    useHandleDrag.setState(NONE)
+  if (arm) {
+    connection.getState().take(arm, mode)
     return
   }
-  const send = () => socket?.send(JSON.stringify({ k: 'take', arm, mode }))
-  if (socket?.readyState === WebSocket.OPEN) send()
-  else open(send)
+  connection.getState().close()
+  useHandleDrag.setState(NONE)
 }
 
 /** The view says that the mouse is down in it; it says so every 50 ms as long as that is so. */
 export function sendDragKeepAlive(): void {
-  if (socket?.readyState === WebSocket.OPEN) socket.send('{"k":"held"}')
+  connection.getState().keepAlive()
 }
 
-function open(then: () => void): void {
-  socket?.close()
-  const opened = openSocket(`/cell/grip/${PAGE}`)
-  socket = opened
-  opened.onopen = then
-  opened.onmessage = (message: MessageEvent<string>) => {
-    const frame = JSON.parse(message.data) as HandleStatus | RefusedFrame
-    if (frame.k === 'refused') {
-      useHandleDrag.setState({ refused: frame.hint ? `${frame.message}: ${frame.hint}` : frame.message })
-      return
+/** The connection of the handle. */
+class Connection {
+  private socket: WebSocket | undefined
+
+  take(arm: string, mode: HandleMode): void {
+    const words = JSON.stringify({ k: 'take', arm, mode })
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(words)
+    else this.open(words)
+  }
+
+  keepAlive(): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send('{"k":"held"}')
+  }
+
+  close(): void {
+    const { socket } = this
+    this.socket = undefined
+    socket?.close()
+  }
+
+  private open(first: string): void {
+    this.close()
+    const opened = openSocket(`/cell/grip/${PAGE}`)
+    this.socket = opened
+    opened.onopen = () => opened.send(first)
+    opened.onmessage = (message: MessageEvent<string>) => {
+      if (this.socket === opened) hear(JSON.parse(message.data) as HandleStatus | RefusedFrame)
     }
-    const { arm, mode, pulled } = frame
-    useHandleDrag.setState(pulled || arm !== useHandleDrag.getState().arm ? { arm, mode, pulled, refused: '' } : { arm, mode, pulled })
+    opened.onclose = () => {
+      if (this.socket !== opened) return
+      this.socket = undefined
+      useHandleDrag.setState(NONE)
+    }
   }
-  opened.onclose = () => {
-    if (socket !== opened) return
-    socket = undefined
-    useHandleDrag.setState(NONE)
+}
+
+const connection = pageStore(
+  () => new Connection(),
+  (ended) => ended.close(),
+)
+
+function hear(frame: HandleStatus | RefusedFrame): void {
+  if (frame.k === 'refused') {
+    useHandleDrag.setState({ refused: frame.hint ? `${frame.message}: ${frame.hint}` : frame.message })
+    return
   }
+  const { arm, mode, pulled } = frame
+  useHandleDrag.setState(pulled || arm !== useHandleDrag.getState().arm ? { arm, mode, pulled, refused: '' } : { arm, mode, pulled })
 }

@@ -1,6 +1,6 @@
 /** What the 3D view of this page shows: kept in the browser, told to the server over the live connection. */
-import { create } from 'zustand'
 import type { ShowLayers } from './types'
+import { pageStore } from './pageStore'
 
 export type LayerGroup = ShowLayers['groups'][number]
 
@@ -11,7 +11,7 @@ const KEPT = 'flexcell.layers'
 /** What this page calls itself in the path of its 3D view; another page shows what it wants. */
 export const PAGE = Array.from(crypto.getRandomValues(new Uint32Array(3)), (part) => part.toString(36)).join('')
 
-export const useShownLayers = create<{ readonly groups: readonly LayerGroup[] }>(() => ({ groups: kept() }))
+export const useShownLayers = pageStore<{ readonly groups: readonly LayerGroup[] }>(() => ({ groups: kept() }))
 
 /** Show or hide one group. */
 export function setLayerShown(group: LayerGroup, isShown: boolean): void {

@@ -6,6 +6,7 @@ import { wallTime } from '../document/time'
 import { api } from './client'
 import { keepConnected, type LiveConnection } from './connection'
 import { OPERATED, useLive } from './liveStore'
+import { pageStore } from './pageStore'
 import { useSession } from './session'
 import { PAGE, useShownLayers } from './layerGroups'
 import { usePathScrub } from './pathScrub'
@@ -14,39 +15,50 @@ import type { CellStop, Frame } from './types'
 
 export { useLive } from './liveStore'
 
-/** What the stream has told, also while the past is shown. */
-let streamed: LiveState = EMPTY
+/** The stream of this page. */
+interface Stream {
+  /** What it has told, also while the past is shown. */
+  readonly streamed: LiveState
+  /** When it has told anything last, seconds since 1970; 0 before it has. */
+  readonly heardS: number
+  readonly connection: LiveConnection | undefined
+  /** The run that the page shows; empty for none. */
+  readonly watched: string
+}
+
+const NO_STREAM: Stream = { streamed: EMPTY, heardS: 0, connection: undefined, watched: '' }
+const stream = pageStore<Stream>(
+  () => NO_STREAM,
+  ({ connection }) => connection?.close(),
+)
 
 /** Show a moment of the past from now on; undefined shows what is live again. */
 export function showMoment(past: ShownMoment | undefined): void {
+  const { streamed } = stream.getState()
   useLive.setState({ ...(past ? atMoment(streamed, past) : streamed), past })
 }
 
 /** The last event of the watched run that the stream has told of. */
 export function streamedSeq(): number {
-  return streamed.seq
+  return stream.getState().streamed.seq
 }
 
 /** Take what was asked about the latest stop of the cell, as the stream would tell it. */
 export function takeStop(stop: CellStop | null): void {
-  streamed = { ...streamed, stop }
+  stream.setState(({ streamed }) => ({ streamed: { ...streamed, stop } }))
   useLive.setState({ stop })
 }
 
-let heardS = 0
-
 /** When the server has told anything last, as a time of day; empty before it has. */
 export function lastHeard(): string {
+  const { heardS } = stream.getState()
   return heardS > 0 ? wallTime(heardS) : ''
 }
 
-let connection: LiveConnection | undefined
-let watched = ''
-
 /** Show this run from now on; empty for none. */
 export function watch(run: string): void {
-  if (run === watched) return
-  watched = run
+  if (run === stream.getState().watched) return
+  stream.setState({ watched: run })
   sendWatch()
 }
 
@@ -77,25 +89,26 @@ export function serverNow(): number {
 
 /** Open the connection and keep it open; returns how to end it. */
 export function connect(): () => void {
+  const received = afterStop(show)
   const opened = keepConnected({
     onOpen: () => {
       // Another server process has another stop process.
       api.session().catch(() => undefined)
       sendShow()
-      if (watched) sendWatch()
+      if (stream.getState().watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
     },
     onFrame: (frame) => {
-      heardS = Date.now() / 1000
-      receive(frame)
+      stream.setState({ heardS: Date.now() / 1000 })
+      received.take(frame)
     },
     onLost: () => {
-      streamed = { ...streamed, ticking: false }
+      stream.setState(({ streamed }) => ({ streamed: { ...streamed, ticking: false } }))
       useLive.setState({ connection: 'lost', ticking: false })
     },
     onDenied: () => useLive.setState({ connection: 'denied' }),
   })
-  connection = opened
+  stream.setState({ connection: opened })
   const unsubscribe = useShownLayers.subscribe(sendShow)
   const forgetScrub = usePathScrub.subscribe(sendScrub)
   const forgetSession = useSession.subscribe((now, before) => {
@@ -106,21 +119,20 @@ export function connect(): () => void {
     unsubscribe()
     forgetScrub()
     forgetSession()
+    received.end()
     opened.close()
   }
 }
 
-const receive = afterStop(show)
-
 function show(frame: Frame): void {
   const before = useLive.getState()
-  const next = fold(streamed, frame, performance.now())
+  const next = fold(stream.getState().streamed, frame, performance.now())
   if (next === 'gap') {
     sendWatch()
     return
   }
   const restarted = before.epoch !== '' && before.epoch !== next.epoch
-  streamed = next
+  stream.setState({ streamed: next })
   const picture = before.past ? atMoment(next, before.past) : next
   const knowsRuns = frame.k === 'snapshot' || (before.knowsRuns && !restarted)
   useLive.setState({ ...picture, connection: 'live', generation: before.generation + (restarted ? 1 : 0), knowsRuns })
@@ -130,27 +142,31 @@ function show(frame: Frame): void {
 }
 
 function sendOperate(): void {
-  connection?.send({ k: 'operate', run: useLive.getState().operated })
+  send({ k: 'operate', run: useLive.getState().operated })
 }
 
 function sendShow(): void {
   const { groups } = useShownLayers.getState()
   // The ghost of the scrubbed path has the line of the path as well.
   const shown = usePathScrub.getState().robot ? groups.filter((group) => group !== 'paths') : groups
-  connection?.send({ k: 'show', page: PAGE, groups: shown })
+  send({ k: 'show', page: PAGE, groups: shown })
 }
 
 function sendScrub(now: { readonly robot: string; readonly share: number }, before: { readonly robot: string }): void {
-  if (now.robot) connection?.send({ k: 'scrub', page: PAGE, robot: now.robot, share: now.share })
-  else connection?.send({ k: 'scrub', page: PAGE, robot: before.robot, share: null })
+  if (now.robot) send({ k: 'scrub', page: PAGE, robot: now.robot, share: now.share })
+  else send({ k: 'scrub', page: PAGE, robot: before.robot, share: null })
   if (now.robot !== before.robot) sendShow()
 }
 
 /** Turn the camera of the 3D view to the first of these parts, frames or arms that the cell has. */
 export function lookAt(names: readonly string[]): void {
-  connection?.send({ k: 'look', page: PAGE, names })
+  send({ k: 'look', page: PAGE, names })
 }
 
 function sendWatch(): void {
-  connection?.send({ k: 'watch', run: watched })
+  send({ k: 'watch', run: stream.getState().watched })
+}
+
+function send(request: Parameters<LiveConnection['send']>[0]): void {
+  stream.getState().connection?.send(request)
 }

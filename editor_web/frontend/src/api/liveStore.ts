@@ -3,6 +3,7 @@ import { createContext, useContext } from 'react'
 import { createStore, useStore, type StoreApi } from 'zustand'
 import { EMPTY, type LiveState } from '../document/live'
 import type { ShownMoment } from '../document/timelineMoment'
+import { beginsAnew } from './pageStore'
 
 export type Connection = 'connecting' | 'live' | 'lost' | 'denied'
 
@@ -31,7 +32,9 @@ export function newLiveStore(operated = ''): StoreApi<LiveStore> {
 
 export const OPERATED = 'flexcell.operated'
 
-const page = newLiveStore(sessionStorage.getItem(OPERATED) ?? '')
+const operatedBefore = () => sessionStorage.getItem(OPERATED) ?? ''
+const page = newLiveStore(operatedBefore())
+beginsAnew(page, () => newLiveStore(operatedBefore()).getState())
 
 /** The store that what stands inside shows; without one it is that of the page. */
 export const LiveContext = createContext<StoreApi<LiveStore>>(page)

@@ -1,8 +1,8 @@
 /** Past moments in the 3D view of this page: asked for over a connection of their own, which ends with the past. */
-import { create } from 'zustand'
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
 import type { PastViewRequest, PastViewState } from './types'
+import { pageStore } from './pageStore'
 
 interface PastStore {
   /** What was asked for; null for the present. */
@@ -11,52 +11,66 @@ interface PastStore {
   readonly shown: PastViewState | null
 }
 
-export const usePast = create<PastStore>(() => ({ requested: null, shown: null }))
+export const usePast = pageStore<PastStore>(() => ({ requested: null, shown: null }))
 
 const AGAIN_MS = 1000
 
-let socket: WebSocket | undefined
-let again: ReturnType<typeof setTimeout> | undefined
-
 /** Let the 3D view of this page show a run as it was at a time of it; null lets it show the present again. */
 export function showCellAt(run: string, timeS: number | null): void {
+  const { requested, shown } = usePast.getState()
   if (timeS === null) {
-    leave()
+    connection.getState().close()
+    usePast.setState({ requested: null, shown: null })
     return
   }
-  const { requested, shown } = usePast.getState()
   const isSameRun = requested?.run === run
   usePast.setState({ requested: { run, time_s: timeS }, shown: isSameRun ? shown : null })
   // A run that was not recorded has no other moment either.
   if (isSameRun && shown?.problem) return
-  if (socket === undefined) open()
-  else send()
+  connection.getState().ask()
 }
 
-function leave(): void {
-  clearTimeout(again)
-  socket?.close()
-  socket = undefined
-  usePast.setState({ requested: null, shown: null })
-}
+/** The connection over which moments are asked for: opened with the first of them, and again when it is lost. */
+class Connection {
+  private socket: WebSocket | undefined
+  private again: ReturnType<typeof setTimeout> | undefined
 
-function open(): void {
-  const opened = openSocket(`/cell/past/${PAGE}`)
-  socket = opened
-  opened.onopen = send
-  opened.onmessage = (message: MessageEvent<string>) => {
-    const state = JSON.parse(message.data) as PastViewState
-    if (socket === opened && usePast.getState().requested?.run === state.run) usePast.setState({ shown: state })
+  /** Ask for what is requested now, as soon as it is open. */
+  ask(): void {
+    if (this.socket === undefined) this.open()
+    else this.send()
   }
-  opened.onclose = () => {
-    if (socket !== opened) return
-    socket = undefined
-    usePast.setState({ shown: null })
-    again = setTimeout(() => usePast.getState().requested && socket === undefined && open(), AGAIN_MS)
+
+  close(): void {
+    const { socket } = this
+    this.socket = undefined
+    clearTimeout(this.again)
+    socket?.close()
+  }
+
+  private open(): void {
+    const opened = openSocket(`/cell/past/${PAGE}`)
+    this.socket = opened
+    opened.onopen = () => this.send()
+    opened.onmessage = (message: MessageEvent<string>) => {
+      const state = JSON.parse(message.data) as PastViewState
+      if (this.socket === opened && usePast.getState().requested?.run === state.run) usePast.setState({ shown: state })
+    }
+    opened.onclose = () => {
+      if (this.socket !== opened) return
+      this.socket = undefined
+      usePast.setState({ shown: null })
+      this.again = setTimeout(() => usePast.getState().requested && this.socket === undefined && this.open(), AGAIN_MS)
+    }
+  }
+
+  private send(): void {
+    const { requested } = usePast.getState()
+    if (requested && this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(requested))
   }
 }
 
-function send(): void {
-  const { requested } = usePast.getState()
-  if (requested && socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(requested))
-}
+const connection = pageStore(
+  () => new Connection(),
+  (ended) => ended.close(),
+)

@@ -1,26 +1,32 @@
 /** The userdata of the moment of the past that is shown. */
-import { useEffect, useState } from 'react'
-import { wordsOf } from './client'
+import { skipToken, useQuery } from '@tanstack/react-query'
+import { useState } from 'react'
 import { useLive } from './live'
-import { pastApi, runSubject, useTimeline } from './timeline'
+import { problemOf } from './queryClient'
+import { pastQueries, runSubject, useTimeline, type Subject } from './timeline'
 import type { PastUserdata } from './types'
+
+interface Moment {
+  readonly subject: Subject
+  readonly seq: number
+}
 
 /** Undefined while the present is shown; kept up with the cursor, one request at a time. */
 export function usePastValues(run: string | undefined, isShown: boolean): PastUserdata | undefined {
   const seq = useLive((s) => s.past?.seq)
   const opened = useTimeline((s) => s.opened)
-  const [values, setValues] = useState<PastUserdata>()
-  const [isAsking, setAsking] = useState(false)
-  useEffect(() => setValues(undefined), [run, opened])
-  useEffect(() => {
-    const subject = opened ?? (run ? runSubject(run) : undefined)
-    if (!isShown || seq === undefined || !subject || isAsking || values?.seq === seq) return
-    setAsking(true)
-    pastApi
-      .userdata(subject, seq)
-      .then(setValues, (error: unknown) => setValues({ seq, scopes: {}, problem: wordsOf(error) }))
-      .finally(() => setAsking(false))
-  }, [run, opened, seq, isShown, isAsking, values])
-  // Of another run or time than what was told last, until that has come.
-  return seq === undefined ? undefined : (values ?? { seq, scopes: {}, problem: '' })
+  const subject = opened ?? (run ? runSubject(run) : undefined)
+  const [asked, ask] = useState<Moment>()
+  const query = pastQueries.userdata(asked?.subject ?? runSubject(''), asked?.seq ?? 0)
+  const { data, error, isFetching } = useQuery({ ...query, ...(!asked && { queryFn: skipToken }) })
+  const isOther = asked?.seq !== seq || asked?.subject.address !== subject?.address
+  if (isShown && !isFetching && isOther && seq !== undefined && subject) ask({ subject, seq })
+  const [latest, setLatest] = useState<Moment & { readonly values: PastUserdata }>()
+  const problem = problemOf(error)
+  const values = problem === undefined ? data : { seq: asked?.seq ?? 0, scopes: {}, problem }
+  if (asked && values && (latest?.subject !== asked.subject || latest.seq !== asked.seq || latest.values.problem !== values.problem))
+    setLatest({ ...asked, values })
+  if (seq === undefined) return undefined
+  // Of another time than the one that is shown, until that has come; never of another run.
+  return latest && latest.subject.address === subject?.address ? latest.values : { seq, scopes: {}, problem: '' }
 }

@@ -1,5 +1,5 @@
 /** Going along a planned path in the 3D view of this page, before anybody agrees to it; and turning its camera. */
-import { create } from 'zustand'
+import { pageStore } from './pageStore'
 
 interface PathScrub {
   /** The arm whose path is scrubbed; empty for none. */
@@ -10,7 +10,7 @@ interface PathScrub {
 
 const NONE: PathScrub = { robot: '', share: 0 }
 
-export const usePathScrub = create<PathScrub>(() => NONE)
+export const usePathScrub = pageStore<PathScrub>(() => NONE)
 
 /** Show the arm at this share of its path. */
 export function scrubPath(robot: string, share: number): void {

@@ -1,5 +1,5 @@
 /** Which named entry the page wants to see in 3D before anything runs. */
-import { create } from 'zustand'
+import { pageStore } from './pageStore'
 
 export interface Previewed {
   /** The field or list that wants it; one that is already shown tells when it changes. */
@@ -15,7 +15,7 @@ interface PreviewStore {
   readonly shown: Previewed | undefined
 }
 
-export const usePreview = create<PreviewStore>(() => ({ shown: undefined }))
+export const usePreview = pageStore<PreviewStore>(() => ({ shown: undefined }))
 
 /** Show this entry in the place of the one before; undefined shows none. */
 export function showPreview(shown: Previewed | undefined): void {

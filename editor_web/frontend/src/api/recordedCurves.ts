@@ -1,5 +1,7 @@
 /** Curves of recorded runs. */
+import { queryOptions } from '@tanstack/react-query'
 import { call } from './client'
+import { queryKeys } from './queryKeys'
 import type { RecordedCurves, RecordedFields } from './types'
 
 export const recordedApi = {
@@ -13,4 +15,23 @@ export const recordedApi = {
     ]
     return call<RecordedCurves>(`${address}/curves?${String(new URLSearchParams([...fields.map((field) => ['field', field]), ...range]))}`)
   },
+}
+
+/** Curves to be drawn: of each source the part of its own time. */
+export interface AskedCurves {
+  readonly sources: readonly { readonly address: string; readonly startS: number }[]
+  readonly fields: readonly string[]
+  readonly fromS: number
+  readonly untilS: number
+  readonly cells: number
+}
+
+export const recordedQueries = {
+  fields: (addresses: readonly string[]) =>
+    queryOptions({ queryKey: queryKeys.recordedFields(addresses), queryFn: () => Promise.all(addresses.map(recordedApi.fields)) }),
+}
+
+/** The curves of each source. */
+export function curvesOfAll({ sources, fields, fromS, untilS, cells }: AskedCurves): Promise<readonly RecordedCurves[]> {
+  return Promise.all(sources.map(({ address, startS }) => recordedApi.curves(address, fields, startS + fromS, startS + untilS, cells)))
 }

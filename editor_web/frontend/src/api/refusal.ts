@@ -1,6 +1,6 @@
 /** Commands to the server, and what it said when it refused the last one. */
-import { create } from 'zustand'
 import { ServerError } from './client'
+import { pageStore } from './pageStore'
 
 export interface Refusal {
   /** The command in words, `Pause`. */
@@ -9,7 +9,7 @@ export interface Refusal {
   readonly hint: string
 }
 
-export const useRefusal = create<{ readonly refusal: Refusal | undefined }>(() => ({ refusal: undefined }))
+export const useRefusal = pageStore<{ readonly refusal: Refusal | undefined }>(() => ({ refusal: undefined }))
 
 /** Say why a command was not even sent. */
 export function showRefusal(what: string, message: string, hint = ''): void {

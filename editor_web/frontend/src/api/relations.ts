@@ -1,5 +1,7 @@
 /** Around a document: data flow, fixes of findings, versions, who refers to it, moving, deleting and restoring. */
-import { call, idPath, post } from './client'
+import { queryOptions } from '@tanstack/react-query'
+import { call, post } from './client'
+import { queryKeys } from './queryKeys'
 import type {
   DeletedDocumentBody,
   DocumentDiff,
@@ -12,9 +14,10 @@ import type {
   VersionBody,
   VersionTextBody,
 } from './types'
+import { addressOf } from '../document/path'
 
 function at(id: string, rest = ''): string {
-  return `/documents/${idPath(id)}${rest}`
+  return `/documents/${addressOf(id)}${rest}`
 }
 
 export const relations = {
@@ -31,4 +34,10 @@ export const relations = {
   remove: (id: string) => call<void>(at(id), { method: 'DELETE' }),
   deleted: () => call<readonly DeletedDocumentBody[]>('/deleted_documents'),
   restore: (id: string) => post<DocumentBody>(at(id, '/restore'), {}),
+}
+
+export const relationQueries = {
+  versions: (id: string) => queryOptions({ queryKey: queryKeys.versions(id), queryFn: () => relations.versions(id) }),
+  referrers: (id: string) => queryOptions({ queryKey: queryKeys.referrersOf(id), queryFn: () => relations.referrers(id) }),
+  deleted: () => queryOptions({ queryKey: queryKeys.deleted, queryFn: relations.deleted }),
 }

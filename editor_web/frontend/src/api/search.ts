@@ -1,7 +1,9 @@
 /** What the search of the page offers: the commands of the page that is shown, and what the server finds by name. */
-import { create } from 'zustand'
+import { queryOptions } from '@tanstack/react-query'
 import { call } from './client'
+import { queryKeys } from './queryKeys'
 import type { NameHit } from './types'
+import { pageStore } from './pageStore'
 
 export interface PageCommand {
   readonly id: string
@@ -23,7 +25,7 @@ interface SearchStore {
 
 const none = (): readonly PageCommand[] => []
 
-export const useSearch = create<SearchStore>(() => ({ isOpen: false, commands: none }))
+export const useSearch = pageStore<SearchStore>(() => ({ isOpen: false, commands: none }))
 
 export function openSearch(): void {
   useSearch.setState({ isOpen: true })
@@ -45,6 +47,10 @@ export function pageCommands(): readonly PageCommand[] {
 }
 
 /** Behaviors, nodes, entries and runs whose names have every word of a text, best first. */
-export function searchNames(text: string, signal: AbortSignal): Promise<readonly NameHit[]> {
-  return call<readonly NameHit[]>(`/search?text=${encodeURIComponent(text)}`, { signal })
+export function namesQuery(text: string) {
+  return queryOptions({
+    queryKey: queryKeys.names(text),
+    queryFn: ({ signal }) => call<readonly NameHit[]>(`/search?text=${encodeURIComponent(text)}`, { signal }),
+    enabled: text !== '',
+  })
 }

@@ -1,6 +1,6 @@
 /** Who this page is to the server, and where its stop process listens: kept in memory alone, also while nobody answers. */
-import { create } from 'zustand'
 import type { SessionBody } from './types'
+import { pageStore } from './pageStore'
 
 interface SessionStore {
   /** What the server has said last. */
@@ -9,7 +9,7 @@ interface SessionStore {
   readonly isLoggedOut: boolean
 }
 
-export const useSession = create<SessionStore>(() => ({ session: undefined, isLoggedOut: false }))
+export const useSession = pageStore<SessionStore>(() => ({ session: undefined, isLoggedOut: false }))
 
 /** Whether the server draws the cell in 3D. */
 export function hasCellView(session: SessionBody | undefined): boolean {

@@ -1,9 +1,9 @@
 /** Starting a run at a node, or pausing it before one: asked for on any page, answered on that of the behavior. */
-import { create } from 'zustand'
 import { completed } from '../document/breakpoints'
 import { api } from './client'
 import { useLive } from './live'
 import { send } from './refusal'
+import { pageStore } from './pageStore'
 
 export interface StartHere {
   readonly behavior: string
@@ -11,7 +11,7 @@ export interface StartHere {
   readonly kind: 'from' | 'to'
 }
 
-export const useStartHere = create<{ readonly asked: StartHere | undefined }>(() => ({ asked: undefined }))
+export const useStartHere = pageStore<{ readonly asked: StartHere | undefined }>(() => ({ asked: undefined }))
 
 export function askStartHere(asked: StartHere | undefined): void {
   useStartHere.setState({ asked })

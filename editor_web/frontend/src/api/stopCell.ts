@@ -16,14 +16,11 @@ const REST_MS = 5000
 const RETRY_MS = 1000
 const TRIES = 10
 
-let stops = 0
-
 /** Stop every arm and every run. Works while the engine is blocked or dead, and as often as it is pressed. */
 export function stopCell(): void {
-  stops += 1
-  const number = stops
+  const number = useStop.getState().count + 1
   const channel = useSession.getState().session?.stop ?? undefined
-  useStop.setState({ stop: newStop(number, channel !== undefined, lastHeard()) })
+  useStop.setState({ stop: newStop(number, channel !== undefined, lastHeard()), count: number })
   if (channel) void throughProcess(number, channel)
   void throughEngine(number)
   setTimeout(() => change(number, (stop) => ({ isUnanswered: !isAcknowledged(stop) })), UNANSWERED_MS)

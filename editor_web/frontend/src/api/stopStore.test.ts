@@ -15,7 +15,7 @@ afterEach(() => {
 
 function shown(): { readonly frames: number[]; readonly take: (frame: number) => void } {
   const frames: number[] = []
-  return { frames, take: afterStop((frame: number) => void frames.push(frame)) }
+  return { frames, take: afterStop((frame: number) => void frames.push(frame)).take }
 }
 
 it('shows at once what comes while there is no stop, and after one is acknowledged', () => {

@@ -1,7 +1,9 @@
 /** Sweeps: lists, results, and their execution; and what was told of runs that were executed again. */
-import { create } from 'zustand'
+import { queryOptions } from '@tanstack/react-query'
 import type { Dict } from '../document/dict'
-import { call, idPath, post } from './client'
+import { addressOf } from '../document/path'
+import { call, post } from './client'
+import { queryKeys } from './queryKeys'
 import type {
   Baseline,
   FactorChoice,
@@ -17,28 +19,53 @@ import type {
   SweepView,
   TrialResult,
 } from './types'
+import { pageStore } from './pageStore'
 
 export const sweepsApi = {
   list: () => call<SweepList>('/sweeps'),
-  view: (id: string) => call<SweepView | SearchView>(`/sweeps/${idPath(id)}`),
-  runs: (id: string) => call<SweepRuns>(`/sweeps/${idPath(id)}/runs`),
-  run: (id: string, number: number) => call<TrialResult>(`/sweeps/${idPath(id)}/runs/${number}`),
+  view: (id: string) => call<SweepView | SearchView>(`/sweeps/${addressOf(id)}`),
+  runs: (id: string) => call<SweepRuns>(`/sweeps/${addressOf(id)}/runs`),
+  run: (id: string, number: number) => call<TrialResult>(`/sweeps/${addressOf(id)}/runs/${number}`),
   factors: (behavior: string) => call<readonly FactorChoice[]>(`/sweep-factors?behavior=${encodeURIComponent(behavior)}`),
   create: (body: NewSweepBody) => post<SweepIdBody>('/sweeps', body),
-  start: (id: string, again = false) => post<void>(`/sweeps/${idPath(id)}/start`, { again }),
-  stop: (id: string) => post<void>(`/sweeps/${idPath(id)}/stop`, {}),
-  record: (id: string, number: number) => post<RecordedTrial>(`/sweeps/${idPath(id)}/runs/${number}/recording`, {}),
+  start: (id: string, again = false) => post<void>(`/sweeps/${addressOf(id)}/start`, { again }),
+  stop: (id: string) => post<void>(`/sweeps/${addressOf(id)}/stop`, {}),
+  record: (id: string, number: number) => post<RecordedTrial>(`/sweeps/${addressOf(id)}/runs/${number}/recording`, {}),
   shrinking: (id: string, number: number) => call<Shrinking>(shrinkingPath(id, number)),
   shrink: (id: string, number: number, body: ShrinkBody) => post<void>(shrinkingPath(id, number), body),
   stopShrinking: (id: string, number: number) => post<void>(`${shrinkingPath(id, number)}/stop`, {}),
   saveCase: (id: string, number: number, file: string) => post<SweepIdBody>(`${shrinkingPath(id, number)}/case`, { id: file }),
-  baselines: (id: string) => call<readonly Baseline[]>(`/sweeps/${idPath(id)}/baselines`),
+  baselines: (id: string) => call<readonly Baseline[]>(`/sweeps/${addressOf(id)}/baselines`),
   comparison: (id: string, { results, version }: Baseline, margin: number | undefined) =>
-    call<SweepComparison>(`/sweeps/${idPath(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
+    call<SweepComparison>(`/sweeps/${addressOf(id)}/comparison?${comparisonQuery(results, version.version, margin)}`),
+}
+
+/** A running one is looked at again that often. */
+const SHRINKING_PERIOD_MS = 1000
+
+export const sweepQueries = {
+  list: () => queryOptions({ queryKey: queryKeys.sweeps, queryFn: sweepsApi.list }),
+  /** With its runs. */
+  one: (id: string) =>
+    queryOptions({
+      queryKey: queryKeys.sweep(id),
+      queryFn: async () => {
+        const [view, runs] = await Promise.all([sweepsApi.view(id), sweepsApi.runs(id)])
+        return { view, runs }
+      },
+    }),
+  run: (id: string, number: number) => queryOptions({ queryKey: queryKeys.sweepRun(id, number), queryFn: () => sweepsApi.run(id, number) }),
+  shrinking: (id: string, number: number) =>
+    queryOptions({
+      queryKey: queryKeys.shrinking(id, number),
+      queryFn: () => sweepsApi.shrinking(id, number),
+      refetchInterval: ({ state }) => (state.data && state.data.status !== 'idle' ? SHRINKING_PERIOD_MS : false),
+    }),
+  factors: (behavior: string) => queryOptions({ queryKey: queryKeys.factors(behavior), queryFn: () => sweepsApi.factors(behavior) }),
 }
 
 function shrinkingPath(id: string, number: number): string {
-  return `/sweeps/${idPath(id)}/runs/${number}/shrinking`
+  return `/sweeps/${addressOf(id)}/runs/${number}/shrinking`
 }
 
 function comparisonQuery(results: string, version: string, margin: number | undefined): string {
@@ -52,7 +79,7 @@ export interface Rerun {
 }
 
 /** By the path of their recordings, as long as the page lives. */
-export const useReruns = create<{ readonly byRecording: Dict<Rerun> }>(() => ({ byRecording: {} }))
+export const useReruns = pageStore<{ readonly byRecording: Dict<Rerun> }>(() => ({ byRecording: {} }))
 
 /** Execute a run again, and keep what came of it for the page of its recording. */
 export async function recordRun(sweep: string, number: number): Promise<RecordedTrial> {

@@ -1,6 +1,6 @@
 /** The connection of the page for teaching: what jogs and presses ends with it; and what it asks over HTTP. */
 import type { Dict } from '../document/dict'
-import { create } from 'zustand'
+import { queryOptions } from '@tanstack/react-query'
 import { call, post } from './client'
 import { useLive } from './live'
 import type {
@@ -26,7 +26,9 @@ import type {
   TriggerDocument,
 } from './types'
 import { PAGE } from './layerGroups'
+import { queryKeys } from './queryKeys'
 import { openSocket } from './socket'
+import { pageStore } from './pageStore'
 
 export interface TeachStore {
   readonly isOpen: boolean
@@ -62,14 +64,13 @@ const NOTHING: TeachStore = {
   refused: {},
 }
 
-export const useTeach = create<TeachStore>(() => NOTHING)
+export const useTeach = pageStore<TeachStore>(() => NOTHING)
 
 const RETRY_MS = 1000
-let socket: WebSocket | undefined
 
 /** Say something to the server; nothing while it is not connected. */
 export function sendToServer(message: TeachingMessage): void {
-  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message))
+  connection.getState().send(message)
 }
 
 /** Take the words of a refusal away. */
@@ -78,46 +79,59 @@ export function clearTeachRefusal(what: RefusedFrame['what']): void {
   useTeach.setState({ refused: others })
 }
 
-let users = 0
-let disconnect: (() => void) | undefined
-
 /** Keep the connection open for one more user; returns how to end that, with the last one the connection ends. */
 export function connectTeach(): () => void {
-  users += 1
-  disconnect ??= keepOpen()
-  return () => {
-    users -= 1
-    if (users > 0) return
-    disconnect?.()
-    disconnect = undefined
-  }
+  return connection.getState().use()
 }
 
-function keepOpen(): () => void {
-  let ended = false
-  let retry: ReturnType<typeof setTimeout> | undefined
+/** The connection for teaching, open for as long as somebody uses it. */
+class Connection {
+  private users = 0
+  private socket: WebSocket | undefined
+  private retry: ReturnType<typeof setTimeout> | undefined
 
-  function open(): void {
-    const opened = openSocket(`/teach/live?page=${PAGE}`)
-    socket = opened
-    opened.onopen = () => useTeach.setState({ isOpen: true })
-    opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as TeachingFrame)
-    opened.onclose = () => {
-      if (socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isPreviewing: false })
-      if (!ended) retry = setTimeout(open, RETRY_MS)
+  use(): () => void {
+    this.users += 1
+    if (this.users === 1) this.open()
+    return () => {
+      this.users -= 1
+      if (this.users === 0) this.end()
     }
   }
 
-  open()
-  return () => {
-    ended = true
-    clearTimeout(retry)
+  send(message: TeachingMessage): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message))
+  }
+
+  /** Nothing is told any more. */
+  end(): void {
+    const { socket } = this
+    this.users = 0
+    this.socket = undefined
+    clearTimeout(this.retry)
     socket?.close()
-    socket = undefined
     useTeach.setState(NOTHING)
   }
+
+  private open(): void {
+    const opened = openSocket(`/teach/live?page=${PAGE}`)
+    this.socket = opened
+    opened.onopen = () => useTeach.setState({ isOpen: true })
+    opened.onmessage = (message: MessageEvent<string>) => {
+      if (this.socket === opened) take(JSON.parse(message.data) as TeachingFrame)
+    }
+    opened.onclose = () => {
+      if (this.socket !== opened) return
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isPreviewing: false })
+      this.retry = setTimeout(() => this.open(), RETRY_MS)
+    }
+  }
 }
+
+const connection = pageStore(
+  () => new Connection(),
+  (ended) => ended.end(),
+)
 
 function take(message: TeachingFrame): void {
   const before = useTeach.getState()
@@ -200,4 +214,9 @@ export const teach = {
   play: (body: PlayBody, signal: AbortSignal) => aborted<PlaybackResult>('/teach/play', body, signal),
   goal: (address: string, request: unknown, signal: AbortSignal) => aborted<GoalEnd>('/bus/goal', { address, request }, signal),
   push: (body: PushToolBody) => post<void>('/teach/push', body),
+}
+
+/** It is edited: what somebody typed before does not come back from what is kept here. */
+export function triggerDocumentQuery() {
+  return queryOptions({ queryKey: queryKeys.triggers, queryFn: teach.document, gcTime: 0 })
 }

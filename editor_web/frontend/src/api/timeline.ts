@@ -1,12 +1,15 @@
 /** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
 import type { Dict } from '../document/dict'
-import { create } from 'zustand'
+import { queryOptions } from '@tanstack/react-query'
 import { nextMoment } from '../document/timelineMoment'
 import { withTimeline, type LoadedTimeline } from '../document/timeline'
-import { call, idPath, wordsOf } from './client'
+import { addressOf } from '../document/path'
+import { call, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
+import { queryKeys } from './queryKeys'
 import type { OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
+import { pageStore } from './pageStore'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
 export interface Subject {
@@ -24,7 +27,7 @@ export function runSubject(run: string, isPast = false): Subject {
 }
 
 export function recordingSubject(path: string, run: string): Subject {
-  return { address: `/recordings/${idPath(path)}`, run, recorded: path, isPast: true }
+  return { address: `/recordings/${addressOf(path)}`, run, recorded: path, isPast: true }
 }
 
 export interface PastQuery {
@@ -41,11 +44,29 @@ export const pastApi = {
     call<PastRunsBody>(`/past-runs?${query({ text, kind, since_s: sinceS, until_s: untilS, limit })}`),
   recordings: () => call<readonly RecordingFile[]>('/recordings'),
   openRun: (run: string) => call<OpenRunBody>(`/runs/${encodeURIComponent(run)}/past`),
-  openRecording: (path: string) => call<OpenRunBody>(`/recordings/${idPath(path)}`),
+  openRecording: (path: string) => call<OpenRunBody>(`/recordings/${addressOf(path)}`),
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
   userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),
   failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
+}
+
+export const pastQueries = {
+  runs: (looked: PastQuery) => queryOptions({ queryKey: queryKeys.foundRuns(looked), queryFn: () => pastApi.runs(looked) }),
+  recordings: () => queryOptions({ queryKey: queryKeys.recordings, queryFn: pastApi.recordings }),
+  opened: (id: string, isRecording: boolean) =>
+    queryOptions({
+      queryKey: queryKeys.opened(id, isRecording),
+      queryFn: () => (isRecording ? pastApi.openRecording(id) : pastApi.openRun(id)),
+    }),
+  part: (subject: Subject, fromS: number, untilS: number, seq: number) =>
+    queryOptions({
+      queryKey: queryKeys.timelinePart(subject, fromS, untilS, seq),
+      queryFn: () => pastApi.timeline(subject, 0, fromS, untilS),
+    }),
+  userdata: (subject: Subject, seq: number) =>
+    queryOptions({ queryKey: queryKeys.userdata(subject, seq), queryFn: () => pastApi.userdata(subject, seq) }),
+  failure: (subject: Subject) => queryOptions({ queryKey: queryKeys.failure(subject), queryFn: () => pastApi.failure(subject) }),
 }
 
 function query(values: Dict<string | number | undefined>): string {
@@ -68,7 +89,7 @@ interface TimelineStore {
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8] as const
 
-export const useTimeline = create<TimelineStore>(() => ({
+export const useTimeline = pageStore<TimelineStore>(() => ({
   opened: undefined,
   course: undefined,
   problem: '',
@@ -113,16 +134,60 @@ interface Wish {
   readonly seq: number | undefined
 }
 
-let hasCell = false
+/** Goes to moments of the past, one after the other. */
+class Cursor {
+  /** Whether this server has a 3D view that can show the past. */
+  servesCell = false
+  private wish: Wish | undefined
+  private of: Subject | undefined
+  private isAsking = false
+
+  async lookAt(subject: Subject, wish: Wish): Promise<void> {
+    this.wish = wish
+    this.of = subject
+    if (this.isAsking) return
+    this.isAsking = true
+    while (this.wish !== undefined) {
+      const [next, of]: [Wish, Subject] = [this.wish, this.of]
+      this.wish = undefined
+      const pause = new Promise((resolve) => setTimeout(resolve, APART_MS))
+      await this.show(of, next)
+      if (this.wish !== undefined) await pause
+    }
+    this.isAsking = false
+  }
+
+  /** Go nowhere any more, also not where it is on its way to. */
+  stop(): void {
+    this.wish = undefined
+    this.of = undefined
+  }
+
+  private async show(subject: Subject, { timeS, seq }: Wish): Promise<void> {
+    const before = useLive.getState().past
+    try {
+      const answer = await call<PastRunState | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
+      // Meanwhile somebody may have gone back to the present, or to another run.
+      if (this.of?.address !== subject.address) return
+      const at = timeS ?? answer?.time_s ?? before?.timeS ?? 0
+      const moment = answer ? nextMoment(before, answer, at) : before && { ...before, timeS: at }
+      showMoment(moment)
+      if (this.servesCell) showCellAt(subject.recorded, at)
+    } catch (error) {
+      if (this.of?.address === subject.address) useTimeline.setState({ problem: wordsOf(error) })
+    }
+  }
+}
+
+const cursor = pageStore(
+  () => new Cursor(),
+  (ended) => ended.stop(),
+)
 
 /** Whether this server has a 3D view that can show the past. */
 export function servesCell(isServed: boolean): void {
-  hasCell = isServed
+  cursor.getState().servesCell = isServed
 }
-
-let wished: Wish | undefined
-let wishedOf: Subject | undefined
-let isAsking = false
 
 /** Go to a time of the run's clock. */
 export function seek(subject: Subject, timeS: number): void {
@@ -148,40 +213,12 @@ export function backToPresent(subject: Subject): void {
 
 /** Show no past any more. */
 export function leave(subject: Subject): void {
-  wished = undefined
-  wishedOf = undefined
+  cursor.getState().stop()
   useTimeline.setState({ timeS: undefined, isPlaying: false })
   showMoment(undefined)
-  if (hasCell) showCellAt(subject.recorded, null)
+  if (cursor.getState().servesCell) showCellAt(subject.recorded, null)
 }
 
-async function lookAt(subject: Subject, wish: Wish): Promise<void> {
-  wished = wish
-  wishedOf = subject
-  if (isAsking) return
-  isAsking = true
-  while (wished !== undefined) {
-    const next: Wish = wished
-    const of: Subject = wishedOf
-    wished = undefined
-    const pause = new Promise((resolve) => setTimeout(resolve, APART_MS))
-    await show(of, next)
-    if (wished !== undefined) await pause
-  }
-  isAsking = false
-}
-
-async function show(subject: Subject, { timeS, seq }: Wish): Promise<void> {
-  const before = useLive.getState().past
-  try {
-    const answer = await call<PastRunState | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
-    // Meanwhile somebody may have gone back to the present, or to another run.
-    if (wishedOf?.address !== subject.address) return
-    const at = timeS ?? answer?.time_s ?? before?.timeS ?? 0
-    const moment = answer ? nextMoment(before, answer, at) : before && { ...before, timeS: at }
-    showMoment(moment)
-    if (hasCell) showCellAt(subject.recorded, at)
-  } catch (error) {
-    useTimeline.setState({ problem: wordsOf(error) })
-  }
+function lookAt(subject: Subject, wish: Wish): Promise<void> {
+  return cursor.getState().lookAt(subject, wish)
 }

@@ -1,5 +1,5 @@
 /** How far somebody has come in the tour: kept in this browser, so that it can be left and gone on with. */
-import { create } from 'zustand'
+import { pageStore } from './pageStore'
 
 export interface TourState {
   /** Whether it is on the page now. */
@@ -17,7 +17,7 @@ export interface TourState {
 const KEPT = 'flexcell.tour'
 const AT_FIRST: TourState = { isOn: false, step: 0, document: '', isSettled: false, isFresh: false }
 
-export const useTour = create<TourState>(() => kept())
+export const useTour = pageStore<TourState>(() => kept())
 
 /** Begin, or go on where it was left. */
 export function openTour(): void {

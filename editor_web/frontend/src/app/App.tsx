@@ -3,8 +3,10 @@ import { AppShell, Burger, Kbd, UnstyledButton } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
 import { IconChartDots, IconCube, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
 import { Suspense, useEffect } from 'react'
-import { api } from '../api/client'
+import { behaviorQueries } from '../api/behaviorQueries'
 import { connect, useLive, watch } from '../api/live'
+import { useAnswer, useOutdated } from '../api/queryClient'
+import { queryKeys } from '../api/queryKeys'
 import { openSearch, useSearch, type PageCommand } from '../api/search'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
@@ -14,6 +16,7 @@ import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
+import { nameOfPath } from '../document/path'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
@@ -38,7 +41,6 @@ import {
   type Route,
 } from './route'
 import { RoutedPage } from './RoutedPage'
-import { useFetched } from './useFetched'
 
 const StopGuide = lazyView(async () => (await import('./StopGuide')).StopGuide)
 const Tour = lazyView(async () => (await import('../features/tour/Tour')).Tour)
@@ -47,10 +49,9 @@ export function App() {
   const route = useRoute()
   const [menuOpen, menu] = useDisclosure(false)
   const runs = useLive((s) => s.runs)
-  // Whoever writes a file, here or elsewhere: the list is as the files are.
-  const written = useLive((s) => JSON.stringify(s.documents))
   const session = useSession((s) => s.session)
-  const behaviors = useFetched('behaviors', api.behaviors, `${location.pathname} ${written}`)
+  const behaviors = useAnswer(behaviorQueries.all())
+  useOutdated(queryKeys.behaviors, location.pathname)
   const isNarrow = useMediaQuery('(max-width: 62em)', false, { getInitialValueInEffect: false })
   const shown = shownRun(route, runs)
   const isEditing = route.page === 'edit'
@@ -69,7 +70,7 @@ export function App() {
   useSearchKey()
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
   useEffect(() => {
-    const name = behaviorId ? (behaviorId.split('/').pop() ?? '') : (session?.cell_name ?? '')
+    const name = behaviorId ? nameOfPath(behaviorId) : (session?.cell_name ?? '')
     document.title = [name, 'flexcell'].filter(Boolean).join(' · ')
   }, [behaviorId, session])
 

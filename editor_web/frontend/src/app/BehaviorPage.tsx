@@ -3,7 +3,6 @@ import { Button } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
-import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
 import { clearRefusal, showRefusal } from '../api/refusal'
@@ -45,7 +44,7 @@ import { StartHereDialog } from '../features/parameters/StartHereDialog'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
-import { useFetched } from './useFetched'
+import { useBehavior } from './useBehavior'
 import { useMomentAddress } from './useMomentAddress'
 import { NarrowGraph, SideTabs, Wide, type Arrangement, type Tab } from './WorkSpace'
 
@@ -65,9 +64,7 @@ export interface BehaviorPageProps {
 export function BehaviorPage(props: BehaviorPageProps) {
   const { id } = props
   const generation = useLive((s) => s.generation)
-  // Whoever changed the behavior under way: what is drawn is what runs.
-  const changedAt = useLive((s) => s.log.findLast((line) => line.kind === 'behavior_changed')?.seq ?? 0)
-  const fetched = useFetched(id, () => api.behavior(id), changedAt)
+  const fetched = useBehavior(id)
   useEffect(() => {
     clearRefusal()
     void loadSavedBreakpoints(id)

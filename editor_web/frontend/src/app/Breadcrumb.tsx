@@ -1,5 +1,5 @@
 /** The way from the root to the selected node. */
-import { pathsTo } from '../document/tree'
+import { nameOfPath, pathsTo } from '../document/path'
 
 export function Breadcrumb({ selected, onSelect }: { selected: string | undefined; onSelect: (path: string) => void }) {
   if (!selected) return null
@@ -10,7 +10,7 @@ export function Breadcrumb({ selected, onSelect }: { selected: string | undefine
         {paths.map((path) => (
           <li key={path}>
             <button type="button" aria-current={path === selected ? 'location' : undefined} onClick={() => onSelect(path)}>
-              {path.split('/').pop()}
+              {nameOfPath(path)}
             </button>
           </li>
         ))}

@@ -1,9 +1,10 @@
 /** The page of the cell, for reading: what it consists of, where that is, and what it does now. */
 import { useMemo, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
-import { cellItems } from '../api/cellItems'
+import { cellItemsQuery } from '../api/cellItems'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
+import { useAnswer } from '../api/queryClient'
 import { hasCellView } from '../api/session'
 import type { CellStateFrame, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
@@ -16,7 +17,6 @@ import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
-import { useFetched } from './useFetched'
 
 interface CellPageProps {
   /** The address of the selected item, empty for none. */
@@ -27,7 +27,7 @@ interface CellPageProps {
 }
 
 export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
-  const { value: cell, problem } = useFetched('cell items', cellItems)
+  const { value: cell, problem } = useAnswer(cellItemsQuery())
   const [state, setState] = useState<CellStateFrame>()
   useData({ number: 0, traffic: false, topic: '', fields: [], run: '', goals: '', cell: true }, (frame) => {
     if (frame.k === 'cell') setState(frame)

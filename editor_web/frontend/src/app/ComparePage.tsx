@@ -3,7 +3,8 @@ import { ActionIcon, Tabs, Tooltip } from '@mantine/core'
 import { IconArrowsExchange } from '@tabler/icons-react'
 import { Suspense, useEffect, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
-import { comparisonApi } from '../api/comparison'
+import { comparisonQueries } from '../api/comparison'
+import { useAnswer } from '../api/queryClient'
 import type { RunComparison } from '../api/types'
 import { Empty } from '../components/Empty'
 import { PageLink } from '../components/PageLink'
@@ -18,7 +19,6 @@ import { Settings } from '../features/comparison/Settings'
 import { VisitDetails } from '../features/comparison/VisitDetails'
 import { VisitTable } from '../features/comparison/VisitTable'
 import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
-import { useFetched } from './useFetched'
 
 const ComparedCurves = lazyView(async () => (await import('./ComparedCurves')).ComparedCurves)
 
@@ -32,7 +32,7 @@ export interface ComparePageProps {
 
 export function ComparePage(props: ComparePageProps) {
   const { left, right, onOpen } = props
-  const { value, problem } = useFetched(`${left} ${right}`, () => comparisonApi.compare(left === LAST_GOOD ? '' : left, right))
+  const { value, problem } = useAnswer(comparisonQueries.compare(left === LAST_GOOD ? '' : left, right))
   const good = left === LAST_GOOD ? value?.left.id : undefined
   useEffect(() => {
     // The last good run is another one tomorrow: the address names the one that is shown.

@@ -1,8 +1,8 @@
 /** Runs of the shown behavior whose engine died, offered on top of its page. */
-import { api } from '../api/client'
+import { behaviorQueries } from '../api/behaviorQueries'
 import { useLive } from '../api/live'
+import { useAnswer } from '../api/queryClient'
 import { Interrupted } from '../features/runs/Interrupted'
-import { useFetched } from './useFetched'
 
 export interface InterruptedHereProps {
   /** Name of the behavior that is shown; all runs where none is. */
@@ -11,11 +11,9 @@ export interface InterruptedHereProps {
 }
 
 export function InterruptedHere({ behavior, onResumed }: InterruptedHereProps) {
-  // A resumed run is one more run of this server.
-  const count = useLive((s) => s.runs.length)
   const role = useLive((s) => s.role)
   const isConnected = useLive((s) => s.connection === 'live')
-  const interrupted = useFetched('interrupted', api.interrupted, count)
+  const interrupted = useAnswer(behaviorQueries.interrupted())
   const runs = (interrupted.value ?? []).filter((run) => behavior === undefined || run.behavior === behavior)
   if (runs.length === 0) return null
   const obstacle = role === 'operator' ? undefined : 'you may look only; log in with the operator token'

@@ -2,7 +2,8 @@
 import { Button } from '@mantine/core'
 import { IconGitCompare, IconTrendingUp } from '@tabler/icons-react'
 import { useEffect, useMemo, useState } from 'react'
-import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
+import { useAnswer } from '../api/queryClient'
+import { openSubject, pastQueries, recordingSubject, runSubject, useTimeline } from '../api/timeline'
 import { hasCellView } from '../api/session'
 import type { OpenRunBody, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
@@ -22,7 +23,6 @@ import { pastBodies } from './dock'
 import { LayoutChoice } from './LayoutChoice'
 import { compareHref, LAST_GOOD, runHref, sweepHref, trendHref } from './route'
 import { useRunLayout } from './runLayout'
-import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
 import { Wide } from './WorkSpace'
 
@@ -38,7 +38,7 @@ export interface PastPageProps {
 
 export function PastPage(props: PastPageProps) {
   const { id, isRecording } = props
-  const fetched = useFetched(`${isRecording} ${id}`, () => (isRecording ? pastApi.openRecording(id) : pastApi.openRun(id)))
+  const fetched = useAnswer(pastQueries.opened(id, isRecording))
   if (fetched.problem) {
     return (
       <Empty title={isRecording ? 'This recording cannot be opened' : 'This run cannot be opened'}>

@@ -19,7 +19,7 @@ import { nameOf } from '../features/runs/RunList'
 import '../features/runs/runs.css'
 import { InterruptedHere } from './InterruptedHere'
 import { compareHref, sideBySideHref, runHref } from './route'
-import { useBehaviorOf } from './useBehaviorOf'
+import { useBehavior } from './useBehavior'
 
 /** So many of those that are over are listed. */
 const ENDED = 8
@@ -118,7 +118,7 @@ interface CardProps {
 
 function Card({ run, held, isChosen, onChoose, onOpen }: CardProps) {
   const name = nameOf(run.behavior)
-  const root = useBehaviorOf(run).value?.graph ?? null
+  const root = useBehavior(run.behavior).value?.graph ?? null
   const commands = useCommands(run, undefined, name)
   return (
     <RunCard

@@ -23,7 +23,7 @@ import { nameOf } from '../features/runs/RunList'
 import '../features/runs/runs.css'
 import { Breadcrumb } from './Breadcrumb'
 import { sideBySideHref, runHref } from './route'
-import { useBehaviorOf } from './useBehaviorOf'
+import { useBehavior } from './useBehavior'
 
 export interface SideBySidePageProps {
   readonly left: string
@@ -141,7 +141,7 @@ interface RunColumnProps {
 function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
-  const behavior = useBehaviorOf(run)
+  const behavior = useBehavior(run.behavior)
   const root = behavior.value?.graph ?? null
   const name = `${nameOf(run.behavior)} on the ${side}`
   const commands = useCommands(run, root && selected ? nodeAt(root, selected)?.path : undefined, name)

@@ -2,7 +2,9 @@
 import '../features/sweeps/sweeps.css'
 import { useEffect, useState } from 'react'
 import { useLive } from '../api/live'
-import { sweepsApi } from '../api/sweeps'
+import { useAnswer, useOutdated } from '../api/queryClient'
+import { queryKeys } from '../api/queryKeys'
+import { sweepQueries } from '../api/sweeps'
 import type { SearchView, SweepRuns, SweepView } from '../api/types'
 import { Empty } from '../components/Empty'
 import { PageLink } from '../components/PageLink'
@@ -15,7 +17,6 @@ import { SuccessRate, SweepControls, SweepProgress } from '../features/sweeps/Sw
 import { SweepReport } from '../features/sweeps/SweepReport'
 import { VerdictBadge } from '../features/sweeps/VerdictBadge'
 import { behaviorHref, recordingHref, sweepHref, SWEEPS_HREF } from './route'
-import { useFetched } from './useFetched'
 
 /** Results are read again that often while the sweep is executed. */
 const PERIOD_MS = 2000
@@ -28,7 +29,8 @@ export interface SweepPageProps {
 export function SweepPage({ id, onOpen }: SweepPageProps) {
   const reported = useLive((s) => lookup(s.sweeps, id))
   const revision = useSlowly(`${reported?.status} ${reported?.done}`, reported === undefined || reported.status === 'idle')
-  const { value, problem } = useFetched(id, () => read(id), revision)
+  useOutdated(queryKeys.sweep(id), revision)
+  const { value, problem } = useAnswer(sweepQueries.one(id))
   if (problem) {
     return (
       <Empty title="This sweep cannot be read">
@@ -47,11 +49,6 @@ export function SweepPage({ id, onOpen }: SweepPageProps) {
 interface Shown {
   readonly view: SweepView | SearchView
   readonly runs: SweepRuns
-}
-
-async function read(id: string): Promise<Shown> {
-  const [view, runs] = await Promise.all([sweepsApi.view(id), sweepsApi.runs(id)])
-  return { view, runs }
 }
 
 function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string) => void }) {

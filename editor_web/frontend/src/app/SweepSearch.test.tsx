@@ -126,7 +126,8 @@ it('chooses a run by its mark in the figure, and the runs of a cause', async () 
   const mark = figure.querySelector('[data-run="3"]')
   if (!mark) throw new Error('the figure has no mark')
   fireEvent.click(mark)
-  expect(await screen.findByRole('region', { name: 'Run 3' })).toHaveTextContent('cup: it slipped')
+  const details = await screen.findByRole('region', { name: 'Run 3' })
+  await waitFor(() => expect(details).toHaveTextContent('cup: it slipped'))
   expect(figure.querySelector('[data-selected]')).toHaveAttribute('data-run', '3')
   await user.click(screen.getByRole('button', { name: /^2 runs it slipped/ }))
   expect(screen.getByRole('region', { name: 'Runs with this cause: 2' })).toBeVisible()
@@ -184,6 +185,18 @@ it('shrinks a run, follows it, and saves what is left as a test case', async () 
   await user.click(await screen.findByRole('button', { name: 'tests/cases/a.yaml' }))
   expect(server().bodies(`POST ${SHRINKING}/case`)).toEqual([{ id: 'tests/cases/transfer_3.yaml' }, { id: 'tests/cases/a.yaml' }])
   expect(opened.mock.calls).toEqual([['tests/cases/a.yaml']])
+})
+
+it('is followed further where it could not be read once', async () => {
+  const progress = { runs: 4, most_runs: 200, step: 'round', changed: [] }
+  server().on(`GET ${SHRINKING}`, { ...NEVER, status: 'running', progress })
+  shrinkRun()
+  await screen.findByText('4 of at most 200 runs tried: round')
+  server().on(`GET ${SHRINKING}`, new Refusal(503, { message: 'too much to do', hint: '' }))
+  expect(await screen.findByText('too much to do')).toBeVisible()
+  server().on(`GET ${SHRINKING}`, FOUND)
+  expect(await screen.findByRole('group', { name: 'The smallest change from nominal' })).toBeVisible()
+  expect(screen.queryByText('too much to do')).toBeNull()
 })
 
 it('stops with the smallest so far, and says why nothing was found', async () => {

@@ -1,16 +1,15 @@
 /** All sweeps of the project, and making a new one. */
 import '../features/sweeps/sweeps.css'
-import { sweepsApi } from '../api/sweeps'
 import { useLive } from '../api/live'
+import { useAnswer } from '../api/queryClient'
+import { sweepQueries } from '../api/sweeps'
 import { Empty } from '../components/Empty'
 import { NewSweep } from '../features/sweeps/NewSweep'
 import { OtherResults, SweepList } from '../features/sweeps/SweepList'
 import { sweepHref } from './route'
-import { useFetched } from './useFetched'
 
 export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void }) {
-  const ends = useLive((s) => Object.values(s.sweeps).filter((each) => each?.status === 'idle').length)
-  const { value, problem } = useFetched('sweeps', sweepsApi.list, ends)
+  const { value, problem } = useAnswer(sweepQueries.list())
   const mayOperate = useLive((s) => s.role) === 'operator'
   return (
     <div className="sweep-page">

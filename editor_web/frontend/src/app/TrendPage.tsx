@@ -2,7 +2,8 @@
 import { Button, NativeSelect } from '@mantine/core'
 import { IconGitCompare } from '@tabler/icons-react'
 import { useState } from 'react'
-import { comparisonApi } from '../api/comparison'
+import { comparisonQueries } from '../api/comparison'
+import { useAnswer } from '../api/queryClient'
 import { Empty } from '../components/Empty'
 import { Panel } from '../components/Panel'
 import { DurationTable } from '../features/trend/DurationTable'
@@ -10,14 +11,13 @@ import { RunBars } from '../features/trend/RunBars'
 import { countText } from '../features/trend/words'
 import styles from '../features/trend/trend.module.css'
 import { compareHref, runHref } from './route'
-import { useFetched } from './useFetched'
 
 const LAST = [10, 20, 50, 100, 200]
 
 export function TrendPage({ behavior, onOpen }: { readonly behavior: string; readonly onOpen: (href: string) => void }) {
   const [last, setLast] = useState(20)
   const [chosen, setChosen] = useState<readonly string[]>([])
-  const { value: trend, problem } = useFetched(`trend ${last} ${behavior}`, () => comparisonApi.trend(behavior, last))
+  const { value: trend, problem } = useAnswer(comparisonQueries.trend(behavior, last))
   if (problem) return <Empty title="The runs cannot be read">{problem}</Empty>
   if (!trend) return <div className="page-wait" role="status" aria-label="Loading" />
   // Newest first, so the older one is the left one.

@@ -16,9 +16,11 @@ import './styles/robots.css'
 import './styles/small.css'
 import { MantineProvider } from '@mantine/core'
 import { createRoot, type Root } from 'react-dom/client'
+import { newQueryClient } from '../api/queryClient'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { StopCell } from '../features/stop/StopCell'
 import { App } from './App'
+import { ServerAnswers } from './ServerAnswers'
 import { theme } from './theme'
 
 // STOP is a tree of its own: whatever fails in the page, it stays.
@@ -26,7 +28,9 @@ rootAt('stop').render(<StopCell />)
 rootAt('root').render(
   <ViewBoundary name="The page">
     <MantineProvider theme={theme} defaultColorScheme="auto">
-      <App />
+      <ServerAnswers client={newQueryClient()}>
+        <App />
+      </ServerAnswers>
     </MantineProvider>
   </ViewBoundary>,
 )

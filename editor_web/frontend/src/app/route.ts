@@ -1,6 +1,7 @@
 /** Which page an address means, and going to another one without loading. */
 import { useSyncExternalStore } from 'react'
 import { momentText } from '../document/moment'
+import { addressOf, decoded, partsOfPath, pathOfAddress } from '../document/path'
 
 export type Route =
   | { readonly page: 'home' }
@@ -20,8 +21,8 @@ export type Route =
 
 /** Read an address; what it does not know is the home page. */
 export function routeOf(pathname: string): Route {
-  const [, page, ...rest] = pathname.split('/')
-  const id = rest.map(decoded).join('/')
+  const [, page, ...rest] = partsOfPath(pathname)
+  const id = pathOfAddress(rest)
   if (page === 'behaviors' && id) return { page: 'behavior', id }
   if (page === 'runs') return id ? { page: 'run', id } : { page: 'runs' }
   if (page === 'beside') return { page: 'beside', left: decoded(rest[0] ?? ''), right: decoded(rest[1] ?? '') }
@@ -37,30 +38,22 @@ export function routeOf(pathname: string): Route {
   return { page: 'home' }
 }
 
-function decoded(part: string): string {
-  try {
-    return decodeURIComponent(part)
-  } catch {
-    return part
-  }
-}
-
 export function behaviorHref(id: string): string {
-  return `/behaviors/${id.split('/').map(encodeURIComponent).join('/')}`
+  return `/behaviors/${addressOf(id)}`
 }
 
 export const CELL_HREF = '/workcell'
 
 /** The cell, at one of its items where one is given, `robots/left`, and at a topic that tells of it. */
 export function cellHref(item = '', topic = ''): string {
-  return item ? `${CELL_HREF}/${item.split('/').map(encodeURIComponent).join('/')}${topic && `#${topic}`}` : CELL_HREF
+  return item ? `${CELL_HREF}/${addressOf(item)}${topic && `#${topic}`}` : CELL_HREF
 }
 
 export const TEACH_HREF = '/teach'
 
 /** The editor, at a node where one is given. */
 export function editHref(id: string, node = ''): string {
-  return `/edit/${id.split('/').map(encodeURIComponent).join('/')}${node ? `#${node}` : ''}`
+  return `/edit/${addressOf(id)}${node ? `#${node}` : ''}`
 }
 
 export function runHref(id: string): string {
@@ -77,7 +70,7 @@ export function sideBySideHref(left: string, right: string): string {
 export const PAST_HREF = '/past'
 
 export function recordingHref(path: string): string {
-  return `/recordings/${path.split('/').map(encodeURIComponent).join('/')}`
+  return `/recordings/${addressOf(path)}`
 }
 
 /** In the place of the left run: the last run of the same behavior before the right one that succeeded. */
@@ -90,7 +83,7 @@ export function compareHref(left: string, right: string, place = ''): string {
 
 /** The last runs of a behavior, by its name. */
 export function trendHref(behavior: string): string {
-  return `/trends/${behavior.split('/').map(encodeURIComponent).join('/')}`
+  return `/trends/${addressOf(behavior)}`
 }
 
 /** Whether a name is the path of a recording, and not the id of a run. */
@@ -109,7 +102,7 @@ export const SWEEPS_HREF = '/sweeps'
 
 /** A sweep, at one of its runs where one is given. */
 export function sweepHref(id: string, run?: number): string {
-  return `/sweeps/${id.split('/').map(encodeURIComponent).join('/')}${run === undefined ? '' : `#${run}`}`
+  return `/sweeps/${addressOf(id)}${run === undefined ? '' : `#${run}`}`
 }
 
 const listeners = new Set<() => void>()

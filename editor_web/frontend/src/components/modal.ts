@@ -1,8 +1,8 @@
 /** The browser's modal dialogs: which one is on top, as nothing outside of it can be reached while it is open. */
 import { useLayoutEffect, type RefObject } from 'react'
-import { create } from 'zustand'
+import { pageStore } from '../api/pageStore'
 
-const useOpen = create<{ readonly dialogs: readonly HTMLDialogElement[] }>(() => ({ dialogs: [] }))
+const useOpen = pageStore<{ readonly dialogs: readonly HTMLDialogElement[] }>(() => ({ dialogs: [] }))
 
 /** Open the dialog over everything else, for as long as it is shown. */
 export function useModal(element: RefObject<HTMLDialogElement | null>, isShown = true): void {

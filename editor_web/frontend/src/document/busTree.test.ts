@@ -1,12 +1,13 @@
 /** The tree of a bus. */
 import { expect, test } from 'vitest'
-import { byNamespace, found, shortName } from './busTree'
+import { byNamespace, found } from './busTree'
+import { nameOfPath } from './path'
 
 const entry = (name: string, type = 'Number', doc = '') => ({ name, type, doc })
 
 test('entries are grouped by namespace and sorted', () => {
   const groups = byNamespace([entry('left/b'), entry('cell'), entry('left/gripper/x'), entry('left/a')])
-  expect(groups.map((group) => [group.name, group.entries.map((each) => shortName(each.name))])).toEqual([
+  expect(groups.map((group) => [group.name, group.entries.map((each) => nameOfPath(each.name))])).toEqual([
     ['', ['cell']],
     ['left', ['a', 'b']],
     ['left/gripper', ['x']],

@@ -1,4 +1,5 @@
 /** The names of a bus grouped by their namespaces, and found by a search. Pure. */
+import { parentPath } from './path'
 
 export interface Named {
   readonly name: string
@@ -25,15 +26,10 @@ export function found<T extends Named>(entries: readonly T[], search: string): r
 export function byNamespace<T extends Named>(entries: readonly T[]): readonly Namespace<T>[] {
   const groups = new Map<string, T[]>()
   for (const entry of entries.toSorted((a, b) => (a.name < b.name ? -1 : 1))) {
-    const name = entry.name.slice(0, Math.max(0, entry.name.lastIndexOf('/')))
+    const name = parentPath(entry.name)
     const group = groups.get(name)
     if (group) group.push(entry)
     else groups.set(name, [entry])
   }
   return [...groups].map(([name, of]) => ({ name, entries: of })).toSorted((a, b) => (a.name < b.name ? -1 : 1))
-}
-
-/** The last part of a name. */
-export function shortName(name: string): string {
-  return name.slice(name.lastIndexOf('/') + 1)
 }

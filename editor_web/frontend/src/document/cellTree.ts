@@ -4,6 +4,7 @@ import { lookup, type Dict } from './dict'
 import { modeWords, robotLook } from './robotMode'
 import type { Status } from './runState'
 import { degrees, rollPitchYaw } from './teaching'
+import { firstOfPath, nameOfPath, restOfPath } from './path'
 
 export type NodeKind = CellItem['kind'] | 'frame' | 'group'
 
@@ -50,7 +51,7 @@ export function cellTree(items: readonly CellItem[], frames: readonly string[]):
 function nodeOf(item: CellItem, items: readonly CellItem[]): CellNode {
   const children = items.filter((other) => other.owner === item.path).map((other) => nodeOf(other, items))
   // A tool has no name of its own in a cell: it is the gripper of its robot.
-  const name = item.kind === 'tool' ? (item.path.split('/').at(-1) ?? item.name) : item.name
+  const name = item.kind === 'tool' ? nameOfPath(item.path) : item.name
   return { address: item.path, kind: item.kind, name, detail: item.model === name ? '' : item.model, item, children }
 }
 
@@ -59,16 +60,16 @@ function framesOf(items: readonly CellItem[], frames: readonly string[]): CellNo
   const parts = new Set(items.filter((item) => item.kind === 'part').map((item) => item.name))
   const byOwner = new Map<string, CellNode[]>()
   for (const frame of frames.filter((each) => !parts.has(each)).toSorted()) {
-    const [owner = '', ...rest] = frame.split('/')
+    const [owner, rest] = [firstOfPath(frame), restOfPath(frame)]
     const node = {
       address: `${FRAMES}/${frame}`,
       kind: 'frame',
-      name: rest.join('/') || owner,
+      name: rest || owner,
       detail: '',
       item: undefined,
       children: [],
     } as const
-    const own = rest.length > 0 ? owner : ''
+    const own = rest ? owner : ''
     byOwner.set(own, [...(byOwner.get(own) ?? []), node])
   }
   const single = byOwner.get('') ?? []

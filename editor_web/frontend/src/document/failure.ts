@@ -2,6 +2,7 @@
 import type { MeasuredValue, NodeDifference, RunComparison, RunFailure, RunView } from '../api/types'
 import { runWords } from './runState'
 import { duration, wallTime } from './time'
+import { firstOfPath } from './path'
 
 /** So many nodes are named whose time is another one. */
 const SLOWEST = 5
@@ -62,7 +63,7 @@ const WORD = /[\p{L}\p{N}_./-]+/gu
 export function placesOf(failure: RunFailure, arms: readonly string[]): readonly string[] {
   const words = failure.links.flatMap((link) => link.message.match(WORD) ?? [])
   const addresses = [...failure.links.map((link) => link.where), ...failure.around.flatMap((line) => line.text.match(WORD) ?? [])]
-  const asked = addresses.map((address) => address.split('/')[0] ?? '').filter((name) => arms.includes(name))
+  const asked = addresses.map(firstOfPath).filter((name) => arms.includes(name))
   // `left` is a side in a sentence, and an arm in an address.
   return [...new Set([...words.filter((word) => !arms.includes(word)), ...asked])].slice(0, MAX_PLACES)
 }

@@ -6,6 +6,7 @@
  */
 import type { GraphNode, GraphTransition } from '../api/types'
 import { chainOf, layOutChain } from './chain'
+import { edgeId, edgeOf, outcomeId } from './edgeId'
 import { moved, type Box, type Point, type Size } from './geometry'
 import { kindLabel } from './tree'
 
@@ -79,16 +80,6 @@ function outcomeWidth(outcome: string): number {
 
 function labelWidth(outcome: string): number {
   return textWidth(outcome.length, 6.6) + 10
-}
-
-/** The id that an outcome of a machine has in the layout. */
-export function outcomeId(path: string, outcome: string): string {
-  return `${path}#${outcome}`
-}
-
-/** The id of a machine's arrow. */
-export function arrowId(path: string, source: string, outcome: string): string {
-  return `${path}|${source}|${outcome}`
 }
 
 /**
@@ -234,7 +225,7 @@ function straightMachine(node: GraphNode, inside: readonly Inner[], chain: reado
   laidOut.arrows.forEach((arrow, index) => {
     const { source, outcome } = arrow.transition
     courses.push({
-      id: arrowId(node.path, source, outcome),
+      id: edgeId({ machine: node.path, source, outcome }),
       machine: node.path,
       source: items[index]?.id ?? '',
       target: items[index + 1]?.id ?? '',
@@ -270,7 +261,7 @@ function machineGraph(node: GraphNode, inside: readonly Inner[], style: Style): 
     if (!source || !target) return []
     return [
       {
-        id: arrowId(node.path, t.source, t.outcome),
+        id: edgeId({ machine: node.path, source: t.source, outcome: t.outcome }),
         sources: [source],
         targets: [target],
         labels: [{ text: t.outcome, width: labelWidth(t.outcome), height: LABEL_HEIGHT }],
@@ -301,16 +292,16 @@ function options({ direction }: Style): Record<string, string> {
 
 function courseOf(node: GraphNode, arrow: ElkArrow, shift: Point): Course | undefined {
   const section = arrow.sections?.[0]
-  const [, source = '', outcome = ''] = arrow.id.split('|')
-  if (!section) return undefined
+  const start = edgeOf(arrow.id)
+  if (!section || !start) return undefined
   const points = [section.startPoint, ...(section.bendPoints ?? []), section.endPoint]
   const label = arrow.labels?.[0]
   return {
     id: arrow.id,
     machine: node.path,
-    source: arrow.sources[0] ?? source,
+    source: arrow.sources[0] ?? start.source,
     target: arrow.targets[0] ?? '',
-    outcome,
+    outcome: start.outcome,
     points: points.map((point) => moved(point, shift)),
     label: moved({ x: (label?.x ?? 0) + (label?.width ?? 0) / 2, y: (label?.y ?? 0) + (label?.height ?? 0) / 2 }, shift),
   }

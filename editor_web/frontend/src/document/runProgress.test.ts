@@ -1,7 +1,8 @@
 /** How far a run is. */
 import { expect, it } from 'vitest'
 import type { GraphNode, NodeLive } from '../api/types'
-import { activeLeaves, stripCells, pathWords, progressText } from './runProgress'
+import { activeLeaves, stripCells, progressText } from './runProgress'
+import { pathWords } from './path'
 
 const graph = (path: string, children: readonly GraphNode[] = []): GraphNode => ({
   path,

@@ -1,6 +1,7 @@
 /** How far a run is, told from the state of its nodes: its steps, those under way, and a count. Pure. */
 import { lookup, type Dict } from './dict'
 import type { GraphNode, NodeLive } from '../api/types'
+import { pathsTo } from './path'
 
 type Nodes = Dict<NodeLive>
 
@@ -21,15 +22,9 @@ export function stripCells(root: GraphNode, limit = MAX_STRIP_CELLS): readonly G
 /** The innermost active nodes, in the order in which they were entered. */
 export function activeLeaves(nodes: Nodes): readonly string[] {
   const active = Object.keys(nodes).filter((path) => lookup(nodes, path)?.status === 'active')
-  const above = new Set(active.flatMap((path) => path.split('/').map((_, count, parts) => parts.slice(0, count).join('/'))))
+  const above = new Set(active.flatMap((path) => pathsTo(path).slice(0, -1)))
   const leaves = active.filter((path) => !above.has(path))
   return leaves.toSorted((a, b) => (lookup(nodes, a)?.entered_s ?? 0) - (lookup(nodes, b)?.entered_s ?? 0) || a.localeCompare(b))
-}
-
-/** `both › left`; the root stays as it is. */
-export function pathWords(path: string): string {
-  const [, ...inner] = path.split('/')
-  return inner.join(' › ') || path
 }
 
 /** `2 of 5 steps done, 1 active, 1 failed`. A node that waits with its outcome is not done yet. */

@@ -1,6 +1,7 @@
 /** The state of a run in one word, why it is so, and its look: the only place where they are made. Pure. */
 import type { ControlView, GateWait, RunView } from '../api/types'
 import { matches } from './breakpoints'
+import { nameOfPath } from './path'
 
 /** A colour and an icon, of runs and of nodes. */
 export type Status = 'idle' | 'active' | 'done' | 'failed' | 'stopped' | 'skipped' | 'warning' | 'paused' | 'waiting' | 'locked'
@@ -78,7 +79,7 @@ function watched(control: ControlView): RunState {
   if (asked > 0) return { word: 'Waiting for answer', look: 'waiting', reason: asked === 1 ? '' : `${asked} questions` }
   const locked = control.waiting.find((each) => each.reasons.includes('lock'))
   return locked
-    ? { word: 'Waiting at lock', look: 'locked', reason: lastName(locked.path) }
+    ? { word: 'Waiting at lock', look: 'locked', reason: nameOfPath(locked.path) }
     : { word: 'Running', look: 'active', reason: '' }
 }
 
@@ -89,12 +90,8 @@ function pauseReason(control: ControlView): string {
       wait.reasons.includes('pause') &&
       control.breakpoints.some((each) => (each.enabled ?? true) && (each.when ?? 'before') === wait.point && matches(each.path, wait.path)),
   )
-  const where = atBreakpoint ? `breakpoint at ${lastName(atBreakpoint.path)}` : 'everything is at rest'
+  const where = atBreakpoint ? `breakpoint at ${nameOfPath(atBreakpoint.path)}` : 'everything is at rest'
   return control.cannot.length > 0 ? `cannot be held: ${control.cannot.join(', ')}` : where
-}
-
-function lastName(path: string): string {
-  return path.split('/').at(-1) ?? path
 }
 
 const NODE_WORDS: Readonly<Record<string, string>> = {

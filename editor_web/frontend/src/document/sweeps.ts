@@ -17,6 +17,7 @@ import type {
 } from '../api/types'
 import { lookup } from './dict'
 import { numeral, plainText } from './values'
+import { fileTitle } from './path'
 
 /** A share as a percentage; what is not quite everything never reads as 100 %. */
 export function percent(share: number): string {
@@ -35,7 +36,7 @@ export function rateOf(live: SweepLive): number | undefined {
 
 /** The last part of the path of a document, without its suffix. */
 export function sweepName(id: string): string {
-  return (id.split('/').pop() ?? id).replace(/\.(ya?ml|json)$/, '')
+  return fileTitle(id)
 }
 
 /** How far it is now: what the stream tells while it is executed, else what was read. */

@@ -1,5 +1,6 @@
 /** The timeline of a run: its rows, what part of the time is seen, and going from mark to mark. Pure. */
 import type { ActivationInterval, TimelineMarker, Timeline } from '../api/types'
+import { depthOf, nameOfPath, parentPath, pathsTo } from './path'
 
 /** Everything that is known of one run up to event `seq`. */
 export interface LoadedTimeline {
@@ -43,13 +44,13 @@ export function rowsOf(paths: Iterable<string>, order: readonly string[], closed
   const inGraph = new Set(order)
   const others = [...known].filter((path) => !inGraph.has(path)).toSorted()
   const all = [...order.filter((path) => known.has(path)), ...others]
-  const parents = new Set(all.map(parentOf))
+  const parents = new Set(all.map(parentPath))
   return all
     .filter((path) => !ancestorsOf(path).some((above) => closed.has(above)))
     .map((path) => ({
       path,
-      name: path.slice(path.lastIndexOf('/') + 1),
-      depth: path.split('/').length - 1,
+      name: nameOfPath(path),
+      depth: depthOf(path),
       hasChildren: parents.has(path),
       isOpen: !closed.has(path),
     }))
@@ -59,13 +60,8 @@ function withParents(paths: Iterable<string>): readonly string[] {
   return [...paths].flatMap((path) => [...ancestorsOf(path), path])
 }
 
-function parentOf(path: string): string {
-  return path.slice(0, Math.max(0, path.lastIndexOf('/')))
-}
-
 function ancestorsOf(path: string): readonly string[] {
-  const parts = path.split('/')
-  return parts.slice(0, -1).map((_, index) => parts.slice(0, index + 1).join('/'))
+  return pathsTo(path).slice(0, -1)
 }
 
 /** The part of the time that is seen, seconds of the run's clock. */

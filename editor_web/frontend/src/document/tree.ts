@@ -11,12 +11,6 @@ export function nodeAt(root: GraphNode, path: string): GraphNode | undefined {
   return flatten(root).find((node) => node.path === path)
 }
 
-/** The paths from the root down to `path`, both included. */
-export function pathsTo(path: string): readonly string[] {
-  const parts = path.split('/')
-  return parts.map((_, index) => parts.slice(0, index + 1).join('/'))
-}
-
 /** Is it drawn with its children inside? */
 export function isContainer(node: GraphNode): boolean {
   return node.children.length > 0

@@ -8,7 +8,7 @@
 import { chainOf, layOutChain } from '../chain'
 import { moved, type Box, type Point, type Size } from '../geometry'
 import type { LayoutCall } from '../layout'
-import { arrowId, outcomeId } from '../layout'
+import { edgeId, outcomeId } from '../edgeId'
 import { adopt, empty, put, sized, type Content } from './content'
 import { byEngine, entryOf, portOf } from './engineLayout'
 import { FRAME_HEAD, frameWidth, leafSize, PILL_HEIGHT, pillsOf, pillWidth, rowsHeight, tableHeight, twigSize } from './measure'
@@ -252,7 +252,7 @@ function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: 
     const source = node.children.find((child) => child.name === arrow.source)
     if (from && to && source) {
       content.routes.set(
-        arrowId(node.path, arrow.source, arrow.outcome),
+        edgeId({ machine: node.path, source: arrow.source, outcome: arrow.outcome }),
         course(from, to, portOf(node, source, arrow.outcome, from), entryOf(node, names[index + 1] ?? '', to), rows.boxes),
       )
     }

@@ -1,7 +1,8 @@
 /** What differs between two versions, in words and as marks on both drawings. Pure. */
 import type { NodeChange } from '../../api/types'
-import { arrowId } from '../layout'
-import { allNodes, isMachine, nameOfPath, parentPath, pathsTo, type EditNode } from './model'
+import { edgeId, edgeOf, sourceOf } from '../edgeId'
+import { allNodes, isMachine, type EditNode } from './model'
+import { nameOfPath, parentPath, pathsTo } from '../path'
 
 export type Marking = 'added' | 'removed' | 'changed'
 
@@ -104,12 +105,17 @@ export function markingsOf(changes: readonly NodeChange[], before: EditNode | un
 function arrowsOf(root: EditNode | undefined): ReadonlyMap<string, string> {
   const machines = root ? allNodes(root).filter((node) => isMachine(node.kind)) : []
   return new Map(
-    machines.flatMap((machine) => machine.transitions.map((t) => [arrowId(machine.path, t.source, t.outcome), t.target] as const)),
+    machines.flatMap((machine) =>
+      machine.transitions.map((t) => [edgeId({ machine: machine.path, source: t.source, outcome: t.outcome }), t.target] as const),
+    ),
   )
 }
 
 /** The containers that have to be open for what is marked to be seen. */
 export function containersOfMarks(markings: ReadonlyMap<string, Marking>): ReadonlySet<string> {
-  const paths = [...markings.keys()].map((id) => `${id.split('|')[0] ?? ''}${id.includes('|') ? '/x' : ''}`)
+  const paths = [...markings.keys()].map((id) => {
+    const edge = edgeOf(id)
+    return edge ? sourceOf(edge) : id
+  })
   return new Set(paths.flatMap((path) => pathsTo(path).slice(0, -1)))
 }

@@ -2,7 +2,8 @@
 import { lookup } from '../dict'
 import type { CatalogueBody, DocumentInfo, KeyFlow, KeyReader, KeyWriter } from '../../api/types'
 import type { Box, Point } from '../geometry'
-import { nodeOf, pathsTo, type EditNode } from './model'
+import { nodeOf, type EditNode } from './model'
+import { pathsTo } from '../path'
 
 /** From one that writes a key to one that reads it; an empty `from` is the behavior itself. */
 export interface FlowLink {

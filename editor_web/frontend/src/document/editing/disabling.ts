@@ -1,6 +1,7 @@
 /** Passing nodes over: which outcome each is passed with, and the edits that disable or enable several at once. Pure. */
 import { setField, type Edit } from './edits'
-import { isFailure, isForeign, isTreePart, nodeOf, parentPath, pathsTo, ROOT, type EditNode } from './model'
+import { isFailure, isForeign, isTreePart, nodeOf, ROOT, type EditNode } from './model'
+import { parentPath, pathsTo } from '../path'
 
 /** The edits, or why there are none. */
 export interface Disabling {

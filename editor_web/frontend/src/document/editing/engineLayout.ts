@@ -1,5 +1,6 @@
 /** Machines that branch and come back are laid out by the layout engine, from port to port. */
-import { arrowId, outcomeId, type ElkShape, type LayoutCall } from '../layout'
+import { edgeId, outcomeId } from '../edgeId'
+import type { ElkShape, LayoutCall } from '../layout'
 import type { Size } from '../geometry'
 import { adopt, empty, put, type Content } from './content'
 import { entryY, PILL_HEIGHT, pillWidth, portY } from './measure'
@@ -73,7 +74,13 @@ export async function byEngine(
     const target = paths.get(t.target) ?? (drawn.includes(t.target) ? outcomeId(node.path, t.target) : undefined)
     const source = paths.get(t.source)
     return source && target
-      ? [{ id: arrowId(node.path, t.source, t.outcome), sources: [`${source}>${t.outcome}`], targets: [`${target}>`] }]
+      ? [
+          {
+            id: edgeId({ machine: node.path, source: t.source, outcome: t.outcome }),
+            sources: [`${source}>${t.outcome}`],
+            targets: [`${target}>`],
+          },
+        ]
       : []
   })
   const graph: ElkShape = { id: node.path, children, edges, layoutOptions: { ...ENGINE, ...wrapping(node, options) } }

@@ -1,4 +1,5 @@
 /** The id of a document, `behaviors/folder/name.yaml`, and its parts. Pure. */
+import { partsOfPath } from '../path'
 
 export interface FileParts {
   readonly folder: string
@@ -21,7 +22,7 @@ export function fileProblem(folder: string, name: string): string | undefined {
   if (!name.trim()) return 'It needs a name'
   if (!isPart(name.trim())) return 'A name begins with a letter or digit and has letters, digits, spaces, . _ and -'
   const parts = folder.trim().replace(/^\/+|\/+$/g, '')
-  if (parts && !parts.split('/').every(isPart)) return 'Folders have letters, digits, spaces, . _ and -, parted by /'
+  if (parts && !partsOfPath(parts).every(isPart)) return 'Folders have letters, digits, spaces, . _ and -, parted by /'
   if (name.trim().endsWith('.breakpoints')) return 'Such a file is for breakpoints'
   return undefined
 }

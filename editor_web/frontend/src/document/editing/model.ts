@@ -1,5 +1,6 @@
 /** The document as the editor sees it: nodes with everything that can be edited, and where each stands in the text. Pure. */
 import type { DocumentInfo, DocumentNode, FindingView } from '../../api/types'
+import { parentPath, pathsTo } from '../path'
 
 /** One node; what is inside a referenced behavior is drawn, not edited here. */
 export type EditNode = DocumentNode
@@ -38,20 +39,6 @@ export function nodeOf(root: EditNode | undefined, path: string): EditNode | und
     node = node.children.find((child) => path === child.path || path.startsWith(`${child.path}/`))
   }
   return node
-}
-
-export function parentPath(path: string): string {
-  return path.slice(0, Math.max(0, path.lastIndexOf('/')))
-}
-
-export function nameOfPath(path: string): string {
-  return path.slice(path.lastIndexOf('/') + 1)
-}
-
-/** The paths from the root down to `path`, both included. */
-export function pathsTo(path: string): readonly string[] {
-  const parts = path.split('/')
-  return parts.map((_, index) => parts.slice(0, index + 1).join('/'))
 }
 
 /** All other kinds are trees and their parts. */

@@ -1,10 +1,11 @@
 /** Nodes for tests. */
+import { nameOfPath } from '../path'
 import type { EditNode } from './model'
 
 export function node(path: string, outcomes: readonly string[], more: Partial<EditNode> = {}): EditNode {
   return {
     path,
-    name: path.slice(path.lastIndexOf('/') + 1),
+    name: nameOfPath(path),
     kind: 'state',
     title: 'test.State',
     outcomes,

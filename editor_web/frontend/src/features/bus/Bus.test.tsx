@@ -191,3 +191,16 @@ it('leads back to the list', async () => {
   await user.click(screen.getByRole('button', { name: 'Back to the list' }))
   expect(screen.getByText('Nothing is selected')).toBeVisible()
 })
+
+it('comes back when the list could not be read once', async () => {
+  server().on('GET /bus/board', new Refusal(503, { message: 'the bus is starting' }))
+  live()
+  show(<Bus session={{ role: 'operator' }} />)
+  const socket = server().socket('/data')
+  socket.accept()
+  socket.tell(TRAFFIC)
+  expect(await screen.findByText('the bus is starting')).toBeVisible()
+  server().on('GET /bus/board', { ...BOARD, shape: 's2' })
+  socket.tell({ ...TRAFFIC, shape: 's2' })
+  expect(await screen.findByRole('button', { name: /^lamp/ })).toBeVisible()
+})

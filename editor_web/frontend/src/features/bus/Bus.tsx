@@ -5,9 +5,9 @@ import { CloseButton, SegmentedControl, TextInput } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconPlugConnected, IconSearch } from '@tabler/icons-react'
 import { useEffect, useMemo, useRef, useState } from 'react'
-import { bus } from '../../api/bus'
-import { wordsOf } from '../../api/client'
+import { busQueries } from '../../api/bus'
 import { useData } from '../../api/data'
+import { useLastAnswer } from '../../api/queryClient'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
@@ -32,23 +32,16 @@ export function Bus({ session }: BusProps) {
   const [kind, setKind] = useState<BusKind>('topics')
   const [search, setSearch] = useState('')
   const [chosen, setChosen] = useState<Readonly<Partial<Record<BusKind, string>>>>({})
-  const [board, setBoard] = useState<BusListing>()
-  const [problem, setProblem] = useState('')
   const [traffic, setTraffic] = useState<BusMetricsFrame>()
   const [message, setMessage] = useState<MessageFrame>()
   const name = chosen[kind]
   const topic = kind === 'topics' && name ? name : ''
-  const shape = traffic?.shape
+  const { value: board, problem } = useLastAnswer(busQueries.listing(traffic?.shape))
 
   useData(isShown ? { traffic: true, topic } : undefined, (frame) => {
     if (frame.k === 'traffic') setTraffic(frame)
     if (frame.k === 'message') setMessage(frame)
   })
-  useEffect(() => {
-    if (shape === undefined) return
-    bus.board().then(setBoard, (error: unknown) => setProblem(wordsOf(error)))
-  }, [shape])
-
   // Whoever goes lets the server cancel what was sent.
   useEffect(() => leave, [])
 

@@ -1,7 +1,8 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
-import { byNamespace, shortName, type Named } from '../../document/busTree'
+import { byNamespace, type Named } from '../../document/busTree'
+import { nameOfPath } from '../../document/path'
 import { ageText, rateText } from './words'
 import type { TopicMetrics } from '../../api/types'
 
@@ -62,7 +63,7 @@ const Row = memo(
     return (
       <li>
         <button type="button" className="bus-row" aria-current={isChosen} onClick={() => onChoose(name)}>
-          <span className="bus-name">{shortName(name)}</span>
+          <span className="bus-name">{nameOfPath(name)}</span>
           <span className="bus-type">{type}</span>
           {rate !== undefined && <span className="bus-figure">{rate}</span>}
           {age !== undefined && <span className="bus-figure">{age}</span>}

@@ -6,7 +6,7 @@ import { bus } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 import { ValueTree } from '../../components/ValueTree'
 import { valueField } from '../../document/requestForm'
-import { shortName } from '../../document/busTree'
+import { nameOfPath } from '../../document/path'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { useForm } from './useForm'
@@ -19,8 +19,10 @@ interface ParameterViewProps {
 }
 
 export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) {
-  const name = shortName(facts.name)
-  const form = useForm(() => Promise.resolve([valueField(name, facts.schema, facts.value)]))
+  const name = nameOfPath(facts.name)
+  // As the value was when it was chosen: what is typed is not lost when somebody else sets it.
+  const [fields] = useState(() => [valueField(name, facts.schema, facts.value)])
+  const form = useForm({ value: fields, problem: undefined })
   const [value, setValue] = useState<unknown>(facts.value)
   const [refusal, setRefusal] = useState('')
 

@@ -2,9 +2,9 @@
 import { lookup } from '../../document/dict'
 import { Button, Progress } from '@mantine/core'
 import { IconPlayerStopFilled, IconSend } from '@tabler/icons-react'
-import { bus } from '../../api/bus'
+import { busQueries } from '../../api/bus'
+import { useAnswer } from '../../api/queryClient'
 import { ValueTree } from '../../components/ValueTree'
-import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { cancel, isOver, send, useRequests, type RequestProgress } from './requests'
@@ -18,7 +18,7 @@ interface SkillViewProps {
 }
 
 export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
-  const form = useForm(async () => requestFields((await bus.requestForm(facts.name)).schema))
+  const form = useForm(useAnswer(busQueries.requestForm(facts.name)))
   const course = useRequests((s) => lookup(s.courses, facts.name))
   const isAction = facts.kind === 'action'
   const isActive = course !== undefined && !isOver(course)

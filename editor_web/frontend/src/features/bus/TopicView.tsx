@@ -3,10 +3,10 @@ import type { Dict } from '../../document/dict'
 import { Button } from '@mantine/core'
 import { IconSend } from '@tabler/icons-react'
 import { useState } from 'react'
-import { bus } from '../../api/bus'
+import { bus, busQueries } from '../../api/bus'
 import { wordsOf } from '../../api/client'
+import { useAnswer } from '../../api/queryClient'
 import { ValueTree } from '../../components/ValueTree'
-import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
 import { useForm } from './useForm'
@@ -41,7 +41,7 @@ export function TopicView({ facts, message, traffic, mayChange, onBack }: TopicV
 }
 
 function Publish({ topic, mayChange }: { topic: string; mayChange: boolean }) {
-  const form = useForm(async () => requestFields((await bus.messageForm(topic)).schema))
+  const form = useForm(useAnswer(busQueries.messageForm(topic)))
   const [refusal, setRefusal] = useState('')
 
   async function publish(message: Dict<unknown>): Promise<void> {

@@ -1,9 +1,9 @@
 /** Requests to services and actions, from sending to answer, refusal or end; they go on while another entry is looked at. */
 import { lookup, type Dict } from '../../document/dict'
-import { create } from 'zustand'
 import { bus, sendGoal } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 import type { SkillInfo } from '../../api/types'
+import { pageStore } from '../../api/pageStore'
 
 export interface RequestProgress {
   readonly status: string
@@ -19,9 +19,16 @@ const SENT: RequestProgress = { status: 'sent', feedback: undefined, answer: und
 const ACTIVE: ReadonlySet<string> = new Set(['sent', 'pending', 'active', 'held', 'canceling'])
 
 /** The newest request to each address. */
-export const useRequests = create<{ readonly courses: Dict<RequestProgress> }>(() => ({ courses: {} }))
+interface Requests {
+  readonly courses: Dict<RequestProgress>
+  /** Aborted when nobody watches them any more. */
+  readonly watching: AbortController
+}
 
-let watching = new AbortController()
+export const useRequests = pageStore<Requests>(
+  () => ({ courses: {}, watching: new AbortController() }),
+  ({ watching }) => watching.abort(),
+)
 
 /** Has it ended? */
 export function isOver(course: RequestProgress): boolean {
@@ -30,7 +37,7 @@ export function isOver(course: RequestProgress): boolean {
 
 /** Ask a service, or send a goal and follow it. */
 export async function send(facts: SkillInfo, request: Dict<unknown>): Promise<void> {
-  const { signal } = watching
+  const { signal } = useRequests.getState().watching
   put(facts.name, SENT)
   try {
     await (facts.kind === 'service' ? ask(facts.name, request) : follow(facts.name, request, signal))
@@ -52,9 +59,8 @@ export async function cancel(address: string): Promise<void> {
 
 /** Let the server cancel every goal that was sent from here. */
 export function leave(): void {
-  watching.abort()
-  watching = new AbortController()
-  useRequests.setState({ courses: {} })
+  useRequests.getState().watching.abort()
+  useRequests.setState({ courses: {}, watching: new AbortController() })
 }
 
 async function ask(address: string, request: Dict<unknown>): Promise<void> {

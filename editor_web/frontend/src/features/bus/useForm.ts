@@ -1,7 +1,7 @@
 /** The values that are typed into a generated form, and what is wrong with them. */
 import { lookup, type Dict } from '../../document/dict'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
+import { useState } from 'react'
+import type { Answer } from '../../api/queryClient'
 import { parametersOf, problemWith, type Field } from '../../document/schema'
 
 export interface FormState {
@@ -15,29 +15,12 @@ export interface FormState {
   readonly filled: () => Dict<unknown> | undefined
 }
 
-/** A form whose fields are loaded once. */
-export function useForm(load: () => Promise<readonly Field[]>): FormState {
-  const [fields, setFields] = useState<readonly Field[]>()
-  const [problem, setProblem] = useState('')
-  const [values, setValues] = useState<Dict<unknown>>({})
+/** A form with these fields; what is typed into it stays when they are told again. */
+export function useForm({ value: fields, problem = '' }: Answer<readonly Field[]>): FormState {
+  const [typed, setTyped] = useState<Dict<unknown>>({})
   const [isChecked, setChecked] = useState(false)
 
-  useEffect(() => {
-    let isCurrent = true
-    load().then(
-      (loaded) => {
-        if (!isCurrent) return
-        setFields(loaded)
-        setValues(Object.fromEntries(loaded.map((field) => [field.name, field.initial])))
-      },
-      (error: unknown) => isCurrent && setProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-    // oxlint-disable-next-line react/exhaustive-deps -- the form belongs to one entry and is made anew for another
-  }, [])
-
+  const values: Dict<unknown> = { ...Object.fromEntries((fields ?? []).map((field) => [field.name, field.initial])), ...typed }
   const problems = Object.fromEntries((fields ?? []).map((field) => [field.name, problemWith(field, lookup(values, field.name))]))
 
   function filled(): Dict<unknown> | undefined {
@@ -49,7 +32,7 @@ export function useForm(load: () => Promise<readonly Field[]>): FormState {
     fields,
     problem,
     values,
-    set: (name, value) => setValues((before) => ({ ...before, [name]: value })),
+    set: (name, value) => setTyped((before) => ({ ...before, [name]: value })),
     problems: isChecked ? problems : {},
     filled,
   }

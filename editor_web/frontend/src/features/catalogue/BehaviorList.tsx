@@ -7,6 +7,7 @@ import type { BehaviorSummary } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive } from '../../document/runState'
+import { parentPath } from '../../document/path'
 import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
@@ -115,6 +116,6 @@ function Count({ status, count, word }: { status: 'failed' | 'warning'; count: n
 }
 
 function folderOf(id: string): string {
-  const folder = id.split('/').slice(0, -1).join('/')
+  const folder = parentPath(id)
   return folder.replace(/^behaviors\/?/, '') || 'behaviors'
 }

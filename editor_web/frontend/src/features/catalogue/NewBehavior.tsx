@@ -1,10 +1,11 @@
 /** Making a new behavior: its name, where its file goes, and what it begins as. */
 import { IconPlus } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useMutation } from '@tanstack/react-query'
+import { useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
-import { relations } from '../../api/relations'
-import type { DeletedDocumentBody } from '../../api/types'
+import { problemOf, useAnswer } from '../../api/queryClient'
+import { relationQueries, relations } from '../../api/relations'
 import { Dialog } from '../../components/Dialog'
 import { wallTime } from '../../document/time'
 
@@ -97,11 +98,9 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
 
 /** Behaviors that were deleted and of which a version is kept. */
 function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
-  const [all, setAll] = useState<readonly DeletedDocumentBody[]>([])
-  const [problem, setProblem] = useState<string>()
-  useEffect(() => {
-    relations.deleted().then(setAll, (error: unknown) => setProblem(wordsOf(error)))
-  }, [])
+  const { value: all = [], problem: unread } = useAnswer(relationQueries.deleted())
+  const restoring = useMutation({ mutationFn: relations.restore, onSuccess: (made) => onRestored(made.id) })
+  const problem = problemOf(restoring.error) ?? unread
   if (problem === undefined && all.length === 0) return null
   return (
     <details className="deleted">
@@ -118,16 +117,7 @@ function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
               <span className="mono">{each.id.replace(/^behaviors\//, '')}</span>{' '}
               <span className="quiet">last version {wallTime(each.saved_at)}</span>
             </span>
-            <button
-              type="button"
-              className="command"
-              onClick={() => {
-                void relations.restore(each.id).then(
-                  (made) => onRestored(made.id),
-                  (error: unknown) => setProblem(wordsOf(error)),
-                )
-              }}
-            >
+            <button type="button" className="command" onClick={() => restoring.mutate(each.id)}>
               Restore
             </button>
           </li>

@@ -7,6 +7,7 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { differenceS, durationOf, endWords, isDifferent, signed } from '../../document/comparison'
 import { duration } from '../../document/time'
+import { depthOf, nameOfPath } from '../../document/path'
 import styles from './comparison.module.css'
 
 interface VisitTableProps {
@@ -83,8 +84,8 @@ function Row({
   const { path, left, right } = visit
   const [took, tookRight] = [durationOf(left), durationOf(right)]
   const number = (left ?? right)?.visit ?? 1
-  const depth = path.split('/').length - 1
-  const name = path.slice(path.lastIndexOf('/') + 1)
+  const depth = depthOf(path)
+  const name = nameOfPath(path)
   const classes = [isDifferent(visit) && styles.isDifferent, isSelected && styles.isSelected]
   return (
     <tr ref={row} className={classes.filter(Boolean).join(' ') || undefined} aria-selected={isSelected}>

@@ -1,10 +1,12 @@
 /** Asks for the proposal of the steps as they are, a moment after the last change; the newest answer counts. */
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { propose } from '../../api/demonstration'
+import { skipToken } from '@tanstack/react-query'
+import { useDebouncedValue } from '@mantine/hooks'
+import { proposalQuery } from '../../api/demonstration'
+import { useLastAnswer } from '../../api/queryClient'
 import type { DemonstrationBody, ProposalBody } from '../../api/types'
 
 const PAUSE_MS = 150
+const NO_BODY = {} as DemonstrationBody
 
 export interface Proposed {
   readonly proposal?: ProposalBody
@@ -12,24 +14,10 @@ export interface Proposed {
 }
 
 export function useProposal(body: DemonstrationBody | undefined): Proposed {
-  const [found, setFound] = useState<Proposed>({})
-  const asked = body && JSON.stringify(body)
-  useEffect(() => {
-    let isCurrent = true
-    const timer = setTimeout(() => {
-      if (asked === undefined) {
-        setFound({})
-        return
-      }
-      propose(JSON.parse(asked) as DemonstrationBody).then(
-        (proposal) => isCurrent && setFound({ proposal }),
-        (error: unknown) => isCurrent && setFound({ problem: wordsOf(error) }),
-      )
-    }, PAUSE_MS)
-    return () => {
-      isCurrent = false
-      clearTimeout(timer)
-    }
-  }, [asked])
-  return found
+  const [asked] = useDebouncedValue(body && JSON.stringify(body), PAUSE_MS)
+  const query = proposalQuery(asked === undefined ? NO_BODY : (JSON.parse(asked) as DemonstrationBody))
+  const { value, problem } = useLastAnswer({ ...query, ...(asked === undefined && { queryFn: skipToken }) })
+  if (asked === undefined) return {}
+  if (problem !== undefined) return { problem }
+  return value ? { proposal: value } : {}
 }

@@ -1,12 +1,13 @@
 /** The form of a chosen arrow: from where, with which outcome, to where. */
 import { IconArrowRight, IconPlus, IconTrash } from '@tabler/icons-react'
+import { edgeOf, NO_EDGE, type EdgeId } from '../../document/edgeId'
 import { nodeOf } from '../../document/editing/model'
 import { choose, remove } from './actions'
 import { openPortPalette, openInsertPalette } from './paletteRequests'
 import { rootOf, useEditor } from './store'
 
-export function ArrowForm({ arrow }: { arrow: string }) {
-  const [machine = '', source = '', outcome = ''] = arrow.split('|')
+export function ArrowForm({ arrow }: { arrow: EdgeId }) {
+  const { machine, source, outcome } = edgeOf(arrow) ?? NO_EDGE
   const target = useEditor((s) => nodeOf(rootOf(s), machine)?.transitions.find((t) => t.source === source && t.outcome === outcome)?.target)
   return (
     <div className="node-form">

@@ -3,7 +3,7 @@ import { CloseButton } from '@mantine/core'
 import { IconAlertTriangleFilled, IconCircleXFilled, IconPencil, IconEye } from '@tabler/icons-react'
 import type { KeyFlow, KeyReader, KeyWriter } from '../../api/types'
 import { kindOfKey, soundnessOf } from '../../document/editing/dataFlow'
-import { nameOfPath } from '../../document/editing/model'
+import { nameOfPath, pathsTo } from '../../document/path'
 import { goToUse, inputLabel, outputLabel, showKey, toggleDataFlow, useDataFlow, useFreshDataFlow } from './dataFlow'
 import { draftOf, rootOf, useEditor } from './store'
 
@@ -92,7 +92,7 @@ function Uses({ flow }: { flow: KeyFlow }) {
 /** The name of a node, and what it is in; of the behavior where the path is empty. */
 export function PathWords({ path }: { path: string }) {
   if (path === '') return <strong>the behavior</strong>
-  const around = path.split('/').slice(1, -1).join(' / ')
+  const around = pathsTo(path).slice(1, -1).map(nameOfPath).join(' / ')
   return (
     <span>
       <strong>{nameOfPath(path)}</strong>

@@ -13,6 +13,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
 import { canRedo, canUndo } from '../../document/editing/history'
+import { nameOfPath } from '../../document/path'
 import { redo, undo } from './apply'
 import { EditHistory } from './EditHistory'
 import { FileMenu } from './FileMenu'
@@ -21,7 +22,7 @@ import { draftOf, isDirty, setEditor, useEditor } from './store'
 
 export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => void }) {
   const id = useEditor((s) => s.id)
-  const name = useEditor((s) => draftOf(s).document?.name || s.id.split('/').pop() || '')
+  const name = useEditor((s) => draftOf(s).document?.name || nameOfPath(s.id))
   const dirty = useEditor(isDirty)
   const back = useEditor((s) => (canUndo(s.history) ? s.history.steps[s.history.at]?.label : undefined))
   const forth = useEditor((s) => (canRedo(s.history) ? s.history.steps[s.history.at + 1]?.label : undefined))

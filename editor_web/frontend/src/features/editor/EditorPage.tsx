@@ -29,7 +29,7 @@ import { LibraryPanel } from './LibraryPanel'
 import { NoticeLine } from './NoticeLine'
 import { trackViewportMotion } from './viewportMotion'
 import { Palettes } from './Palettes'
-import { forgetReferences, refreshReferences } from './references'
+import { refreshReferences } from './references'
 import { lookAtDisk, openDocument, save } from './session'
 import { CellViewContext } from './ShowEntry'
 import { draftOf, editor, isDirty, showEditorRefusal, setEditor, useEditor } from './store'
@@ -67,7 +67,6 @@ export function EditorPage(props: EditorPageProps) {
   const written = useLive((s) => s.documents)
   useEffect(() => {
     forgetDataFlow()
-    forgetReferences()
     void openDocument(id, location.hash.slice(1))
   }, [id])
   useEffect(() => {

@@ -1,7 +1,8 @@
 /** Giving the file of a behavior another name, copying it, deleting it; who refers to it is shown before. */
 import { useEffect, useState, type ReactNode } from 'react'
 import { wordsOf } from '../../api/client'
-import { relations } from '../../api/relations'
+import { useAnswer } from '../../api/queryClient'
+import { relationQueries, relations } from '../../api/relations'
 import type { ReferringBehavior } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { fileProblem, idOfFile, partsOfId } from '../../document/editing/fileNames'
@@ -31,18 +32,11 @@ const TITLES: Readonly<Record<Exclude<FileDialog, 'versions'>, string>> = {
 
 /** Who refers to a document; undefined until it is known. */
 function useReferrers(id: string): readonly ReferringBehavior[] | undefined {
-  const [found, setFound] = useState<readonly ReferringBehavior[]>()
+  const { value, problem } = useAnswer(relationQueries.referrers(id))
   useEffect(() => {
-    let isCurrent = true
-    relations.referrers(id).then(
-      (all) => isCurrent && setFound(all),
-      (error: unknown) => showEditorRefusal('References', wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [id])
-  return found
+    if (problem !== undefined) showEditorRefusal('References', problem)
+  }, [problem])
+  return value
 }
 
 function Referrers({ all, children }: { all: readonly ReferringBehavior[] | undefined; children: ReactNode }) {

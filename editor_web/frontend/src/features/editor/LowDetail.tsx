@@ -1,18 +1,18 @@
 /** The canvas from far away: plain boxes, and all arrows as one line, for behaviors of a thousand nodes. */
 import { ViewportPortal, type NodeProps } from '@xyflow/react'
 import { memo, useMemo, type ComponentType } from 'react'
-import { create } from 'zustand'
 import type { Box, Point } from '../../document/geometry'
-import { parentPath } from '../../document/editing/model'
+import { parentPath } from '../../document/path'
 import type { CanvasEdge, CanvasNode, CardData } from './elements'
 import { useMark } from './marks'
+import { pageStore } from '../../api/pageStore'
 
 /** More nodes than this are drawn in full only where they are seen. */
 export const LARGE_GRAPH_NODES = 300
 /** Below this zoom nothing that is written on a node can be read. */
 export const LOW_DETAIL_ZOOM = 0.35
 
-const useFar = create<{ readonly scope: string | undefined }>(() => ({ scope: undefined }))
+const useFar = pageStore<{ readonly scope: string | undefined }>(() => ({ scope: undefined }))
 
 /** Draw plain boxes from now on, of what is inside `scope`; everything in full with undefined. */
 export function setLowDetail(scope: string | undefined): void {

@@ -1,9 +1,10 @@
 /** The form of one node: what it runs and with what, where its outcomes lead, and what happens when it takes long or fails. */
 import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
-import { isForeign, isMachine, isTreePart, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
+import { isForeign, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { kindLabel } from '../../document/tree'
+import { nameOfPath, parentPath } from '../../document/path'
 import { perform } from './apply'
 import { itemIcon } from './additions'
 import { openReferred } from './pageActions'
@@ -148,7 +149,7 @@ function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => 
 function OpenOther({ id, from, node = '' }: { id: string; from: string; node?: string }) {
   return (
     <button type="button" className="link" onClick={() => openReferred(id, from, node)}>
-      <IconExternalLink size={13} aria-hidden /> Open {id.split('/').pop()}
+      <IconExternalLink size={13} aria-hidden /> Open {nameOfPath(id)}
     </button>
   )
 }

@@ -2,6 +2,7 @@
 import { Panel, useNodes, ViewportPortal } from '@xyflow/react'
 import { useMemo } from 'react'
 import { allNodes, isForeign, ROOT } from '../../document/editing/model'
+import { nameOfPath } from '../../document/path'
 import { focusNode } from './actions'
 import type { CanvasNode } from './elements'
 import { nodeBoxes } from './nodeBoxes'
@@ -58,7 +59,7 @@ function Note({ path, text }: { path: string; text: string }) {
     const root = rootOf(s)
     return root !== undefined && isForeign(root, path)
   })
-  const name = path === ROOT ? 'the behavior' : path.slice(path.lastIndexOf('/') + 1)
+  const name = path === ROOT ? 'the behavior' : nameOfPath(path)
   if (!isWriting) {
     return (
       <button

@@ -1,7 +1,8 @@
 /** The palettes: what to add, and where an outcome leads. */
 import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
-import { isFailure, isMachine, nameOfPath, nodeOf, parentPath, outgoingTransitions, type EditNode } from '../../document/editing/model'
+import { isFailure, isMachine, nodeOf, outgoingTransitions, type EditNode } from '../../document/editing/model'
+import { nameOfPath, parentPath } from '../../document/path'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemIcon, itemsOf } from './additions'
 import { openPortPalette } from './paletteRequests'

@@ -15,8 +15,9 @@ import {
   IconTrash,
 } from '@tabler/icons-react'
 import { useEffect, useRef, useState, type ReactNode } from 'react'
-import { isFrame, isTreePart, nameOfPath, nameProblem, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
+import { isFrame, isTreePart, nameProblem, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import { enclosingReference } from '../../document/editing/referenceInlining'
+import { nameOfPath, parentPath } from '../../document/path'
 import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
 import { toggleDisabled } from './disabled'
 import { openAddPalette, openConnectPalette } from './paletteRequests'

@@ -1,8 +1,10 @@
 /** The versions of a behavior: when and by what each was written, what differs between two, one of them restored. */
-import { useEffect, useMemo, useState } from 'react'
-import { wordsOf } from '../../api/client'
+import { queryOptions, skipToken } from '@tanstack/react-query'
+import { useMemo, useState } from 'react'
 import { useLive } from '../../api/live'
-import { relations } from '../../api/relations'
+import { useAnswer, type Answer } from '../../api/queryClient'
+import { queryKeys } from '../../api/queryKeys'
+import { relationQueries, relations } from '../../api/relations'
 import type { DocumentDiff, VersionBody } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import type { EditNode } from '../../document/editing/model'
@@ -29,24 +31,16 @@ function Versions() {
   const id = useEditor((s) => s.id)
   const dirty = useEditor(isDirty)
   const mayEdit = useLive((s) => s.role === 'operator')
-  const [versions, setVersions] = useState<readonly VersionBody[]>()
-  const [shown, setShown] = useState<string>()
+  const { value: versions, problem: unread } = useAnswer(relationQueries.versions(id))
+  const [startsWithDraft] = useState(dirty)
+  const [chosen, setShown] = useState<string>()
   const [against, setAgainst] = useState<string>()
-  const [problem, setProblem] = useState<string>()
-
-  useEffect(() => {
-    relations.versions(id).then(
-      (all) => {
-        setVersions(all)
-        setShown(isDirty(editor()) ? DRAFT : all[0]?.hash)
-      },
-      (error: unknown) => setProblem(wordsOf(error)),
-    )
-  }, [id])
+  const shown = chosen ?? (startsWithDraft ? DRAFT : versions?.[0]?.hash)
 
   const order = useMemo(() => [...(dirty ? [DRAFT] : []), ...(versions ?? []).map((version) => version.hash)], [dirty, versions])
   const before = against ?? order[order.indexOf(shown ?? '') + 1]
-  const compared = useCompared(id, before, shown, setProblem)
+  const { value: compared, problem: different } = useCompared(id, before, versions && shown)
+  const problem = unread ?? different
 
   async function restore(): Promise<void> {
     const text = compared?.after.text
@@ -143,26 +137,17 @@ interface Compared {
 }
 
 /** Both texts with what they draw, and what differs; undefined until they are there. */
-function useCompared(
-  id: string,
-  before: string | undefined,
-  after: string | undefined,
-  onProblem: (words: string) => void,
-): Compared | undefined {
-  const [loaded, setLoaded] = useState<Compared & { readonly of: string }>()
-  const of = `${before} ${after}`
-  useEffect(() => {
-    if (after === undefined) return
-    let isCurrent = true
-    compare(id, before, after).then(
-      (compared) => isCurrent && setLoaded({ ...compared, of }),
-      (error: unknown) => isCurrent && onProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [id, before, after, of, onProblem])
-  return loaded?.of === of ? loaded : undefined
+function useCompared(id: string, before: string | undefined, after: string | undefined): Answer<Compared> {
+  const draft = useEditor((s) => ([before, after].includes(DRAFT) ? draftOf(s).text : ''))
+  return useAnswer(
+    queryOptions({
+      queryKey: queryKeys.comparedVersions(id, before, after, draft),
+      queryFn: after === undefined ? skipToken : () => compare(id, before, after),
+      // What is drawn is known by its identity.
+      structuralSharing: false,
+      gcTime: 0,
+    }),
+  )
 }
 
 async function compare(id: string, before: string | undefined, after: string): Promise<Compared> {

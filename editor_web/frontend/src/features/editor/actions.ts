@@ -2,23 +2,14 @@
 import type { Dict } from '../../document/dict'
 import { documents } from '../../api/documents'
 import { wordsOf } from '../../api/client'
+import { edgeOf, sourceOf, type EdgeId } from '../../document/edgeId'
 import { corner, setField, type AddNode, type Corner, type Edit, type GroupKind } from '../../document/editing/edits'
-import {
-  allNodes,
-  freeName,
-  holderOf,
-  isComposite,
-  isMachine,
-  isTreePart,
-  nameOfPath,
-  nodeOf,
-  parentPath,
-  ROOT,
-  type EditNode,
-} from '../../document/editing/model'
+import { allNodes, freeName, holderOf, isComposite, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
+import { nameOfPath, parentPath } from '../../document/path'
 import { perform, performOn } from './apply'
 import { canvasBoxes } from './canvasPositions'
+import { fromClipboard, toClipboard } from './clipboard'
 import { place, seenPositions } from './placing'
 import { outermost, own } from './selected'
 import { chosenOf, draftOf, editor, showEditorRefusal, rootOf, scopeOf, setEditor, showEditorNotice, type AddRequest } from './store'
@@ -36,7 +27,7 @@ export function choose(paths: readonly string[]): void {
   setEditor({ selection: paths, arrow: undefined, ...(paths.length > 0 ? { tab: 'node' as const } : {}) })
 }
 
-export function chooseArrow(arrow: string | undefined): void {
+export function chooseArrow(arrow: EdgeId | undefined): void {
   setEditor({ arrow, selection: arrow ? [] : editor().selection })
 }
 
@@ -89,9 +80,9 @@ export function focusNode(path: string): void {
 export async function remove(): Promise<void> {
   const { arrow } = editor()
   if (arrow) {
-    const [machine = '', source = '', outcome = ''] = arrow.split('|')
+    const edge = edgeOf(arrow)
     setEditor({ arrow: undefined })
-    await perform(`Disconnect ${outcome}`, [disconnection(`${machine}/${source}`, outcome)])
+    if (edge) await perform(`Disconnect ${edge.outcome}`, [disconnection(sourceOf(edge), edge.outcome)])
     return
   }
   const paths = own(outermost(), 'Delete')
@@ -152,26 +143,9 @@ export async function copy(cut = false): Promise<void> {
   }
 }
 
-let clipped = ''
-
-async function toClipboard(text: string): Promise<void> {
-  clipped = text
-  try {
-    await navigator.clipboard.writeText(text)
-  } catch {
-    // A browser that does not allow it: pasting on this page works all the same.
-  }
-}
-
 export async function paste(): Promise<void> {
   const root = rootOf(editor())
-  let yaml = clipped
-  try {
-    yaml = (await navigator.clipboard.readText()) || clipped
-  } catch {
-    // Not allowed to read; what was copied on this page is known.
-  }
-  await pasteText(yaml, root)
+  await pasteText(await fromClipboard(), root)
 }
 
 async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {

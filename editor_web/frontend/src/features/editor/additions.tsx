@@ -2,6 +2,7 @@
 import { createElement } from 'react'
 import type { CatalogueBody, EntryName, StateView } from '../../api/types'
 import { isTreePart, nameFor, type EditNode } from '../../document/editing/model'
+import { fileTitle, relativePath } from '../../document/path'
 import type { Addition } from './actions'
 import { NodeIcon } from './NodeIcon'
 
@@ -48,13 +49,8 @@ export function itemsOf(catalogue: CatalogueBody, id: string): readonly Item[] {
       onlyInTree: false,
       addition: {
         kind: 'behavior',
-        runs: relative(id, each.id),
-        name: nameFor(
-          each.id
-            .split('/')
-            .pop()
-            ?.replace(/\.[a-z]+$/, '') ?? 'behavior',
-        ),
+        runs: relativePath(id, each.id),
+        name: nameFor(fileTitle(each.id)),
       },
     }))
   return [...states, ...containers, ...behaviors]
@@ -76,15 +72,6 @@ function stateItem(state: StateView): Item {
 
 function firstLine(text: string): string {
   return text.split('\n')[0] ?? ''
-}
-
-/** The way from one document's folder to another document, as a reference is written. */
-function relative(from: string, to: string): string {
-  const here = from.split('/').slice(0, -1)
-  const there = to.split('/')
-  let same = 0
-  while (same < here.length && same < there.length - 1 && here[same] === there[same]) same += 1
-  return [...here.slice(same).map(() => '..'), ...there.slice(same)].join('/')
 }
 
 /** Can it stand in this container? */

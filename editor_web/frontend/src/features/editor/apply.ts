@@ -1,13 +1,16 @@
 /** Changing the document: edits by the server, typing, undo and redo; one after the other, none lost. */
 import { wordsOf, ServerError } from '../../api/client'
 import { documents } from '../../api/documents'
+import { pageStore } from '../../api/pageStore'
 import type { EditAnswer } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { sameFindings } from '../../document/editing/findings'
 import { shiftedFindings, withDifference } from '../../document/editing/graphDifference'
 import { jumped, pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { areOfLayout } from '../../document/editing/layoutEdits'
-import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
+import { nodeOf, type Draft, type EditNode } from '../../document/editing/model'
+import { Pause } from '../../document/pause'
+import { parentPath } from '../../document/path'
 import { lookForNames } from './cellNames'
 import { findingsOf } from './checking'
 import { storeDraft } from './draftStorage'
@@ -17,20 +20,32 @@ import { lookForTargets } from './targets'
 
 const TYPING_PAUSE_MS = 250
 
-let queue: Promise<unknown> = Promise.resolve()
-let due: ReturnType<typeof setTimeout> | undefined
+/** What is under way for the editor. */
+class Work {
+  /** Ends with all that was asked for so far. */
+  queue: Promise<unknown> = Promise.resolve()
+  readonly typing = new Pause()
+  /** Until what is wrong with the present text is known. */
+  checking: Promise<void> | undefined
+}
+
+const work = pageStore(
+  () => new Work(),
+  ({ typing }) => typing.cancel(),
+)
 
 /** Do something after everything that was asked for before; the editor says meanwhile that it is busy. */
-export function inTurn<T>(work: () => Promise<T>): Promise<T> {
-  const done = queue.then(async () => {
+export function inTurn<T>(act: () => Promise<T>): Promise<T> {
+  const now = work.getState()
+  const done = now.queue.then(async () => {
     setEditor({ isBusy: true })
     try {
-      return await work()
+      return await act()
     } finally {
       setEditor({ isBusy: false })
     }
   })
-  queue = done.catch(() => undefined)
+  now.queue = done.catch(() => undefined)
   return done
 }
 
@@ -134,17 +149,16 @@ export function draftFrom(answer: Read, text: string, before: Draft | undefined)
   }
 }
 
-let checking: Promise<void> | undefined
-
 /** Ask what is wrong with the present text, until that is known; edits go on meanwhile. */
 export function lookForFindings(): Promise<void> {
-  checking ??= Promise.resolve()
-    .then(look)
+  const now = work.getState()
+  now.checking ??= Promise.resolve()
+    .then(() => look(now))
     .catch((error: unknown) => showEditorRefusal('Check', ...reasonOf(error)))
-  return checking
+  return now.checking
 }
 
-async function look(): Promise<void> {
+async function look(of: Work): Promise<void> {
   try {
     for (;;) {
       const { id } = editor()
@@ -159,7 +173,7 @@ async function look(): Promise<void> {
     }
   } finally {
     // At once, not a turn later: a text that comes in between would wait for a look that is over.
-    checking = undefined
+    of.checking = undefined
     lookForTargets()
     void lookForNames()
   }
@@ -191,13 +205,12 @@ export function typed(text: string): void {
   if (text === before.text) return
   setEditor({ history: pushed(editor().history, 'Type', { ...before, text, isChecked: false, areTargetsKnown: false }, 'typing') })
   storeDraft()
-  clearTimeout(due)
-  due = setTimeout(() => void readAnew(), TYPING_PAUSE_MS)
+  work.getState().typing.later(TYPING_PAUSE_MS, () => void readAnew())
 }
 
 /** Ask the server what it reads in the present text. */
 export function readAnew(): Promise<void> {
-  clearTimeout(due)
+  work.getState().typing.cancel()
   const { id } = editor()
   return inTurn(async () => {
     const before = draftOf(editor())

@@ -2,23 +2,30 @@
 import type { Connection } from '@xyflow/react'
 import type { MouseEvent } from 'react'
 import { pointOf } from '../../components/menuPoint'
-import { isHolder, nameOfPath, parentPath } from '../../document/editing/model'
+import { isEdgeId, outcomeOf } from '../../document/edgeId'
+import { isHolder } from '../../document/editing/model'
+import { nameOfPath, parentPath } from '../../document/path'
 import { choose, chooseArrow, connect, enter, toggleOpen } from './actions'
 import { openReferred } from './pageActions'
 import type { CanvasEdge, CanvasNode } from './elements'
 import { editor, setEditor } from './store'
 
 export function onEdgeClick(_event: unknown, edge: CanvasEdge): void {
-  if (edge.type === 'transition') chooseArrow(edge.id)
+  if (edge.type === 'transition' && isEdgeId(edge.id)) chooseArrow(edge.id)
 }
 
 export function onNodeClick(): void {
   chooseArrow(undefined)
 }
 
+export function onPaneClick(): void {
+  choose([])
+  chooseArrow(undefined)
+}
+
 export function onConnect({ source, sourceHandle, target }: Connection): void {
   if (!sourceHandle) return
-  void connect(source, sourceHandle, target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target))
+  void connect(source, sourceHandle, outcomeOf(target)?.outcome ?? nameOfPath(target))
 }
 
 export function onReconnect(edge: CanvasEdge, link: Connection): void {
@@ -27,7 +34,8 @@ export function onReconnect(edge: CanvasEdge, link: Connection): void {
 
 export function isAllowed({ source, target }: { source: string; target: string }): boolean {
   const machine = parentPath(source)
-  return target.startsWith(`${machine}#`) || parentPath(target) === machine
+  const outcome = outcomeOf(target)
+  return (outcome ? outcome.machine : parentPath(target)) === machine
 }
 
 export function onDouble(_event: unknown, node: CanvasNode): void {

@@ -3,25 +3,23 @@ import { documents } from '../../api/documents'
 import { mayAsk } from './checking'
 import { draftOf, editor, setEditor } from './store'
 
-let asked = ''
-
 export async function lookForNames(): Promise<void> {
-  const { id } = editor()
+  const { id, namesOf } = editor()
   const { text, document, isStale } = draftOf(editor())
-  const cell = document?.cell
-  const of = `${id} ${cell ?? ''}`
-  if (isStale || of === asked || !id) return
-  asked = of
+  const cell = document?.cell ?? ''
+  if (isStale || cell === namesOf || !id) return
+  setEditor({ namesOf: cell })
   if (!cell) {
     setEditor({ names: undefined })
     return
   }
   if (!(await mayAsk())) return
+  const isCurrent = () => editor().id === id && editor().namesOf === cell
   try {
     const names = await documents.names(id, text)
-    if (asked === of && editor().id === id) setEditor({ names })
+    if (isCurrent()) setEditor({ names })
   } catch {
     // The names of the open cell stand in; the next text asks again.
-    asked = ''
+    if (isCurrent()) setEditor({ namesOf: undefined })
   }
 }

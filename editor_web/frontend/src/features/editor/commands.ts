@@ -1,8 +1,9 @@
 /** Every command of the editor with its words and keys: for the keyboard, the palette and the sheet. */
 import { openSearch } from '../../api/search'
 import { isChord, type Press } from '../../document/editing/keys'
-import { isMachine, isTreePart, nodeOf, parentPath, ROOT } from '../../document/editing/model'
+import { isMachine, isTreePart, nodeOf, ROOT } from '../../document/editing/model'
 import { canRedo, canUndo } from '../../document/editing/history'
+import { parentPath } from '../../document/path'
 import {
   autoConnect,
   choose,

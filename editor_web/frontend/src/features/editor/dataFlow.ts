@@ -1,11 +1,11 @@
 /** The data flow of the draft: fetched while somebody looks at it, and which key is shown on the canvas. */
 import { useEffect } from 'react'
-import { create } from 'zustand'
 import { wordsOf } from '../../api/client'
 import { relations } from '../../api/relations'
 import type { KeyFlow } from '../../api/types'
 import { setEditor, draftOf, useEditor } from './store'
 import { reveal } from './session'
+import { pageStore } from '../../api/pageStore'
 
 export interface DataFlowState {
   /** Is it drawn on the canvas? */
@@ -22,7 +22,7 @@ export interface DataFlowState {
 const NOTHING: DataFlowState = { isShown: false, key: undefined, flows: [], of: undefined, problem: '' }
 const PAUSE_MS = 250
 
-export const useDataFlow = create<DataFlowState>(() => NOTHING)
+export const useDataFlow = pageStore<DataFlowState>(() => NOTHING)
 
 export function toggleDataFlow(): void {
   useDataFlow.setState((state) => ({ isShown: !state.isShown, key: undefined }))

@@ -1,7 +1,7 @@
 /** Disable the selected nodes, or enable them where all are disabled. */
 import { disabling } from '../../document/editing/disabling'
 import { setField } from '../../document/editing/edits'
-import { nameOfPath } from '../../document/editing/model'
+import { nameOfPath } from '../../document/path'
 import { perform } from './apply'
 import { outermost } from './selected'
 import { editor, rootOf, showEditorRefusal } from './store'

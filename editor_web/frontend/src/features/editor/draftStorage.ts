@@ -1,4 +1,6 @@
 /** The draft, kept in this browser until it is saved: a closed tab or a crash loses nothing. */
+import { pageStore } from '../../api/pageStore'
+import { Pause } from '../../document/pause'
 import { draftOf, editor, isDirty } from './store'
 
 export interface StoredDraft {
@@ -10,7 +12,10 @@ export interface StoredDraft {
 
 const PAUSE_MS = 300
 
-let due: ReturnType<typeof setTimeout> | undefined
+const pause = pageStore(
+  () => new Pause(),
+  (ended) => ended.cancel(),
+)
 
 function keyOf(id: string): string {
   return `flexcell.draft.${id}`
@@ -18,12 +23,11 @@ function keyOf(id: string): string {
 
 /** Keep the present draft, soon; nothing is kept of what is saved. */
 export function storeDraft(): void {
-  clearTimeout(due)
-  due = setTimeout(storeDraftNow, PAUSE_MS)
+  pause.getState().later(PAUSE_MS, storeDraftNow)
 }
 
 export function storeDraftNow(): void {
-  clearTimeout(due)
+  pause.getState().cancel()
   const state = editor()
   if (state.phase !== 'ready') return
   try {

@@ -1,6 +1,6 @@
 /** From an arranged document to the canvas's nodes and edges. */
 import { Position, type Edge, type Node, type NodeHandle } from '@xyflow/react'
-import { arrowId, outcomeId } from '../../document/layout'
+import { edgeId, outcomeId } from '../../document/edgeId'
 import { rulesId, type Arrangement } from '../../document/editing/arrange'
 import { entryY, PILL_HEIGHT, pillsOf, portY } from '../../document/editing/measure'
 import {
@@ -9,7 +9,6 @@ import {
   isFrame,
   isMachine,
   isTreePart,
-  parentPath,
   outgoingTransitions,
   type EditNode,
   type OutgoingTransition,
@@ -18,6 +17,7 @@ import { disabledText, isPassedOver } from '../../document/editing/disabling'
 import { countInside, drawnNodes, frameOf } from '../../document/editing/expansion'
 import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
+import { parentPath } from '../../document/path'
 
 export interface CardData extends Record<string, unknown> {
   readonly node: EditNode
@@ -223,7 +223,7 @@ function transitionEdges(machine: EditNode, { arrangement, declared }: DrawnInpu
     const isQuiet = gathered.includes(t.target) && !paths.has(t.target)
     const target = paths.get(t.target) ?? (drawn.includes(t.target) || isQuiet ? outcomeId(machine.path, t.target) : undefined)
     if (!source || !target || !arrangement.boxes.has(target) || (isQuiet && !chosen.has(source))) return []
-    const id = arrowId(machine.path, t.source, t.outcome)
+    const id = edgeId({ machine: machine.path, source: t.source, outcome: t.outcome })
     return [
       {
         id,

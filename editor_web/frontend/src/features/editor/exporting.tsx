@@ -2,6 +2,7 @@
 import { createRoot } from 'react-dom/client'
 import { flushSync } from 'react-dom'
 import { expansionOf } from '../../document/editing/expansion'
+import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
 import { drawingOf } from './drawing'
 import { Picture } from './Picture'
@@ -16,7 +17,7 @@ const LARGEST_PX = 8192
 export async function exportPicture(format: 'svg' | 'png'): Promise<void> {
   try {
     const svg = await pictureOfDraft()
-    const name = `${(editor().id.split('/').pop() ?? 'behavior').replace(/\.[a-z]+$/, '')}.${format}`
+    const name = `${fileTitle(editor().id)}.${format}`
     if (format === 'svg') download(name, new Blob([svg], { type: 'image/svg+xml' }))
     else download(name, await pngOf(svg))
     showEditorNotice(`Exported ${name}`)

@@ -1,9 +1,9 @@
 /** Which dialog about the file of the behavior is open. */
-import { create } from 'zustand'
+import { pageStore } from '../../api/pageStore'
 
 export type FileDialog = 'versions' | 'rename' | 'duplicate' | 'delete'
 
-export const useFileDialog = create<{ readonly open: FileDialog | undefined }>(() => ({ open: undefined }))
+export const useFileDialog = pageStore<{ readonly open: FileDialog | undefined }>(() => ({ open: undefined }))
 
 export function openFileDialog(dialog: FileDialog): void {
   useFileDialog.setState({ open: dialog })

@@ -1,16 +1,16 @@
 /** Fixes of the draft's problems: fetched while a list of problems is looked at, made when one is chosen. */
 import { useEffect } from 'react'
-import { create } from 'zustand'
 import { useLive } from '../../api/live'
 import { relations } from '../../api/relations'
 import type { FindingView, Fix, FixesBody } from '../../api/types'
 import { perform } from './apply'
 import { draftOf, useEditor } from './store'
+import { pageStore } from '../../api/pageStore'
 
 const PAUSE_MS = 200
 const NONE: readonly Fix[] = []
 
-const useFixes = create<{ readonly of: string; readonly found: readonly FixesBody[] }>(() => ({ of: '', found: [] }))
+const useFixes = pageStore<{ readonly of: string; readonly found: readonly FixesBody[] }>(() => ({ of: '', found: [] }))
 
 /** Keep the fixes in step with the draft for as long as somebody looks; those of an earlier text fit where their finding still stands. */
 export function useFreshFixes(isShown = true): readonly FixesBody[] {

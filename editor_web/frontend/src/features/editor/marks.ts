@@ -2,7 +2,7 @@
 import { useMemo } from 'react'
 import type { FindingView } from '../../api/types'
 import { problemsOf } from '../../document/editing/findings'
-import { pathsTo } from '../../document/editing/model'
+import { pathsTo } from '../../document/path'
 import { draftOf, useEditor } from './store'
 
 export interface Mark {

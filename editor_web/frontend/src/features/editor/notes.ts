@@ -1,11 +1,11 @@
 /** Notes on the canvas: whether they are shown, and which one is being written. */
-import { create } from 'zustand'
 import { setField } from '../../document/editing/edits'
 import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { perform } from './apply'
 import { chosenOf, editor, showEditorRefusal, rootOf } from './store'
+import { pageStore } from '../../api/pageStore'
 
-export const useNotes = create<{ readonly isShown: boolean; readonly writing: string | undefined }>(() => ({
+export const useNotes = pageStore<{ readonly isShown: boolean; readonly writing: string | undefined }>(() => ({
   isShown: true,
   writing: undefined,
 }))

@@ -1,4 +1,5 @@
 /** What the page around the editor does for it, and going to other behaviors. */
+import { pageStore } from '../../api/pageStore'
 import type { StartHere } from '../../api/startHere'
 import { rememberReferrer } from './references'
 
@@ -12,11 +13,12 @@ export interface PageActions {
   readonly open: (id: string, node: string) => void
 }
 
-let acts: PageActions = { run: () => undefined, fit: () => undefined, zoom: () => undefined, open: () => undefined }
+const NONE: PageActions = { run: () => undefined, fit: () => undefined, zoom: () => undefined, open: () => undefined }
+const actions = pageStore(() => NONE)
 
 /** Open another behavior; the draft of this one is kept. */
 export function openOther(id: string, node = ''): void {
-  acts.open(id, node)
+  pageActions().open(id, node)
 }
 
 /** Open a behavior that a node here refers to; its page leads back to the node. */
@@ -26,9 +28,9 @@ export function openReferred(id: string, from: string, node = ''): void {
 }
 
 export function setPageActions(given: PageActions): void {
-  acts = given
+  actions.setState(given, true)
 }
 
 export function pageActions(): PageActions {
-  return acts
+  return actions.getState()
 }

@@ -1,6 +1,8 @@
 /** Opening the palettes: what to add or connect, and where. */
-import { holderOf, isForeign, isHolder, isTreePart, nodeOf, parentPath, type EditNode } from '../../document/editing/model'
+import { edgeOf, sourceOf } from '../../document/edgeId'
+import { holderOf, isForeign, isHolder, isTreePart, nodeOf, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
+import { parentPath } from '../../document/path'
 import { chosenOf, editor, isOpenNow, showEditorRefusal, rootOf, scopeOf, setEditor } from './store'
 
 /** Where something new goes: into the selected container where it is open or empty, else beside the selected node; else into what fills the canvas. */
@@ -32,12 +34,13 @@ export function openAddPalette(screen?: Point, at?: Point): void {
 
 /** Ask what to put on an arrow. */
 export function openInsertPalette(arrow: string, screen?: Point): void {
-  const [machine = '', source = '', outcome = ''] = arrow.split('|')
+  const edge = edgeOf(arrow)
+  if (!edge) return
   setEditor({
     palette: {
       kind: 'add',
-      parent: machine,
-      from: { path: `${machine}/${source}`, outcome, isInsert: true },
+      parent: edge.machine,
+      from: { path: sourceOf(edge), outcome: edge.outcome, isInsert: true },
       ...(screen ? { screen } : {}),
     },
   })

@@ -1,9 +1,10 @@
 /** Where nodes are on the canvas: put, kept, in line, or laid out by itself again. */
 import { corner } from '../../document/editing/edits'
 import type { Corner } from '../../document/editing/edits'
-import { isMachine, isTreePart, nameOfPath, nodeOf, parentPath, type EditNode } from '../../document/editing/model'
+import { isMachine, isTreePart, nodeOf, type EditNode } from '../../document/editing/model'
 import { aligned, type Alignment } from '../../document/editing/neighbors'
 import type { Box } from '../../document/geometry'
+import { nameOfPath, parentPath } from '../../document/path'
 import { perform } from './apply'
 import { canvasBoxes } from './canvasPositions'
 import { outermost } from './selected'

@@ -6,8 +6,6 @@ import { nearestPath } from './marks'
 import { reveal } from './session'
 import { draftOf, editor, rootOf, setEditor, showEditorNotice } from './store'
 
-let last = -1
-
 export function goTo(finding: FindingView): void {
   const root = rootOf(editor())
   const path = root && nearestPath(new Set(allNodes(root).map((node) => node.path)), finding.path)
@@ -18,11 +16,12 @@ export function goTo(finding: FindingView): void {
 /** The next one in the order of the text, again from the first after the last. */
 export function goToProblem(): void {
   const findings = problemsOf(draftOf(editor()))
-  const next = findings[(last + 1) % Math.max(1, findings.length)]
+  const problemAt = (editor().problemAt + 1) % Math.max(1, findings.length)
+  const next = findings[problemAt]
   if (!next) {
     showEditorNotice('No problems')
     return
   }
-  last = (last + 1) % findings.length
+  setEditor({ problemAt })
   goTo(next)
 }

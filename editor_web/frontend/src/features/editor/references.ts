@@ -5,17 +5,11 @@ import { documents } from '../../api/documents'
 import { inlineReferences } from '../../document/editing/referenceInlining'
 import { replaced, presentOf, type History } from '../../document/editing/history'
 import { nodeOf, type EditNode } from '../../document/editing/model'
+import { nameOfPath } from '../../document/path'
 import { draftOf, editor, isOpenNow, showEditorRefusal, rootOf, setEditor } from './store'
 
-interface Body {
-  readonly hash: string
-  readonly root: EditNode
-}
-
-const bodies = new Map<string, Body>()
-
 function roots(): ReadonlyMap<string, EditNode> {
-  return new Map([...bodies].map(([id, body]) => [id, body.root]))
+  return new Map([...editor().bodies].map(([id, body]) => [id, body.root]))
 }
 
 /** A history whose present draft shows the insides of the references that were opened. */
@@ -23,11 +17,6 @@ export function withReferences(history: History): History {
   const { draft } = presentOf(history)
   const root = draft.root && inlineReferences(draft.root, roots())
   return root === draft.root ? history : replaced(history, { ...draft, root })
-}
-
-/** Forget what was opened; another behavior is edited. */
-export function forgetReferences(): void {
-  bodies.clear()
 }
 
 /** Show what is inside of a reference here, or close it. */
@@ -48,7 +37,8 @@ async function load(id: string): Promise<boolean> {
       showEditorRefusal('Open in place', `${id} cannot be read`, 'Open it in its own page and mend it.')
       return false
     }
-    bodies.set(id, { hash, root: { ...graph, name: document?.name || graph.name } })
+    const body = { hash, root: { ...graph, name: document?.name || graph.name } }
+    setEditor({ bodies: new Map(editor().bodies).set(id, body) })
     setEditor({ history: withReferences(editor().history) })
     return true
   } catch (error) {
@@ -59,7 +49,7 @@ async function load(id: string): Promise<boolean> {
 
 /** Read those anew that have changed on disk. */
 export function refreshReferences(onDisk: Dict<string | null>): void {
-  for (const [id, body] of bodies) {
+  for (const [id, body] of editor().bodies) {
     const hash = lookup(onDisk, id)
     if (hash && hash !== body.hash) void load(id)
   }
@@ -79,7 +69,7 @@ function keyOf(id: string): string {
 /** Remember that `id` is opened from a node here, so that its page leads back. */
 export function rememberReferrer(id: string, node: string): void {
   const { id: from } = editor()
-  const name = draftOf(editor()).document?.name || from.split('/').pop() || from
+  const name = draftOf(editor()).document?.name || nameOfPath(from)
   try {
     sessionStorage.setItem(keyOf(id), JSON.stringify({ id: from, name, node } satisfies Referrer))
   } catch {

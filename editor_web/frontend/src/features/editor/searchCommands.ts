@@ -1,7 +1,8 @@
 /** What the editor offers to the search of the page: its commands, and the nodes of the document as it is now. */
 import type { PageCommand } from '../../api/search'
 import { chordText } from '../../document/editing/keys'
-import { allNodes, parentPath } from '../../document/editing/model'
+import { allNodes } from '../../document/editing/model'
+import { parentPath } from '../../document/path'
 import { COMMANDS, disabledReason } from './commands'
 import { reveal } from './session'
 import { editor, rootOf } from './store'

@@ -1,12 +1,13 @@
 /** What the editor holds: the document's history, what is chosen and shown, and what the server last refused. */
-import { create } from 'zustand'
 import type { CatalogueBody, ConflictBody } from '../../api/types'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
+import type { EdgeId } from '../../document/edgeId'
 import type { Edit } from '../../document/editing/edits'
 import { withLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, ROOT, type Draft, type EditNode } from '../../document/editing/model'
 import { expansionOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
+import { pageStore } from '../../api/pageStore'
 
 /** Something to add, asked for by typing. */
 export interface AddRequest {
@@ -21,6 +22,12 @@ export interface AddRequest {
 }
 
 export type PaletteRequest = ({ readonly kind: 'add' } & AddRequest) | { readonly kind: 'connect'; readonly path: string }
+
+/** The inside of a behavior that is referred to, as its file was. */
+export interface ReferredBody {
+  readonly hash: string
+  readonly root: EditNode
+}
 
 export interface Notice {
   readonly what: string
@@ -43,12 +50,17 @@ export interface EditorState {
   readonly catalogue: CatalogueBody | undefined
   /** Of the document's own cell by kind; undefined where it names none or they are not known yet. */
   readonly names: CatalogueBody['names'] | undefined
+  /** The cell that they are of, also while they are on their way; empty for none, undefined where they must be asked for. */
+  readonly namesOf: string | undefined
+  /** Behaviors that are referred to, and whose insides were opened here. */
+  readonly bodies: ReadonlyMap<string, ReferredBody>
+  /** Where in their list the problem is that was gone to last; -1 for none. */
+  readonly problemAt: number
   /** The container whose inside fills the canvas. */
   readonly scope: string
   /** Paths of the chosen nodes, the one chosen last at the end. */
   readonly selection: readonly string[]
-  /** The chosen arrow, `machine|source|outcome`. */
-  readonly arrow: string | undefined
+  readonly arrow: EdgeId | undefined
   /** Containers opened and closed by hand. */
   readonly opened: ReadonlyMap<string, boolean>
   /** Whether containers that nobody opened or closed are open. */
@@ -95,6 +107,9 @@ export function blank(id: string): EditorState {
     unwritten: [],
     catalogue: undefined,
     names: undefined,
+    namesOf: undefined,
+    bodies: new Map(),
+    problemAt: -1,
     scope: ROOT,
     selection: [],
     arrow: undefined,
@@ -116,7 +131,7 @@ export function blank(id: string): EditorState {
   }
 }
 
-export const useEditor = create<EditorState>(() => blank(''))
+export const useEditor = pageStore<EditorState>(() => blank(''))
 
 export const editor = useEditor.getState
 
@@ -140,15 +155,19 @@ export function draftOf(state: EditorState): Draft {
 
 type Unwritten = EditorState['unwritten']
 
-let laidOut: { readonly root: EditNode; readonly unwritten: Unwritten; readonly made: EditNode } | undefined
+/** Of each graph the newest one that is shown in its place. */
+const laidOut = new WeakMap<EditNode, { readonly unwritten: Unwritten; readonly made: EditNode }>()
 
 /** The graph as it is shown: with what is not written yet. */
 export function rootOf(state: EditorState): EditNode | undefined {
   const { root } = draftOf(state)
   const { unwritten } = state
   if (!root || unwritten.length === 0) return root
-  if (laidOut?.root !== root || laidOut.unwritten !== unwritten) laidOut = { root, unwritten, made: withLayout(root, unwritten.flat()) }
-  return laidOut.made
+  const known = laidOut.get(root)
+  if (known?.unwritten === unwritten) return known.made
+  const made = withLayout(root, unwritten.flat())
+  laidOut.set(root, { unwritten, made })
+  return made
 }
 
 export function isDirty(state: EditorState): boolean {

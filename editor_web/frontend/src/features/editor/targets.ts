@@ -1,13 +1,14 @@
 /** Targets that an arm of the document's cell cannot be at: asked for when nothing was changed for a moment, of the newest text. */
-import { create } from 'zustand'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
 import type { FindingView } from '../../api/types'
 import { sameFindings } from '../../document/editing/findings'
 import { replaced } from '../../document/editing/history'
 import type { Draft } from '../../document/editing/model'
+import { Pause } from '../../document/pause'
 import { mayAsk } from './checking'
 import { draftOf, editor, setEditor } from './store'
+import { pageStore } from '../../api/pageStore'
 
 /** What such a target counts as, as `--targets` of `flexcell check`. */
 export type TargetLevel = 'warning' | 'error' | 'off'
@@ -17,17 +18,19 @@ const KEPT = 'flexcell.targets'
 const PAGE = crypto.randomUUID()
 
 /** The level, and why the targets are not known. */
-export const useTargets = create<{ readonly level: TargetLevel; readonly problem: string }>(() => ({
+export const useTargets = pageStore<{ readonly level: TargetLevel; readonly problem: string }>(() => ({
   level: keptLevel(),
   problem: '',
 }))
 
-let due: ReturnType<typeof setTimeout> | undefined
+const pause = pageStore(
+  () => new Pause(),
+  (ended) => ended.cancel(),
+)
 
 /** Ask for the targets of the present text, soon; whatever was asked for before is not wanted any more. */
 export function lookForTargets(): void {
-  clearTimeout(due)
-  due = setTimeout(() => void look(), PAUSE_MS)
+  pause.getState().later(PAUSE_MS, () => void look())
 }
 
 async function look(): Promise<void> {

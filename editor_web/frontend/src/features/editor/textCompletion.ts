@@ -1,9 +1,10 @@
 /** What can be written at a place of the text: states, entries, parameters, targets, names in `${…}`. */
 import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete'
 import { openingAt } from '../../document/editing/completion'
-import { allNodes, nodeOf, parentPath } from '../../document/editing/model'
+import { allNodes, nodeOf } from '../../document/editing/model'
 import { nodeAtLine, stateNear, writingAt } from '../../document/editing/textPositions'
 import { plainText } from '../../document/values'
+import { parentPath } from '../../document/path'
 import { draftOf, editor, rootOf } from './store'
 
 const NODE_KEYS = [

@@ -1,8 +1,9 @@
 /** The keys of the editor: not while somebody writes, apart from those with Ctrl that no field needs. */
+import { outcomeOf } from '../../document/edgeId'
 import { useEffect, type RefObject } from 'react'
 import { neighborOf, type Heading } from '../../document/editing/neighbors'
-import { parentPath } from '../../document/editing/model'
 import type { Box } from '../../document/geometry'
+import { parentPath } from '../../document/path'
 import { choose, focusNode } from './actions'
 import { commandOf, disabledReason } from './commands'
 import { editor, showEditorRefusal } from './store'
@@ -72,7 +73,7 @@ function moveTo(area: HTMLElement | null, heading: Heading): boolean {
   const boxes = new Map<string, Box>()
   for (const element of area?.querySelectorAll<HTMLElement>('.react-flow__node') ?? []) {
     const id = element.dataset['id'] ?? ''
-    if (id && !id.includes('#')) boxes.set(id, element.getBoundingClientRect())
+    if (id && !outcomeOf(id)) boxes.set(id, element.getBoundingClientRect())
   }
   const from = editor().selection.at(-1)
   if (!from || !boxes.has(from)) {

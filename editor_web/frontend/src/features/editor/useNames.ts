@@ -1,8 +1,9 @@
 /** The names that `${…}` can use at the selected node: parameters of the behavior, and userdata around it. */
 import type { Dict } from '../../document/dict'
 import { useMemo } from 'react'
-import { allNodes, nodeOf, pathsTo, type EditNode } from '../../document/editing/model'
+import { allNodes, nodeOf, type EditNode } from '../../document/editing/model'
 import type { Name } from '../../document/editing/completion'
+import { pathsTo } from '../../document/path'
 import { draftOf, rootOf, useEditor } from './store'
 
 export function useNames(): readonly Name[] {

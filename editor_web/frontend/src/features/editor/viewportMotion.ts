@@ -1,10 +1,10 @@
 /** What is seen of the canvas may be on its way elsewhere: the canvas says that it is busy until it is there. */
-import { create } from 'zustand'
+import { pageStore } from '../../api/pageStore'
 
 /** An animation that another one interrupts never says that it is over: none takes longer than this. */
 const LONGEST_MS = 600
 
-const useMoves = create(() => ({ count: 0 }))
+const useMoves = pageStore(() => ({ count: 0 }))
 
 export const useIsMoving = () => useMoves((s) => s.count > 0)
 

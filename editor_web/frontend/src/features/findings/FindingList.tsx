@@ -4,6 +4,7 @@ import type { FindingView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
+import { nameOfPath } from '../../document/path'
 
 export interface FindingListProps {
   readonly document: string
@@ -31,7 +32,7 @@ export function FindingList({ document, findings, onSelect }: FindingListProps) 
             </div>
             {finding.hint && <div className="quiet">{finding.hint}</div>}
             <div className="quiet mono finding-place">
-              {document.split('/').pop()}:{finding.line}:{finding.column} · {finding.code}
+              {nameOfPath(document)}:{finding.line}:{finding.column} · {finding.code}
               {finding.path && (
                 <button type="button" className="link" onClick={() => onSelect(finding.path)}>
                   {finding.path}

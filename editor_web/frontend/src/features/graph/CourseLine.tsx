@@ -2,13 +2,14 @@
 import type { EdgeProps } from '@xyflow/react'
 import { memo } from 'react'
 import { useNodePart } from '../../api/liveParts'
+import { edgeOf, transitionId } from '../../document/edgeId'
 import { roundedPath } from '../../document/geometry'
 import type { CourseEdge } from './elements'
 
 export const CourseLine = memo(function CourseLine({ data }: EdgeProps<CourseEdge>) {
   const course = data?.course
-  const [, source = '', outcome = ''] = (course?.id ?? '').split('|')
-  const taken = useNodePart(course?.machine ?? '', (live) => live?.last_transition === `${source}|${outcome}`)
+  const start = edgeOf(course?.id ?? '')
+  const taken = useNodePart(course?.machine ?? '', (live) => start !== undefined && live?.last_transition === transitionId(start))
   if (!course) return null
   const state = `${taken ? ' is-taken' : ''}${/fail|error|abort/.test(course.outcome) ? ' is-failure' : ''}`
   return (

@@ -7,6 +7,7 @@ import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
 import { StatusIcon } from '../../components/StatusIcon'
+import { transitionId } from '../../document/edgeId'
 import { statusOf } from '../../document/runState'
 import { disabledText } from '../../document/editing/disabling'
 import { duration } from '../../document/time'
@@ -96,7 +97,7 @@ function Exits({ data }: { data: StepNode['data'] }) {
       {data.exits.map(({ outcome, target }) => (
         <span
           key={outcome}
-          className={`exit${lastTransition === `${data.node.name}|${outcome}` ? ' is-taken' : ''}`}
+          className={`exit${lastTransition === transitionId({ source: data.node.name, outcome }) ? ' is-taken' : ''}`}
           title={`${outcome} ends the machine with ${target}`}
         >
           <IconLogout size={11} aria-hidden />

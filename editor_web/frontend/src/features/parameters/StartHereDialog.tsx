@@ -1,13 +1,16 @@
 /** Starts a run at a node with the data of an earlier one, or one that pauses before a node. */
 import { Alert, Button, Group, Stack, Text, Textarea } from '@mantine/core'
+import { skipToken } from '@tanstack/react-query'
 import { useEffect, useState } from 'react'
-import { api, wordsOf } from '../../api/client'
+import { behaviorQueries } from '../../api/behaviorQueries'
 import { useLive } from '../../api/live'
+import { useAnswer } from '../../api/queryClient'
 import { askStartHere, goOnTo, useStartHere, type StartHere } from '../../api/startHere'
 import type { BehaviorView, StartBody, StartData } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { ParameterField } from '../../components/ParameterField'
 import { lookup } from '../../document/dict'
+import { nameOfPath } from '../../document/path'
 import { useStart } from './useStart'
 
 export interface StartHereDialogProps {
@@ -20,23 +23,12 @@ export interface StartHereDialogProps {
 export function StartHereDialog(props: StartHereDialogProps) {
   const asked = useStartHere((s) => s.asked)
   const isActive = useLive((s) => s.control !== undefined && s.control !== null)
-  const [data, setData] = useState<{ readonly of: StartHere; readonly found: StartData | string }>()
   const here = asked?.behavior === props.behavior.id ? asked : undefined
-  useEffect(() => {
-    if (!here) return undefined
-    let isCurrent = true
-    api
-      .startData(here.behavior, here.path)
-      .catch((error: unknown) => wordsOf(error))
-      .then((found) => isCurrent && setData({ of: here, found }))
-      .catch(() => undefined)
-    return () => {
-      isCurrent = false
-    }
-  }, [here])
+  const query = behaviorQueries.startData(here?.behavior ?? '', here?.path ?? '')
+  const { value, problem } = useAnswer({ ...query, ...(!here && { queryFn: skipToken }) })
   if (!here) return null
-  const name = here.path.split('/').pop() ?? here.path
-  const found = data?.of === here ? data.found : undefined
+  const name = nameOfPath(here.path)
+  const found = problem ?? value
   const close = () => askStartHere(undefined)
   return (
     <Dialog isOpen title={here.kind === 'from' ? `Run from ${name}` : `Run to ${name}`} onClose={close}>

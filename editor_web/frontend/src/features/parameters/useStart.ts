@@ -1,8 +1,9 @@
 /** The form's behavior: values, checks, and the request to start. */
 import { lookup, type Dict } from '../../document/dict'
+import { useQueryClient } from '@tanstack/react-query'
 import { useMemo, useState } from 'react'
 import { useSavedBreakpoints } from '../../api/breakpoints'
-import { loadCellConnection } from '../../api/cellConnection'
+import { cellConnectionQuery } from '../../api/cellConnection'
 import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
@@ -16,6 +17,7 @@ type Problems = Dict<string | undefined>
 
 /** `place` says where the run starts and pauses, where that is not at the beginning and nowhere. */
 export function useStart(behavior: BehaviorView, onStarted: () => void, place: Pick<StartBody, 'begin' | 'until'> = {}) {
+  const client = useQueryClient()
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
   const [values, setValues] = useState<Values>(() => Object.fromEntries(fields.map((f) => [f.name, f.initial])))
   const [problems, setProblems] = useState<Problems>({})
@@ -69,7 +71,8 @@ export function useStart(behavior: BehaviorView, onStarted: () => void, place: P
       const name = fields.find((f) => answer.where === f.name || answer.where.endsWith(`.${f.name}`))?.name
       if (name) setProblems({ [name]: answer.hint ? `${answer.message} (${answer.hint})` : answer.message })
       else showRefusal('Start', answer.message, answer.hint)
-      void loadCellConnection()
+      // Perhaps because the cell is lost; whoever tells of that hears it.
+      void client.prefetchQuery(cellConnectionQuery())
     }
   }
 

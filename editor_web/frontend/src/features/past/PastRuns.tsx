@@ -1,12 +1,12 @@
 /** The runs of the journal: found by words, by how they ended, by the day; failures are one press away. */
 import './past.css'
 import { ActionIcon, Button, Checkbox, CloseButton, Group, Menu, TextInput } from '@mantine/core'
+import { useDebouncedValue } from '@mantine/hooks'
 import { IconDots, IconGitCompare, IconHistory, IconSearch } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { useLive } from '../../api/live'
-import { pastApi, type PastQuery } from '../../api/timeline'
-import type { PastRunBody, PastRunsBody } from '../../api/types'
+import { useState } from 'react'
+import { useLastAnswer } from '../../api/queryClient'
+import { pastQueries, type PastQuery } from '../../api/timeline'
+import type { PastRunBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { RunBadge } from '../../components/StatusBadge'
 import { duration, wallTime } from '../../document/time'
@@ -37,7 +37,7 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
   const [until, setUntil] = useState('')
   const [limit, setLimit] = useState(PAGE)
   const [chosen, setChosen] = useState<readonly PastRunBody[]>([])
-  const { found, problem } = useFound({ text, kind, sinceS: dayStartS(since), untilS: dayEndS(until), limit })
+  const { value: found, problem } = useFound({ text, kind, sinceS: dayStartS(since), untilS: dayEndS(until), limit })
   const isFiltered = text !== '' || kind !== 'all' || since !== '' || until !== ''
 
   /** The two that were chosen last. */
@@ -175,22 +175,7 @@ function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
 const PATIENCE_MS = 150
 
 /** What matches; asked for when nobody has typed for a moment, and again when a run begins or ends. */
-function useFound(query: PastQuery): { readonly found: PastRunsBody | undefined; readonly problem: string } {
-  const [state, setState] = useState<{ found: PastRunsBody | undefined; problem: string }>({ found: undefined, problem: '' })
-  const runs = useLive((s) => s.runs.map((run) => run.status).join(' '))
-  const key = JSON.stringify(query)
-  useEffect(() => {
-    let isCurrent = true
-    const timer = setTimeout(() => {
-      pastApi.runs(JSON.parse(key) as PastQuery).then(
-        (found) => isCurrent && setState({ found, problem: '' }),
-        (error: unknown) => isCurrent && setState((before) => ({ ...before, problem: wordsOf(error) })),
-      )
-    }, PATIENCE_MS)
-    return () => {
-      isCurrent = false
-      clearTimeout(timer)
-    }
-  }, [key, runs])
-  return state
+function useFound(query: PastQuery) {
+  const [asked] = useDebouncedValue(JSON.stringify(query), PATIENCE_MS)
+  return useLastAnswer(pastQueries.runs(JSON.parse(asked) as PastQuery))
 }

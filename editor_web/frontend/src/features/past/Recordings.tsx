@@ -1,12 +1,12 @@
 /** The recordings that lie in the project. */
 import './past.css'
 import { IconFileAnalytics } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { pastApi } from '../../api/timeline'
+import { useAnswer } from '../../api/queryClient'
+import { pastQueries } from '../../api/timeline'
 import type { RecordingFile } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { wallTime } from '../../document/time'
+import { nameOfPath } from '../../document/path'
 
 export interface RecordingsProps {
   readonly href: (path: string) => string
@@ -14,18 +14,7 @@ export interface RecordingsProps {
 }
 
 export function Recordings({ href, onOpen }: RecordingsProps) {
-  const [files, setFiles] = useState<readonly RecordingFile[]>()
-  const [problem, setProblem] = useState('')
-  useEffect(() => {
-    let isCurrent = true
-    pastApi.recordings().then(
-      (found) => isCurrent && setFiles(found),
-      (error: unknown) => isCurrent && setProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [])
+  const { value: files, problem } = useAnswer(pastQueries.recordings())
   return (
     <div className="past-runs">
       {problem && (
@@ -69,7 +58,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
 function Named({ file }: { file: RecordingFile }) {
   return (
     <>
-      <span className="past-item-name">{file.behavior || file.path.split('/').pop()}</span>
+      <span className="past-item-name">{file.behavior || nameOfPath(file.path)}</span>
       <span className="quiet past-item-facts">
         {wallTime(file.started_at_s)} · {size(file.size_bytes)}
       </span>

@@ -2,9 +2,9 @@
 import './plots.css'
 import { Button, SegmentedControl } from '@mantine/core'
 import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
-import { useEffect, useMemo, useRef, useState } from 'react'
-import { bus } from '../../api/bus'
-import { wordsOf } from '../../api/client'
+import { useMemo, useRef, useState } from 'react'
+import { busQueries } from '../../api/bus'
+import { useAnswer } from '../../api/queryClient'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
@@ -19,14 +19,13 @@ import { SPANS_S, usePlot } from './usePlot'
 import type { TopicFields } from '../../api/types'
 
 const NONE: readonly TopicFields[] = []
-/** New devices bring new numbers. */
-const ASK_AGAIN_MS = 5000
 
 export function Plots() {
   const area = useRef<HTMLDivElement>(null)
   const isShown = useIsVisible(area)
   const plot = usePlot(isShown)
-  const { topics, problem } = useFields(isShown)
+  const { value, problem } = useAnswer({ ...busQueries.fields(), enabled: isShown })
+  const topics = value?.topics
   const [atS, setAtS] = useState<number>()
   const [isChoosing, setChoosing] = useState(true)
   const colors = useRef<ReadonlyMap<string, number>>(new Map())
@@ -130,22 +129,3 @@ export function Plots() {
 }
 
 /** What can be plotted, asked for again while it is looked at. */
-function useFields(isShown: boolean): { readonly topics: readonly TopicFields[] | undefined; readonly problem: string } {
-  const [topics, setTopics] = useState<readonly TopicFields[]>()
-  const [problem, setProblem] = useState('')
-  useEffect(() => {
-    if (!isShown) return
-    const load = () =>
-      bus.fields().then(
-        (found) => {
-          setProblem('')
-          setTopics((before) => (JSON.stringify(before) === JSON.stringify(found.topics) ? before : found.topics))
-        },
-        (error: unknown) => setProblem(wordsOf(error)),
-      )
-    void load()
-    const timer = setInterval(() => void load(), ASK_AGAIN_MS)
-    return () => clearInterval(timer)
-  }, [isShown])
-  return { topics, problem }
-}

@@ -1,8 +1,7 @@
 /** What is known of a named entry, and where an arm would be along it; asked for anew when the store changes. */
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { entries } from '../../api/entries'
-import { teach, useTeach } from '../../api/teaching'
+import { useDebouncedValue } from '@mantine/hooks'
+import { entryQueries } from '../../api/entries'
+import { useAnswer } from '../../api/queryClient'
 import type { EntryChanged, Trace } from '../../api/types'
 
 // Who goes through a list looks at none of what is between.
@@ -18,26 +17,13 @@ const WAITING: EntryTrace = { problem: '' }
 
 /** Nothing is asked without a name; without an arm only what is known of the entry. */
 export function useEntryTrace(kind: string, name: string, arm: string): EntryTrace {
-  const changed = useTeach((s) => s.entries)
   const of = JSON.stringify([kind, name, arm])
-  const [known, setKnown] = useState<EntryTrace & { readonly of: string }>()
-  useEffect(() => {
-    if (!name) return
-    let isCurrent = true
-    const keep = (found: Partial<EntryTrace>) =>
-      isCurrent && setKnown((before) => ({ ...(before?.of === of ? before : WAITING), ...found, of }))
-    const fail = (error: unknown) => keep({ trace: undefined, problem: wordsOf(error) })
-    const asked = setTimeout(() => {
-      entries.row(kind, name).then((row) => keep({ row }), fail)
-      if (arm)
-        teach
-          .fits(arm, { kind, name, capture: 0 })
-          .then((fits) => keep({ trace: fits.demonstration ?? fits.primitive ?? undefined, problem: '' }), fail)
-    }, POINTING_MS)
-    return () => {
-      isCurrent = false
-      clearTimeout(asked)
-    }
-  }, [kind, name, arm, of, changed])
-  return known?.of === of ? known : WAITING
+  const [pointedAt] = useDebouncedValue(of, POINTING_MS)
+  const isAsked = name !== '' && pointedAt === of
+  const row = useAnswer({ ...entryQueries.row(kind, name), enabled: isAsked })
+  const fits = useAnswer({ ...entryQueries.fits(arm, { kind, name, capture: 0 }), enabled: isAsked && arm !== '' })
+  if (!isAsked) return WAITING
+  const problem = row.problem ?? fits.problem
+  if (problem !== undefined) return { row: row.value ?? undefined, problem }
+  return { row: row.value ?? undefined, trace: fits.value?.demonstration ?? fits.value?.primitive ?? undefined, problem: '' }
 }

@@ -1,16 +1,17 @@
 /** Says that the world or a device of the cell is lost, and connects it again. */
 import { IconPlugConnectedX } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { connectCell, loadCellConnection, useCellConnection } from '../../api/cellConnection'
-import { wordsOf } from '../../api/client'
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query'
+import { cellConnectionQuery, connectCell, CONNECTED } from '../../api/cellConnection'
 import { useLive } from '../../api/live'
+import { problemOf, useOutdated } from '../../api/queryClient'
+import { queryKeys } from '../../api/queryKeys'
+import type { CellConnection } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 
 const LOOK_MS = 1000
 const LOST: ReadonlySet<string> = new Set(['fault', 'disconnected'])
 
 export function LostCell() {
-  const { connected, reason } = useCellConnection()
   const isServed = useLive((s) => s.connection === 'live')
   const mayOperate = useLive((s) => s.role === 'operator')
   const modes = useLive((s) =>
@@ -19,14 +20,14 @@ export function LostCell() {
       .filter((mode) => LOST.has(mode))
       .join(),
   )
-  const isSuspect = isServed && (modes !== '' || !connected)
-  const { isConnecting, problem, connect } = useConnect()
-  useEffect(() => {
-    if (!isSuspect) return
-    void loadCellConnection()
-    const timer = setInterval(() => void loadCellConnection(), LOOK_MS)
-    return () => clearInterval(timer)
-  }, [isSuspect, modes])
+  const { connected, reason } = useConnection(isServed, modes)
+  const client = useQueryClient()
+  const connecting = useMutation({
+    mutationFn: connectCell,
+    onSuccess: () => client.refetchQueries({ queryKey: queryKeys.cellConnection }),
+  })
+  const { isPending: isConnecting } = connecting
+  const problem = problemOf(connecting.error)
   if (connected || !isServed) return null
   return (
     <div className="lost-cell" role="alert">
@@ -45,26 +46,21 @@ export function LostCell() {
           label={isConnecting ? 'Connecting' : 'Connect again'}
           tone="strong"
           obstacle={isConnecting ? 'it is being connected' : undefined}
-          onPress={() => void connect()}
+          onPress={() => connecting.mutate()}
         />
       )}
     </div>
   )
 }
 
-function useConnect() {
-  const [isConnecting, setConnecting] = useState(false)
-  const [problem, setProblem] = useState('')
-  async function connect(): Promise<void> {
-    setConnecting(true)
-    setProblem('')
-    try {
-      await connectCell()
-    } catch (error) {
-      setProblem(wordsOf(error))
-    } finally {
-      setConnecting(false)
-    }
-  }
-  return { isConnecting, problem, connect }
+/** What the server last said; it is asked as long as a robot is not well, or the cell was lost when it was asked last. */
+function useConnection(isServed: boolean, modes: string): CellConnection {
+  const isLost = (known: CellConnection | undefined) => isServed && (modes !== '' || known?.connected === false)
+  useOutdated(queryKeys.cellConnection, modes)
+  const { data = CONNECTED } = useQuery({
+    ...cellConnectionQuery(),
+    enabled: ({ state }) => isLost(state.data),
+    refetchInterval: ({ state }) => (isLost(state.data) ? LOOK_MS : false),
+  })
+  return data
 }

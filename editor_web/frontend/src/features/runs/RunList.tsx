@@ -8,6 +8,7 @@ import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive, runStateOf, runWords } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
+import { fileTitle } from '../../document/path'
 
 export interface RunListProps {
   readonly current: string | undefined
@@ -50,7 +51,7 @@ function runText(run: RunView): string {
 
 /** The file name without its ending. */
 export function nameOf(behavior: string): string {
-  return (behavior.split('/').pop() ?? behavior).replace(/\.(ya?ml|json)$/, '')
+  return fileTitle(behavior)
 }
 
 /** How long a run takes or took. */

@@ -3,8 +3,9 @@ import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
-import { stripCells, pathWords, progressText } from '../../document/runProgress'
+import { stripCells, progressText } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
+import { pathWords } from '../../document/path'
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])

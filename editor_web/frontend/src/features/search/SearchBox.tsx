@@ -1,9 +1,9 @@
 /** Leads to anything by its name, and runs the commands of the page that is shown, from the keyboard. */
 import { useDebouncedValue } from '@mantine/hooks'
 import { IconBinaryTree2, IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin, IconRoute } from '@tabler/icons-react'
-import { useEffect, useMemo, useState, type ReactNode } from 'react'
-import { wordsOf } from '../../api/client'
-import { closeSearch, pageCommands, searchNames, type PageCommand } from '../../api/search'
+import { useMemo, useState, type ReactNode } from 'react'
+import { useLastAnswer } from '../../api/queryClient'
+import { closeSearch, namesQuery, pageCommands, type PageCommand } from '../../api/search'
 import type { NameHit } from '../../api/types'
 import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
 
@@ -53,26 +53,11 @@ function choiceOf(hit: NameHit, onOpen: SearchBoxProps['onOpen']): Choice {
   return { id: `${hit.kind}:${hit.id}:${hit.path}`, title: hit.title, detail: hit.detail, group, icon, run: () => onOpen(hit) }
 }
 
-interface Answer {
-  readonly hits: readonly NameHit[]
-  readonly problem: string
-}
-
-const NOTHING: Answer = { hits: [], problem: '' }
+const NOTHING: readonly NameHit[] = []
 
 /** What the server finds for a text; that of before until it has answered. */
-function useHits(text: string): Answer {
-  const [answer, setAnswer] = useState(NOTHING)
-  useEffect(() => {
-    if (!text) return
-    const asking = new AbortController()
-    searchNames(text, asking.signal).then(
-      (hits) => setAnswer({ hits, problem: '' }),
-      (error: unknown) => {
-        if (!asking.signal.aborted) setAnswer({ hits: [], problem: wordsOf(error) })
-      },
-    )
-    return () => asking.abort()
-  }, [text])
-  return text ? answer : NOTHING
+function useHits(text: string): { readonly hits: readonly NameHit[]; readonly problem: string } {
+  const { value = NOTHING, problem = '' } = useLastAnswer(namesQuery(text))
+  if (text === '') return { hits: NOTHING, problem: '' }
+  return { hits: problem ? NOTHING : value, problem }
 }

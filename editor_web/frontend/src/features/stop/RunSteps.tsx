@@ -4,6 +4,7 @@ import { api } from '../../api/client'
 import { recovery } from '../../api/recovery'
 import type { StoppedRun } from '../../api/types'
 import { partWords, releaseObstacle, undecided } from '../../document/recovery'
+import { fileTitle } from '../../document/path'
 import { Problem } from './ArmSteps'
 import { Confirm } from './Confirm'
 import classes from './recovery.module.css'
@@ -110,5 +111,5 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
 }
 
 function nameOf(behavior: string): string {
-  return (behavior.split('/').pop() ?? behavior).replace(/\.(ya?ml|json)$/, '')
+  return fileTitle(behavior)
 }

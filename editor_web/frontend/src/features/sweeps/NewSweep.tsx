@@ -1,9 +1,10 @@
 /** Making a sweep: what is executed, how often, what is varied and what is required; it becomes a document. */
 import { IconPlus } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { api, wordsOf } from '../../api/client'
-import { sweepsApi } from '../../api/sweeps'
-import type { BehaviorSummary, FactorChoice } from '../../api/types'
+import { useState } from 'react'
+import { behaviorQueries } from '../../api/behaviorQueries'
+import { wordsOf } from '../../api/client'
+import { useAnswer } from '../../api/queryClient'
+import { sweepQueries, sweepsApi } from '../../api/sweeps'
 import { Dialog } from '../../components/Dialog'
 import { documentOf, proposedId, type FactorDraft, type SweepDraft } from '../../document/sweeps'
 import { FactorFields, NO_FACTOR } from './FactorFields'
@@ -37,11 +38,12 @@ export function NewSweep({ taken, onMade }: NewSweepProps) {
 
 export function NewSweepForm({ taken, onMade }: NewSweepProps) {
   const [draft, setDraft] = useState<SweepDraft>({ id: '', behavior: '', runs: '100', required: '', factors: [], search: undefined })
-  const [problem, setProblem] = useState('')
+  const [refusal, setProblem] = useState('')
   const [step, setStep] = useState<'' | 'Checking …' | 'Starting …'>('')
   const isSending = step !== ''
-  const behaviors = useBehaviors(setProblem)
-  const choices = useChoices(draft.behavior, setProblem)
+  const { value: behaviors = [], problem: noBehaviors } = useAnswer(behaviorQueries.all())
+  const { value: choices = [], problem: noChoices } = useAnswer({ ...sweepQueries.factors(draft.behavior), enabled: draft.behavior !== '' })
+  const problem = refusal || noBehaviors || noChoices
   const id = draft.id || (draft.behavior ? proposedId(draft.behavior, taken) : '')
 
   function change(changed: Partial<SweepDraft>): void {
@@ -176,29 +178,4 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
       </div>
     </form>
   )
-}
-
-function useBehaviors(onProblem: (words: string) => void): readonly BehaviorSummary[] {
-  const [behaviors, setBehaviors] = useState<readonly BehaviorSummary[]>([])
-  useEffect(() => {
-    api.behaviors().then(setBehaviors, (error: unknown) => onProblem(wordsOf(error)))
-  }, [onProblem])
-  return behaviors
-}
-
-/** What a sweep of a behavior can vary; nothing before the server has told. */
-function useChoices(behavior: string, onProblem: (words: string) => void): readonly FactorChoice[] {
-  const [described, setDescribed] = useState<{ readonly of: string; readonly choices: readonly FactorChoice[] }>()
-  useEffect(() => {
-    if (!behavior) return
-    let isCurrent = true
-    sweepsApi.factors(behavior).then(
-      (choices) => isCurrent && setDescribed({ of: behavior, choices }),
-      (error: unknown) => isCurrent && onProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [behavior, onProblem])
-  return described?.of === behavior ? described.choices : []
 }

@@ -2,7 +2,8 @@
 import { IconPlayerPlay, IconX } from '@tabler/icons-react'
 import { useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { recordRun, sweepsApi } from '../../api/sweeps'
+import { useAnswer } from '../../api/queryClient'
+import { recordRun, sweepQueries } from '../../api/sweeps'
 import type { RecordedTrial, TrialResult } from '../../api/types'
 import { RunBadge } from '../../components/StatusBadge'
 import { labelOf, short } from '../../document/sweeps'
@@ -23,19 +24,8 @@ export interface RunDetailsProps {
 }
 
 export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenSweep, onClose }: RunDetailsProps) {
-  const [run, setRun] = useState<TrialResult>()
-  const [problem, setProblem] = useState('')
+  const { value: run, problem } = useAnswer(sweepQueries.run(sweep, number))
   const element = useRef<HTMLElement>(null)
-  useEffect(() => {
-    let isCurrent = true
-    sweepsApi.run(sweep, number).then(
-      (result) => isCurrent && setRun(result),
-      (error: unknown) => isCurrent && setProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [sweep, number])
   useEffect(() => {
     // A run may be chosen far from where it is told of. What this returns is no clean-up.
     element.current?.scrollIntoView({ block: 'nearest' })

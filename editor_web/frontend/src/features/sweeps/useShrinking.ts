@@ -1,10 +1,8 @@
 /** How far a run is shrunk, as the server tells it; asked again as long as it goes on. */
-import { useCallback, useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { sweepsApi } from '../../api/sweeps'
+import { useMutation, useQueryClient } from '@tanstack/react-query'
+import { problemOf, useAnswer } from '../../api/queryClient'
+import { sweepQueries } from '../../api/sweeps'
 import type { Shrinking } from '../../api/types'
-
-const PERIOD_MS = 1000
 
 export interface RunShrinking {
   readonly shrinking: Shrinking | undefined
@@ -15,32 +13,18 @@ export interface RunShrinking {
 }
 
 export function useShrinking(sweep: string, number: number): RunShrinking {
-  const [shrinking, setShrinking] = useState<Shrinking>()
-  const [problem, setProblem] = useState('')
-  const [revision, setRevision] = useState(0)
-  useEffect(() => {
-    let isCurrent = true
-    sweepsApi.shrinking(sweep, number).then(
-      (current) => isCurrent && setShrinking(current),
-      (error: unknown) => isCurrent && setProblem(wordsOf(error)),
-    )
-    return () => {
-      isCurrent = false
-    }
-  }, [sweep, number, revision])
-  useEffect(() => {
-    if (!shrinking || shrinking.status === 'idle') return
-    const timer = setTimeout(() => setRevision((before) => before + 1), PERIOD_MS)
-    return () => clearTimeout(timer)
-  }, [shrinking])
-  const request = useCallback(async (asked: () => Promise<unknown>) => {
-    setProblem('')
-    try {
-      await asked()
-      setRevision((before) => before + 1)
-    } catch (error) {
-      setProblem(wordsOf(error))
-    }
-  }, [])
-  return { shrinking, problem, request }
+  const client = useQueryClient()
+  const query = sweepQueries.shrinking(sweep, number)
+  const { value: shrinking, problem: unread } = useAnswer(query)
+  const { mutateAsync, error } = useMutation({
+    mutationFn: (asked: () => Promise<unknown>) => asked(),
+    onSuccess: () => void client.invalidateQueries({ queryKey: query.queryKey }),
+  })
+
+  async function request(asked: () => Promise<unknown>): Promise<void> {
+    // Why it was refused is told by the mutation.
+    await mutateAsync(asked).catch(() => undefined)
+  }
+
+  return { shrinking, problem: problemOf(error) ?? unread ?? '', request }
 }

@@ -2,8 +2,10 @@
 import { lookup } from '../../document/dict'
 import { Checkbox, Group, Stack, Text, UnstyledButton } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useState } from 'react'
 import { wordsOf } from '../../api/client'
+import { entryQueries } from '../../api/entries'
+import { useAnswer } from '../../api/queryClient'
 import { previewTaught, teach, useDisabledReason, useTeach } from '../../api/teaching'
 import type { Capture, CaptureSummary } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
@@ -140,17 +142,6 @@ function motionWords(capture: CaptureSummary): string {
 
 /** Where a captured pose is in its own frame, where that is not the world. */
 function usePlace({ id, form }: CaptureSummary): NonNullable<Capture['pose']> | undefined {
-  const [place, setPlace] = useState<Capture['pose']>()
-  useEffect(() => {
-    if (form !== 'pose') return
-    let current = true
-    teach.capture(id).then(
-      (found) => current && setPlace(found.pose),
-      () => current && setPlace(undefined),
-    )
-    return () => {
-      current = false
-    }
-  }, [id, form])
+  const place = useAnswer({ ...entryQueries.capture(id), enabled: form === 'pose' }).value?.pose
   return place && place.frame !== undefined && place.frame !== 'world' ? place : undefined
 }

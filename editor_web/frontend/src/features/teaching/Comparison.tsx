@@ -2,9 +2,11 @@
 import { lookup, type Dict } from '../../document/dict'
 import { Flex, Group, NativeSelect, Stack, Table, Text } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { previewTaught, teach, type TaughtReference } from '../../api/teaching'
+import { useQueries } from '@tanstack/react-query'
+import { useState } from 'react'
+import { entryQueries } from '../../api/entries'
+import { problemOf } from '../../api/queryClient'
+import { previewTaught, type TaughtReference } from '../../api/teaching'
 import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { apart, changesOf, curveOf, degrees, endOf, errorsOf } from '../../document/teaching'
@@ -167,21 +169,16 @@ export function fitWords(fit: PrimitiveComparison | undefined): string {
 
 /** Where an arm is along things, each asked for once. */
 export function useFits(things: readonly Compared[]): { readonly fits: Dict<PrimitiveComparison>; readonly problem: string } {
-  const [fits, setFits] = useState<Dict<PrimitiveComparison>>({})
-  const [problem, setProblem] = useState('')
-  const asked = JSON.stringify(things)
-  useEffect(() => {
-    let current = true
-    setProblem('')
-    for (const { key, label, arm, what } of JSON.parse(asked) as readonly Compared[]) {
-      teach.fits(arm, what).then(
-        (found) => current && setFits((known) => ({ ...known, [key]: found })),
-        (error: unknown) => current && setProblem(`${label}: ${wordsOf(error)}`),
-      )
-    }
-    return () => {
-      current = false
-    }
-  }, [asked])
-  return { fits, problem }
+  const answers = useQueries({ queries: things.map(({ arm, what }) => entryQueries.fits(arm, what)) })
+  const fits = Object.fromEntries(
+    things.flatMap(({ key }, at) => {
+      const found = answers[at]?.data
+      return found ? [[key, found] as const] : []
+    }),
+  )
+  const problems = things.map(({ label }, at) => {
+    const problem = problemOf(answers[at]?.error ?? null)
+    return problem && `${label}: ${problem}`
+  })
+  return { fits, problem: problems.findLast((each) => each !== undefined) ?? '' }
 }

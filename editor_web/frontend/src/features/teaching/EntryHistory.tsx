@@ -1,9 +1,10 @@
 /** The changes of an entry, each with what it was then. */
 import { Anchor, Flex, Paper, Stack, Text, Title } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { previewTaught, teach } from '../../api/teaching'
+import { useState } from 'react'
+import { entryQueries } from '../../api/entries'
+import { useAnswer } from '../../api/queryClient'
+import { previewTaught } from '../../api/teaching'
 import type { EntryChanged, EntryRecord } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, degrees } from '../../document/teaching'
@@ -18,7 +19,8 @@ const MOST_SHOWN = 1200
 
 export function EntryHistory({ arm, entry }: { readonly arm: string; readonly entry: EntryChanged }) {
   const [opened, setOpened] = useState<number>()
-  const history = useHistory(entry)
+  const { value } = useAnswer(entryQueries.history(entry.kind, entry.name))
+  const history = value?.changes ?? []
   return (
     <>
       <Title order={4} size="xs">
@@ -76,7 +78,7 @@ interface WasProps {
 function Was({ arm, entry, revision }: WasProps) {
   const { kind, name } = entry
   const hasPlace = PLAYED.has(kind)
-  const { was, problem } = useRevision(kind, name, revision)
+  const { value: was, problem } = useAnswer(entryQueries.revision(kind, name, revision))
   const then = { kind, name, capture: 0, revision }
   const now = { ...then, revision: entry.revision }
   const { fits, problem: unfit } = useFits(
@@ -134,35 +136,4 @@ function Revision({ number, words }: { readonly number: number; readonly words: 
 function valueWords({ value }: EntryRecord): string {
   const text = JSON.stringify(value, undefined, 1)
   return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)} …` : text
-}
-
-function useRevision(kind: string, name: string, revision: number): { readonly was: EntryRecord | undefined; readonly problem: string } {
-  const [was, setWas] = useState<EntryRecord>()
-  const [problem, setProblem] = useState('')
-  useEffect(() => {
-    let current = true
-    teach.revision(kind, name, revision).then(
-      (found) => current && setWas(found),
-      (error: unknown) => current && setProblem(wordsOf(error)),
-    )
-    return () => {
-      current = false
-    }
-  }, [kind, name, revision])
-  return { was, problem }
-}
-
-function useHistory({ kind, name, revision }: EntryChanged): readonly EntryChanged[] {
-  const [changes, setChanges] = useState<readonly EntryChanged[]>([])
-  useEffect(() => {
-    let current = true
-    teach.history(kind, name).then(
-      (found) => current && setChanges(found.changes),
-      () => current && setChanges([]),
-    )
-    return () => {
-      current = false
-    }
-  }, [kind, name, revision])
-  return changes
 }

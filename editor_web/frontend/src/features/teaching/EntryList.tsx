@@ -1,8 +1,9 @@
 /** The named entries of the cell: found, and laid beside each other. */
 import { Badge, Checkbox, Flex, Group, NativeSelect, Stack, Text, TextInput, UnstyledButton } from '@mantine/core'
-import { useEffect, useState } from 'react'
-import { wordsOf } from '../../api/client'
-import { teach, useTeach } from '../../api/teaching'
+import { useDebouncedValue } from '@mantine/hooks'
+import { useState } from 'react'
+import { entryQueries } from '../../api/entries'
+import { useLastAnswer, type Answer } from '../../api/queryClient'
 import type { EntryPage, EntryChanged } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import classes from './Choices.module.css'
@@ -20,7 +21,7 @@ export function EntryList({ arm }: { readonly arm: string }) {
   const [kind, setKind] = useState('')
   const [chosen, setChosen] = useState('')
   const [compared, setCompared] = useState<readonly string[]>([])
-  const { page, problem } = useEntries(kind, text)
+  const { value: page, problem } = useEntries(kind, text)
   const one = page?.entries.find((each) => keyOf(each) === chosen)
   const beside = page?.entries.filter((each) => compared.includes(keyOf(each))) ?? []
   return (
@@ -111,26 +112,7 @@ function asCompared({ kind, name, revision }: EntryChanged, arm: string): Compar
   return { key: `${kind} ${name}`, label: name, arm, what: { kind, name, capture: 0, revision } }
 }
 
-function useEntries(kind: string, text: string): { readonly page: EntryPage | undefined; readonly problem: string } {
-  const changed = useTeach((s) => s.entries)
-  const [page, setPage] = useState<EntryPage>()
-  const [problem, setProblem] = useState('')
-  useEffect(() => {
-    let current = true
-    const asked = setTimeout(() => {
-      teach.entries(kind, text).then(
-        (found) => {
-          if (!current) return
-          setPage(found)
-          setProblem('')
-        },
-        (error: unknown) => current && setProblem(wordsOf(error)),
-      )
-    }, TYPING_MS)
-    return () => {
-      current = false
-      clearTimeout(asked)
-    }
-  }, [kind, text, changed])
-  return { page, problem }
+function useEntries(kind: string, text: string): Answer<EntryPage> {
+  const [typed] = useDebouncedValue(text, TYPING_MS)
+  return useLastAnswer(entryQueries.found(kind, typed))
 }

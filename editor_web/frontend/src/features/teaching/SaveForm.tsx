@@ -1,9 +1,12 @@
 /** Saves a capture as a named entry; overwriting one says first what that changes. */
 import { Alert, Group, List, NativeSelect, Paper, SimpleGrid, Stack, Text, TextInput } from '@mantine/core'
 import { IconDeviceFloppy } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useDebouncedValue } from '@mantine/hooks'
+import { useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach, useDisabledReason, useTeach } from '../../api/teaching'
+import { entryQueries } from '../../api/entries'
+import { useAnswer } from '../../api/queryClient'
+import { teach, useDisabledReason } from '../../api/teaching'
 import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, endOf, nameFault, tagFault, tagsOf } from '../../document/teaching'
@@ -138,30 +141,10 @@ const EMPTY: Trace = { times_s: [], joint_names: [], joints: [], poses: [], rema
 
 /** Whether there is an entry of this name, and where the arm is along it. */
 function usePresent(arm: string, form: Form, name: string): { readonly exists: boolean; readonly trace: Trace | undefined } {
-  const changed = useTeach((s) => s.entries)
-  const [found, setFound] = useState<{
-    readonly name: string
-    readonly form: Form
-    readonly exists: boolean
-    readonly trace: Trace | undefined
-  }>()
-  useEffect(() => {
-    if (!name) return
-    let current = true
-    const asked = setTimeout(() => {
-      teach.entries(form, name).then(
-        async (page) => {
-          const exists = page.entries.some((each) => each.kind === form && each.name === name)
-          const fits = exists ? await teach.fits(arm, { kind: form, name, capture: 0 }).catch(() => undefined) : undefined
-          if (current) setFound({ name, form, exists, trace: fits?.primitive ?? fits?.demonstration ?? undefined })
-        },
-        () => current && setFound(undefined),
-      )
-    }, TYPING_MS)
-    return () => {
-      current = false
-      clearTimeout(asked)
-    }
-  }, [arm, form, name, changed])
-  return found?.name === name && found.form === form ? found : { exists: false, trace: undefined }
+  const [typed] = useDebouncedValue(name, TYPING_MS)
+  const isAsked = name !== '' && typed === name
+  const { value: page } = useAnswer({ ...entryQueries.found(form, name), enabled: isAsked })
+  const exists = isAsked && (page?.entries.some((each) => each.kind === form && each.name === name) ?? false)
+  const { value: fits } = useAnswer({ ...entryQueries.fits(arm, { kind: form, name, capture: 0 }), enabled: exists })
+  return { exists, trace: exists ? (fits?.primitive ?? fits?.demonstration ?? undefined) : undefined }
 }

@@ -1,10 +1,12 @@
 /** What the buttons do: the triggers of the Helping Hand as a table and as YAML, and which fires just now. */
 import { Group, SegmentedControl, Stack, Table, Text, Textarea, VisuallyHidden } from '@mantine/core'
 import { IconPencil, IconPlus, IconTrash } from '@tabler/icons-react'
-import { useEffect, useState } from 'react'
+import { useQueryClient } from '@tanstack/react-query'
+import { useState } from 'react'
 import { ServerError, wordsOf } from '../../api/client'
-import { teach, useDisabledReason, useTeach } from '../../api/teaching'
-import type { Trigger, TriggerDocument, TriggerStatus } from '../../api/types'
+import { useAnswer } from '../../api/queryClient'
+import { teach, triggerDocumentQuery, useDisabledReason, useTeach } from '../../api/teaching'
+import type { Trigger, TriggerStatus } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
 import { IconCommand } from './IconCommand'
@@ -157,28 +159,21 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
 }
 
 function TriggerText() {
-  const [kept, setKept] = useState<TriggerDocument>()
-  const [text, setText] = useState('')
-  const [problem, setProblem] = useState('')
+  const client = useQueryClient()
+  const { value: kept, problem: unread } = useAnswer(triggerDocumentQuery())
+  const [typed, setText] = useState<string>()
+  const [refusal, setProblem] = useState('')
   const [message, setMessage] = useState('')
   const off = useDisabledReason()
-
-  useEffect(() => {
-    teach.document().then(
-      (found) => {
-        setKept(found)
-        setText(found.text)
-      },
-      (error: unknown) => setProblem(wordsOf(error)),
-    )
-  }, [])
+  const text = typed ?? kept?.text ?? ''
+  const problem = refusal || unread
 
   function save(): void {
     teach.writeDocument(text).then(
       () => {
         setProblem('')
         setMessage('Saved, and in force.')
-        setKept(kept && { ...kept, text })
+        if (kept) client.setQueryData(triggerDocumentQuery().queryKey, { ...kept, text })
       },
       (error: unknown) => {
         setMessage('')

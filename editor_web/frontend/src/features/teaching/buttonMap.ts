@@ -1,5 +1,5 @@
 /** Which keys of the keyboard and of a gamepad are buttons, kept in the browser; and which are down. */
-import { create } from 'zustand'
+import { pageStore } from '../../api/pageStore'
 
 export interface KeyButton {
   /** `code` of the key, `Space`. */
@@ -58,7 +58,7 @@ interface ButtonStore {
   readonly pressed: ReadonlySet<string>
 }
 
-export const useButtonMap = create<ButtonStore>(() => ({ isOn: false, keys: keptKeys(), pressed: new Set() }))
+export const useButtonMap = pageStore<ButtonStore>(() => ({ isOn: false, keys: keptKeys(), pressed: new Set() }))
 
 function keptKeys(): readonly KeyButton[] {
   try {

@@ -2,6 +2,7 @@
 import { useEffect, useRef } from 'react'
 import { clearTeachRefusal, sendToServer, useDisabledReason } from '../../api/teaching'
 import { padButtons, useButtonMap } from './buttonMap'
+import { firstOfPath, nameOfPath } from '../../document/path'
 
 const NOT_TYPED = new Set(['checkbox', 'radio', 'range', 'button'])
 
@@ -37,8 +38,7 @@ export function useButtons(): void {
 
     function letGo(): void {
       for (const name of held) {
-        const [source = '', button = ''] = name.split('/')
-        send(source, button, false)
+        send(firstOfPath(name), nameOfPath(name), false)
       }
     }
 
@@ -58,8 +58,8 @@ export function useButtons(): void {
       const down = padButtons(navigator.getGamepads())
       for (const button of down) send('gamepad', button, true)
       for (const name of held) {
-        const [source = '', button = ''] = name.split('/')
-        if (source === 'gamepad' && !down.has(button)) send(source, button, false)
+        const button = nameOfPath(name)
+        if (firstOfPath(name) === 'gamepad' && !down.has(button)) send('gamepad', button, false)
       }
       frame = requestAnimationFrame(look)
     }

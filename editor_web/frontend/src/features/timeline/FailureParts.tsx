@@ -3,6 +3,7 @@ import { Anchor, List, Table, Text } from '@mantine/core'
 import type { CauseLink, LogLine, MeasuredValue, RunComparison, RunFailure } from '../../api/types'
 import { differenceLines, expectedWords, measuredWords, missWords } from '../../document/failure'
 import { wallTime } from '../../document/time'
+import { nameOfPath } from '../../document/path'
 import type { ReactNode } from 'react'
 import classes from './Failure.module.css'
 
@@ -70,7 +71,7 @@ export function Steps({ failure: { steps, path }, onShow }: StepsProps) {
       {steps.map((step, index) => (
         <List.Item key={step.path} ml={Math.max(0, index - 1) * 14} pl={index > 0 ? 14 : 0} {...(step.path === path && ORIGIN)}>
           <Anchor {...LINK} onClick={() => onShow(step)}>
-            {step.path.split('/').pop()}
+            {nameOfPath(step.path)}
           </Anchor>{' '}
           <Text span inherit c="dimmed">
             {step.text} at {step.time_s.toFixed(2)} s

@@ -24,6 +24,7 @@ import {
   type View,
 } from '../../document/timeline'
 import { flatten } from '../../document/tree'
+import { depthOf } from '../../document/path'
 import { Lanes } from './Lanes'
 import classes from './Timeline.module.css'
 import { Tools } from './Tools'
@@ -62,7 +63,7 @@ export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   const rows = useMemo(() => {
     const known = [...(paths?.keys() ?? [])]
     // Of large behaviors the upper nodes are open at first.
-    const shut = known.length > MANY_ROWS ? known.filter((path) => path.split('/').length > 2) : []
+    const shut = known.length > MANY_ROWS ? known.filter((path) => depthOf(path) > 1) : []
     const closed = new Set([...shut.filter((path) => !toggled.has(path)), ...[...toggled].filter((path) => !shut.includes(path))])
     return rowsOf(known, order, closed)
   }, [paths, order, toggled])

@@ -1,14 +1,16 @@
 /** The spans to draw: all of them, or, where those of a long run are merged, exactly those of the part that is seen. */
-import { useEffect, useState } from 'react'
-import { pastApi, type Subject } from '../../api/timeline'
+import { skipToken, useQuery } from '@tanstack/react-query'
+import { useEffect, useMemo, useState } from 'react'
+import { pastQueries, runSubject, type Subject } from '../../api/timeline'
 import type { ActivationInterval } from '../../api/types'
 import type { LoadedTimeline, View } from '../../document/timeline'
 
 const PATIENCE_MS = 150
 
-interface Detail extends View {
+interface Part extends View {
+  readonly subject: Subject
+  /** Up to which event the timeline was known. */
   readonly seq: number
-  readonly rows: ReadonlyMap<string, readonly ActivationInterval[]>
 }
 
 export function useDetail(
@@ -17,34 +19,36 @@ export function useDetail(
   view: View,
   isPart: boolean,
 ): ReadonlyMap<string, readonly ActivationInterval[]> {
-  const [detail, setDetail] = useState<Detail>()
+  const [asked, ask] = useState<Part>()
+  const detail = useLoaded(asked)
   const isNeeded = isPart && course?.merged === true && subject !== undefined
   const { fromS, untilS } = view
-  const fits = detail !== undefined && isNeeded && detail.fromS <= fromS && detail.untilS >= untilS && detail.seq === course.seq
+  const fits = detail !== undefined && isNeeded && covers(detail, subject, view) && detail.seq === course.seq
   useEffect(() => {
     if (!isNeeded || fits) return
-    let isOver = false
     const length = untilS - fromS
-    const [wideFromS, wideUntilS] = [Math.max(0, fromS - length / 2), untilS + length / 2]
-    const timer = setTimeout(() => {
-      pastApi.timeline(subject, 0, wideFromS, wideUntilS).then(
-        (loaded) => {
-          if (isOver) return
-          setDetail({
-            fromS: wideFromS,
-            untilS: wideUntilS,
-            seq: loaded.seq,
-            rows: new Map(loaded.rows.map((row) => [row.path, row.spans])),
-          })
-        },
-        // What is there already is good enough to go on with.
-        () => undefined,
-      )
-    }, PATIENCE_MS)
-    return () => {
-      isOver = true
-      clearTimeout(timer)
-    }
+    const part = { subject, fromS: Math.max(0, fromS - length / 2), untilS: untilS + length / 2, seq: course.seq }
+    const timer = setTimeout(() => ask(part), PATIENCE_MS)
+    return () => clearTimeout(timer)
   }, [isNeeded, fits, fromS, untilS, subject, course?.seq])
   return fits ? detail.rows : (course?.rows ?? new Map<string, readonly ActivationInterval[]>())
+}
+
+interface Detail extends Part {
+  readonly rows: ReadonlyMap<string, readonly ActivationInterval[]>
+}
+
+function covers(detail: Detail, subject: Subject, { fromS, untilS }: View): boolean {
+  return detail.subject === subject && detail.fromS <= fromS && detail.untilS >= untilS
+}
+
+/** Undefined until it is there, and where it cannot be had: what is there already is good enough to go on with. */
+function useLoaded(asked: Part | undefined): Detail | undefined {
+  const { subject, fromS = 0, untilS = 0, seq = 0 } = asked ?? {}
+  const query = pastQueries.part(subject ?? runSubject(''), fromS, untilS, seq)
+  const { data } = useQuery({ ...query, ...(!subject && { queryFn: skipToken }) })
+  return useMemo(() => {
+    if (!asked || !data) return undefined
+    return { ...asked, seq: data.seq, rows: new Map(data.rows.map((row) => [row.path, row.spans])) }
+  }, [asked, data])
 }
