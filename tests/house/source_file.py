@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
+
+_Node = TypeVar("_Node", bound=ast.AST)
 
 
 class Import(NamedTuple):
@@ -40,41 +44,51 @@ def source_file(path: Path) -> SourceFile:
 def source_text(text: str) -> SourceFile:
     """Return the facts about the text of a file."""
     tree = ast.parse(text)
-    imports: list[Import] = []
-    functions: list[str] = []
-    called: set[str] = set()
-    for node in ast.walk(tree):
-        match node:
-            case ast.Import(names=modules):
-                imports += (Import(each.name, None, 0) for each in modules)
-            case ast.ImportFrom(module=module, names=names, level=level):
-                imports.append(Import(module or "", tuple(each.name for each in names), level))
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
-                functions.append(name)
-            case ast.Call(func=ast.Name(id=name)):
-                called.add(name)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=owner), attr=name)):
-                called.add(f"{owner}.{name}")
-            case _:
-                pass
+    found = _Nodes(tree)
+    imports = [Import(each.name, None, 0) for node in found.of(ast.Import) for each in node.names]
+    imports += [
+        Import(node.module or "", tuple(each.name for each in node.names), node.level)
+        for node in found.of(ast.ImportFrom)
+    ]
+    functions = [node.name for node in (*found.of(ast.FunctionDef), *found.of(ast.AsyncFunctionDef))]
     classes = (node.name for node in tree.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_"))
     return SourceFile(
         docstring=bool(ast.get_docstring(tree)),
         imports=tuple(imports),
         classes=tuple(classes),
         functions=tuple(functions),
-        assigned=frozenset(filter(None, map(_assigned, ast.walk(tree)))),
-        called=frozenset(called),
+        assigned=frozenset(filter(None, _assigned(found))),
+        called=frozenset(filter(None, (_name_of(call.func) for call in found.of(ast.Call)))),
     )
 
 
-def _assigned(node: ast.AST) -> str | None:
-    match node:
-        case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()):
+class _Nodes:
+    """The nodes of a tree by their class: a million of them are not asked one by one what they are."""
+
+    def __init__(self, tree: ast.AST) -> None:
+        self._by_class: dict[type[ast.AST], list[Any]] = defaultdict(list)
+        for node in ast.walk(tree):
+            self._by_class[type(node)].append(node)
+
+    def of(self, kind: type[_Node]) -> list[_Node]:
+        """Return the nodes of a class."""
+        return self._by_class[kind]
+
+
+def _assigned(found: _Nodes) -> Iterator[str | None]:
+    yield from (node.id for node in found.of(ast.Name) if isinstance(node.ctx, ast.Store))
+    yield from (node.attr for node in found.of(ast.Attribute) if isinstance(node.ctx, ast.Store))
+    yield from (node.arg for node in (*found.of(ast.arg), *found.of(ast.keyword)))
+    yield from (node.asname for node in found.of(ast.alias))
+    for kind in (ast.ExceptHandler, ast.MatchAs, ast.MatchStar):
+        yield from (node.name for node in found.of(kind))
+
+
+def _name_of(called: ast.expr) -> str | None:
+    match called:
+        case ast.Name(id=name):
             return name
-        case ast.arg(arg=name) | ast.keyword(arg=name) | ast.alias(asname=name):
-            return name
-        case ast.ExceptHandler(name=name) | ast.MatchAs(name=name) | ast.MatchStar(name=name):
-            return name
+        case ast.Attribute(value=ast.Name(id=owner), attr=name):
+            return f"{owner}.{name}"
         case _:
             return None

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -132,6 +133,48 @@ def test_a_lock_that_is_missing_is_reported(tmp_path: Path) -> None:
     """And nothing is installed without one."""
     with pytest.raises(SystemExit):
         bootstrap.require_current_lock(bootstrap.PROJECT, tmp_path / "none.lock")
+
+
+def test_uv_is_installed_first_by_its_own_entry_of_the_lock() -> None:
+    """With all its hashes, and nothing of its neighbours."""
+    (entry,) = [entry for entry in entries(LOCKS[0]) if entry.startswith("uv==")]
+    alone = bootstrap.lock_entry(LOCKS[0], "uv")
+    assert entry.count("--hash=sha256:") > 5
+    assert (
+        "\n".join(line for line in alone.splitlines() if "#" not in line).replace("\\\n", " ").strip() == entry.strip()
+    )
+
+
+@pytest.mark.parametrize(
+    ("by_uv", "exit_code", "installers"),
+    [(True, 0, ["pip", "uv"]), (True, 2, ["pip", "uv", "pip"]), (False, 0, ["pip"])],
+    ids=["by uv", "uv fails", "by pip"],
+)
+def test_whoever_installs_does_it_by_hashes_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, by_uv: bool, exit_code: int, installers: list[str]
+) -> None:
+    """pip installs where uv fails, as behind a registry that only pip's settings name."""
+    commands: list[list[str]] = []
+
+    def run(command: list[object], **_options: object) -> SimpleNamespace:
+        commands.append([str(part) for part in command])
+        return SimpleNamespace(returncode=exit_code if "uv" in command else 0)
+
+    monkeypatch.setattr(bootstrap, "VENV", tmp_path)
+    monkeypatch.setattr("bootstrap.subprocess.run", run)
+    bootstrap.install_locked(LOCKS[0], by_uv=by_uv)
+    assert [command[2] for command in commands] == installers
+    assert all(
+        command[-5:-1] == ["--require-hashes", "--only-binary", ":all:", "--requirement"] for command in commands
+    )
+    assert commands[-1][-1] == str(LOCKS[0])
+
+
+def test_a_package_that_a_lock_does_not_hold_is_reported(capsys: Any) -> None:
+    """Not installed from elsewhere, without a hash."""
+    with pytest.raises(SystemExit):
+        bootstrap.lock_entry(LOCKS[0], "u")
+    assert "development.lock has 0 entries of u" in capsys.readouterr().err
 
 
 def test_each_package_of_the_page_has_a_hash_and_no_address() -> None:

@@ -47,10 +47,12 @@ class Transfer:
     parameters: dict[str, object] = field(default_factory=dict[str, object])
     log: list[Event] = field(default_factory=list[Event])
     joints: list[tuple[tuple[float, ...], ...]] = field(default_factory=list[tuple[tuple[float, ...], ...]])
+    result: RunResult | None = None
 
     def run(self, store: Path | None = None) -> RunResult:
         """Run it to its end, with that store in place of the cell's."""
-        return run_virtual(self._run(store))
+        self.result = run_virtual(self._run(store))
+        return self.result
 
     async def _run(self, store: Path | None) -> RunResult:
         behavior = load_behavior(BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml")
@@ -97,9 +99,23 @@ def causes(result: RunResult) -> str:
     return "; ".join(link.message for link in result.cause.chain()) if result.cause else ""
 
 
-@pytest.mark.parametrize("seed", [None, *map(nightly, (0, 1, 3))])
-def test_parts_that_lie_anywhere_within_their_jitter_are_swapped(tmp_path: Path, seed: int | None) -> None:
-    """Judged by where they lie in the world; 0, 1 and 3 are seeds on which a grip whose force fades loses a part."""
+@pytest.fixture(scope="module")
+def transfer(tmp_path_factory: pytest.TempPathFactory) -> Transfer:
+    """One transfer in the demo cell, which several tests look at; a grip whose force fades loses a part on its seed."""
+    done = Transfer(cell_as_it_is(), 0)
+    done.run(tmp_path_factory.mktemp("transfer") / "store.db")
+    return done
+
+
+def test_parts_that_lie_anywhere_within_their_jitter_are_swapped(transfer: Transfer) -> None:
+    """Judged by where they lie in the world."""
+    assert transfer.result is not None
+    assert (transfer.result.outcome, causes(transfer.result)) == ("finished", "")
+
+
+@pytest.mark.parametrize("seed", [nightly(None), nightly(1), nightly(3)])
+def test_they_are_swapped_on_other_seeds_too(tmp_path: Path, seed: int | None) -> None:
+    """On 1 and 3, as on 0, a grip whose force fades loses a part."""
     result = Transfer(cell_as_it_is(), seed).run(tmp_path / "store.db")
     assert (result.outcome, causes(result)) == ("finished", "")
 
@@ -121,18 +137,16 @@ def test_parts_at_the_far_corners_of_their_jitter_are_swapped(tmp_path: Path, si
     assert (result.outcome, causes(result)) == ("finished", "")
 
 
-def test_the_same_seed_gives_the_same_event_log_byte_for_byte(tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_event_log_byte_for_byte(transfer: Transfer, tmp_path: Path) -> None:
     """Physics, planning and engine alike."""
-    first, second = Transfer(cell_as_it_is(), 7), Transfer(cell_as_it_is(), 7)
-    first.run(tmp_path / "first.db")
-    second.run(tmp_path / "second.db")
-    assert encode_event_log(first.log) == encode_event_log(second.log)
+    again = Transfer(cell_as_it_is(), transfer.seed)
+    again.run(tmp_path / "again.db")
+    assert len(again.log) > 100
+    assert encode_event_log(again.log) == encode_event_log(transfer.log)
 
 
-def test_the_arms_stay_well_apart_all_the_time(tmp_path: Path) -> None:
+def test_the_arms_stay_well_apart_all_the_time(transfer: Transfer) -> None:
     """Smallest distance of any two collision shapes of the two arms, from the measured joints."""
-    transfer = Transfer(cell_as_it_is(), 0)
-    assert transfer.run(tmp_path / "store.db").outcome == "finished"
     assert len(transfer.joints) > 100
     assert least_distance_m(transfer) > LEAST_CLEARANCE_M
 

@@ -20,9 +20,10 @@ from tests.engine.editing.edit_fixtures import context, edited, read_edits
 from tests.engine.editing.layouts import Layout, Plain, chances
 from tests.engine.editing.model import flattened, model_of
 from tests.engine.editing.random_edits import MACHINES, NAMED, any_edits, simple_edits
+from tests.tiers import examples
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(20, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances)
 def test_the_nodes_of_a_text_are_those_of_the_loaded_behavior(data: Plain, chance: random.Random) -> None:
     text = Layout(chance).document(data)
@@ -33,7 +34,7 @@ def test_the_nodes_of_a_text_are_those_of_the_loaded_behavior(data: Plain, chanc
         assert behavior.source.position(ref.keys, of_key=True) == behavior.position(path)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_an_edit_does_to_the_text_what_it_does_to_the_model(
     data: Plain, chance: random.Random, draw: st.DataObject
@@ -51,7 +52,7 @@ def test_an_edit_does_to_the_text_what_it_does_to_the_model(
         text, data = made, expected
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(25, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_a_rename_and_its_inverse_give_the_same_text(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
     text = Layout(chance).document(data)
@@ -63,7 +64,7 @@ def test_a_rename_and_its_inverse_give_the_same_text(data: Plain, chance: random
     assert _unquoted(back) == _unquoted(text)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(25, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_grouping_as_a_machine_means_the_same_and_ungrouping_takes_it_back(
     data: Plain, chance: random.Random, draw: st.DataObject
@@ -88,7 +89,7 @@ def test_grouping_as_a_machine_means_the_same_and_ungrouping_takes_it_back(
     _check_comments(text, back, gone=False)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(25, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_adding_a_node_and_removing_it_gives_the_same_text(
     data: Plain, chance: random.Random, draw: st.DataObject
@@ -102,7 +103,7 @@ def test_adding_a_node_and_removing_it_gives_the_same_text(
     assert back.rstrip("\n") == text.rstrip("\n")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_whatever_is_asked_is_done_whole_or_refused_in_words(
     data: Plain, chance: random.Random, draw: st.DataObject
@@ -124,7 +125,7 @@ def test_whatever_is_asked_is_done_whole_or_refused_in_words(
     Outline(Draft(text, file="x.yaml").data)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(20, nightly=300), deadline=None)
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_what_is_copied_and_pasted_is_the_same(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
     """In another behavior only the transitions stay that lead to something there."""

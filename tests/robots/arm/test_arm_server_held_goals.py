@@ -68,13 +68,13 @@ async def path_of(bus: SkillBus, goal: Action[Any, Any], *, holds: int) -> tuple
             await bus.clock.sleep(0.01)
 
     watching = asyncio.create_task(watch())
-    for _ in range(holds):
+    for hold_s in (5.0, 0.2)[:holds]:
         await until(lambda: speed_rad_s(bus) > 0.1)
         await bus.clock.sleep(0.15)
         await handle.hold()
         at = measured(bus)
         assert (handle.status, speed_rad_s(bus) < REST_RAD_S) == (GoalStatus.HELD, True)
-        await bus.clock.sleep(5.0)
+        await bus.clock.sleep(hold_s)
         assert (handle.status, np.abs(measured(bus) - at).max() < 0.001) == (GoalStatus.HELD, True)
         await handle.resume()
         assert handle.status is GoalStatus.ACTIVE
