@@ -28,7 +28,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
     .toReversed()
   return (
     <div className={styles.page}>
-      <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isSaid>
+      <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isStatus>
         <NativeSelect
           size="xs"
           aria-label="Number of runs"
