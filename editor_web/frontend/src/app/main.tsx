@@ -1,6 +1,7 @@
 /** Puts the page into the document. */
 import '@fontsource-variable/inter/wght.css'
 import '@mantine/core/styles.css'
+import './styles/tokens.css'
 import './styles/base.css'
 import './styles/status.css'
 import './styles/frame.css'
